@@ -65,8 +65,7 @@ def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
 
 
 HOLDS, FAILS, OPEN = "holds", "fails", "open"
-OCCURS = 0.05
-"""What happens at all happens in at least one run in twenty, whatever was found."""
+OCCURS = 0.05  # What happens at all happens in at least one run in twenty, whatever was found.
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ class Cells:
 
     def rows(self, variant: str) -> list[Row]:
         """Return the runs of a variant; none where it changes nothing."""
-        given = SETS[self.name][0]
+        given = SETS[self.name]
         known = flock(given).to_dict()
         per_step = known["scheme"] == "paper"
         reverse = known["leaders_reverse"] != (variant == "leaders reversed")
@@ -87,7 +87,7 @@ def measure(row: Row) -> Row:
     """Return the order after the first tenth of a run, and in its second half."""
     led = row["n_leaders"] > 0
     against = led and row["variant"] == "rotating"
-    parameters = flock(SETS[row["set"]][0] | row, target="ccw" if against else "cw")
+    parameters = flock(SETS[row["set"]] | row, target="ccw" if against else "cw")
     named = led and row["set"] == "simulation"
     start = STARTS.get(row["variant"])
     seed = seed_of(row)

@@ -83,8 +83,8 @@ def judge(table: pd.DataFrame) -> Claims:
     """Judge the rule."""
     claims = Claims("5.2, left open", f"leapfrog, white, dt = 0.1 s, coverage {COVERAGE:g}, bw = 0")
     fast, slow = (table["minutes"] == table["minutes"].min()), table["minutes"] > LEVEL_MIN
-    loops = {n: area(runs) for n, runs in table[fast].groupby("n_boats") if len(runs) > 2}
-    slower = {n: area(runs) for n, runs in table[slow].groupby("n_boats") if len(runs) > 2}
+    loops = {n: area(runs) for n, runs in table[fast].groupby("n_boats")}
+    slower = {n: area(runs) for n, runs in table[slow].groupby("n_boats")}
     for n, each in loops.items():
         quantity = f"area of the loop in c4 in |m|, {LEVEL_MIN:g} min per noise"
         claims.add("There is hysteresis", quantity, mean(each), least=0.05, n=f"{n:g}")

@@ -3,65 +3,54 @@
 27 boats of the preset `experiment` first, as the paper has them; then 20 to 50 boats in both pools.
 """
 
+import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, mean, write_claims
-from fit import CANDIDATE, constants
+from fit import CANDIDATE, HELD_OUT, LEVELS_S, constants, runs_of
 from section4 import FREE, READING, STUDY, VERY_LOW_S, over, setup, words
-from section5 import READINGS
+from section5 import STUDY as SECTION5
+from section5 import Evidence
 from starts import RADII_CM
-from study import (
-    COLORS,
-    SEEDS,
-    Options,
-    Row,
-    Study,
-    curve,
-    flock,
-    main,
-    order_row,
-    picture,
-    simulated,
-)
+from study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, order_row, picture
+from study import simulated as run_of
 
-BOATS, POOLS = (20, 27, 50), ("wide", "narrow")
 FIRST = 100
 """Seeds that no other study of this folder has."""
-LEAST_RISE = 0.3
-_LOW = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
-_WIDER = (0.0, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4)
-SETS: dict[str, tuple[Row, tuple[float, ...]]] = {
-    "simulation": ({"preset": "simulation"}, _LOW),
-    "paper": ({"preset": "paper"}, _LOW),
-    "experiment": ({"preset": "experiment"}, _WIDER),
-    "measured current": ({"preset": "experiment", **constants(CANDIDATE)}, _WIDER),
+LEAST_RISE, HULL_CM2 = 0.3, 128.5
+NOISES_S = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
+SETS: dict[str, Row] = {
+    "simulation": {"preset": "simulation"},
+    "paper": {"preset": "paper"},
+    "experiment": {"preset": "experiment"},
+    "measured current": {"preset": "experiment", **constants(CANDIDATE)},
 }
-"""Constants and noises up to the one where rotation is at its best, by name."""
-_NAMED = sorted({name for row, _ in SETS.values() for name in row} - {"preset"})
+"""Constants by name; the last are the fitted ones that hold the measured current."""
+_NAMED = sorted({name for row in SETS.values() for name in row} - {"preset"})
 
 
 def design() -> list[Row]:
-    """Return runs of 16 minutes without leaders."""
+    """Return runs of 27 boats for 16 minutes: other numbers are in the runs of Section 5."""
     rows = []
-    for name, (given, noises) in SETS.items():
-        known = flock(given).to_dict()
+    for name in ("simulation", "paper"):
+        known = flock(SETS[name]).to_dict()
         rows += [
-            {"set": name, "preset": given["preset"], **{field: known[field] for field in _NAMED}}
-            | {"pool": pool, "n_boats": n, "n_leaders": 0, "bw_s": bw_s}
+            {"set": name, "preset": name, **{field: known[field] for field in _NAMED}}
+            | {"pool": pool, "n_boats": 27, "n_leaders": 0, "bw_s": bw_s}
             | {"minutes": 16.0, "seed": seed}
-            for n in BOATS
-            for pool in POOLS
-            for bw_s in noises
+            for pool in RADII_CM
+            for bw_s in NOISES_S
             for seed in range(FIRST, FIRST + SEEDS)
         ]
-    return sorted(rows, key=lambda row: row["n_boats"] != 27)
+    return sorted(rows, key=lambda row: row["seed"])
 
 
 def measure(row: Row) -> Row:
     """Return order and jams of a run."""
-    found = order_row(simulated(row, sample_hz=4.0))
+    found = order_row(run_of(row, sample_hz=4.0))
     return {name: found[name] for name in ("psi_o", "abs_m", "jammed")}
 
 
@@ -81,16 +70,38 @@ def rise(runs: pd.DataFrame) -> Interval:
 
 def covered(pool: str, n_boats: int) -> float:
     """Return the share of the water that hulls cover."""
-    p = flock(READINGS["simulation"], pool=pool)
     outer, inner = RADII_CM[pool]
-    hull = (math.pi + 4.0 * p.boat_shape) * p.boat_radius_cm**2
-    return n_boats * hull / (math.pi * (outer**2 - inner**2))
+    return n_boats * HULL_CM2 / (math.pi * (outer**2 - inner**2))
 
 
-def judge_density(table: pd.DataFrame) -> Claims:
+def cells(options: Options) -> dict[tuple[str, str, int], pd.DataFrame]:
+    """Return the runs without leaders of every set of constants, pool and number of boats.
+
+    Of each cell those of the seeds that have been run at all of its noises.
+    """
+    tables = {("experiment", "narrow", 27): setup(STUDY.results(options), FREE)}
+    fitted = runs_of(replace(options, runs=False), (CANDIDATE,), LEVELS_S, HELD_OUT)
+    if len(fitted):
+        tables["measured current", "narrow", 27] = fitted[fitted["n_leaders"] == 0]
+    others = SECTION5.results(replace(options, runs=options.trial))
+    for name in ("simulation", "paper"):
+        for n, pool in itertools.product((20, 50), RADII_CM):
+            reading = name if pool == "wide" else f"{name}, narrow"
+            tables[name, pool, n] = Evidence(others, reading).of(n, 0)
+    for (name, pool, n), runs in DENSITY.results(options).groupby(["set", "pool", "n_boats"]):
+        tables[name, pool, int(n)] = runs
+    found = {}
+    for key, runs in tables.items():
+        noises = runs.groupby("seed")["bw_s"].transform("size")
+        if len(runs) and runs["bw_s"].nunique() > 3:
+            found[key] = runs[noises == noises.max()]
+    return found
+
+
+def judge_density(found: dict[tuple[str, str, int], pd.DataFrame]) -> Claims:
     """Judge whether noise makes motion, in each pool and number of boats."""
     claims = Claims("6", "")
-    for (name, pool, n), runs in table.groupby(["set", "pool", "n_boats"], sort=False):
+    for (name, pool, n), runs in found.items():
         claims.reading = f"{name}, {pool}"
         claims.add(
             "Some noise is needed for long-term ordered motion",
@@ -98,39 +109,29 @@ def judge_density(table: pd.DataFrame) -> Claims:
             f"read as at least {LEAST_RISE:g}",
             rise(runs),
             least=LEAST_RISE,
-            n=f"{n:g}",
+            n=str(n),
         )
     return claims
 
 
-def draw_density(options: Options, table: pd.DataFrame) -> None:
+def draw_density(options: Options, found: dict[tuple[str, str, int], pd.DataFrame]) -> None:
     """Draw the rise, and |m| without noise, against the share of the water under hulls."""
     with picture(options, "density", height_cm=7.0) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         for color, marker, name in zip(COLORS, "osD^", SETS, strict=False):
-            cells = {
-                100 * covered(pool, n): table[
-                    (table["set"] == name) & (table["pool"] == pool) & (table["n_boats"] == n)
-                ]
-                for pool in POOLS
-                for n in BOATS
-            }
-            cells = {x: runs for x, runs in cells.items() if len(runs)}
-            style = {"color": color, "marker": marker, "label": name, "linewidth": 0.6}
-            if cells:
-                curve(left, cells, [rise(runs) for runs in cells.values()], **style)
-                quiet = [runs[runs["bw_s"] == 0.0]["abs_m"].to_numpy() for runs in cells.values()]
-                curve(right, cells, [bca([q[:, None]], _mean) for q in quiet], **style)
+            own = sorted(key[1:] for key in found if key[0] == name)
+            shares = {100 * covered(*key): found[name, *key] for key in own}
+            style = {"color": color, "marker": marker, "label": name, "linestyle": ""}
+            if shares:
+                curve(left, shares, [rise(runs) for runs in shares.values()], **style)
+                quiet = [mean(runs[runs["bw_s"] == 0.0]["abs_m"]) for runs in shares.values()]
+                curve(right, shares, quiet, **style)
         left.axhline(LEAST_RISE, color="0.6", linestyle="--", linewidth=0.6)
         left.set(ylabel="rise of mean |m| by noise", ylim=(-0.03, 1.0))
-        right.set(ylabel="mean |m| without noise", ylim=(-0.03, 1.0))
+        right.set(ylabel="mean |m| without noise")
         for axes in (left, right):
-            axes.set_xlabel("share of the water under hulls (%)\nwide: 4, 5, 9; narrow: 14, 19, 36")
+            axes.set_xlabel("water under hulls (%); wide: 4, 5, 9; narrow: 14, 19, 36")
         right.legend()
-
-
-def _mean(drawn: np.ndarray) -> np.ndarray:
-    return np.asarray(drawn[..., 0].mean(-1))
 
 
 def judge(table: pd.DataFrame) -> Claims:
@@ -179,11 +180,10 @@ def draw(options: Options, table: pd.DataFrame) -> None:
 
 def script(options: Options) -> None:
     """Make, judge and draw the runs of both studies."""
-    table, density = STUDY.results(options), DENSITY.results(options)
-    write_claims(options, "noise_makes_motion", [*judge(table), *judge_density(density)])
+    table, found = STUDY.results(options), cells(options)
+    write_claims(options, "noise_makes_motion", [*judge(table), *judge_density(found)])
     draw(options, table)
-    if len(density):
-        draw_density(options, density)
+    draw_density(options, found)
 
 
 if __name__ == "__main__":
