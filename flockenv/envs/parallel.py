@@ -1,5 +1,6 @@
 """`LeadersParallelEnv`: each leader is an agent of PettingZoo's parallel interface."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,8 +12,9 @@ from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
 
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
-from flockenv.envs.batch import drawn_seed
+from flockenv.envs.batch import drawn_seed, is_plain
 from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
@@ -76,6 +78,8 @@ class LeadersParallelEnv(
             agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents
         }
         self._random = np.random.default_rng()
+        self._every_agent = frozenset(self.possible_agents)
+        self._levels: int | None = settings["rudder_levels"]
 
     def observation_space(self, agent: str) -> gymnasium.spaces.Space[NDArray[np.float32]]:
         """Return the observation space of an agent, always the same object."""
@@ -154,12 +158,14 @@ class LeadersParallelEnv(
             raise EpisodeError("step was called before a reset or after the episode's end")
         if not isinstance(actions, Mapping):
             raise TypeError(f"actions must be a dictionary, not {type(actions).__name__}")
-        if actions.keys() != set(self.agents):
+        if actions.keys() != self._every_agent:
             wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
             raise ParameterError(
                 f"actions are for other agents than {', '.join(self.agents)}: see {wrong}"
             )
-        levels = self._batch.settings["rudder_levels"]
+        levels = self._levels
+        if levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
+            return np.array(rudders)
         shape = (1,) if levels is None else ()
         each = [
             _core.flat_actions(actions[agent], shape, levels, f"the action of {agent}")
@@ -168,10 +174,10 @@ class LeadersParallelEnv(
         return np.concatenate(each)
 
     def _infos(self, over: bool) -> Infos:
-        terms = {name: rows.tolist() for name, rows in self._batch.reward_terms().items()}
+        rows = self._batch.core.reward_terms().tolist()
         infos: Infos = {
-            agent: {"reward_terms": {name: rows[leader] for name, rows in terms.items()}}
-            for leader, agent in enumerate(self.agents)
+            agent: {"reward_terms": dict(zip(TERMS, row, strict=True))}
+            for agent, row in zip(self.agents, rows, strict=True)
         }
         if over:
             for info in infos.values():
@@ -189,6 +195,14 @@ class LeadersParallelEnv(
         """Continue from `get_state` of an environment with the same options, bit for bit."""
         super().set_state(state)
         self.agents = self.possible_agents[:] if self._batch.core.is_running(0) else []
+
+
+def _plain_rudders(actions: list[Any]) -> list[float] | None:
+    """Return rudders that are arrays as the action spaces give them; None for all others."""
+    if not all(is_plain(action, (1,)) for action in actions):
+        return None
+    rudders: list[float] = [action.item() for action in actions]
+    return None if any(map(math.isnan, rudders)) else rudders
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
-from flockenv.envs.batch import drawn_seed
+from flockenv.envs.batch import drawn_seed, is_plain, mean_rows
 from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import joint_action_space, spec_of_episodes
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -146,7 +147,9 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
         self.observation_space = ObservationSpace(settings, self.num_leaders)
-        self.action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
+        self._levels: int | None = settings["rudder_levels"]
+        self._actions_shape = (self.num_leaders,)
+        self.action_space = joint_action_space(self._levels, self.num_leaders)
 
     @property
     def spec(self) -> EnvSpec | None:
@@ -208,17 +211,18 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         EpisodeError
             Before the first reset and after the end.
         """
-        flat = _core.flat_actions(
-            action, (self.num_leaders,), self._batch.settings["rudder_levels"]
-        )
+        flat: Any = action
+        if self._levels is not None or not is_plain(action, self._actions_shape):
+            flat = _core.flat_actions(action, self._actions_shape, self._levels)
         rows, rewards, truncated = self._batch.step(self, flat)
-        terms = {name: float(each.mean()) for name, each in self._batch.reward_terms().items()}
-        info: dict[str, Any] = {"reward_terms": terms}
+        means = mean_rows(self._batch.core.reward_terms().tolist())
+        info: dict[str, Any] = {"reward_terms": dict(zip(TERMS, means, strict=True))}
         over = bool(truncated[0])
         if over:
             info.update(self._batch.end_info(0))
         self._show()
-        return rows.reshape(-1), float(rewards.mean()), False, over, info
+        (reward,) = mean_rows(rewards[:, None].tolist())
+        return rows.reshape(-1), reward, False, over, info
 
     def observe(self) -> NDArray[np.float32]:
         """Return the present observation."""

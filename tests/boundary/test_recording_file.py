@@ -239,3 +239,11 @@ def test_rudders_are_saved_checked_and_may_be_missing():
     ):
         with pytest.raises(ParameterError, match="rudder"):
             dataclasses.replace(RUN, rudder=rudder)
+
+
+def test_the_sample_at_the_end_of_what_is_left_out_is_left_out_too():
+    """A tenth of 15 s is 1.5 s, in the window from 1 to 2.5 s."""
+    run = simulate(FlockParameters(n_boats=4), 1, 15.0, 10.0)
+    assert run.in_analysis_window[[9, 10, 24, 25]].tolist() == [False, True, True, False]
+    assert run.analyzed().time_s[0] == 1.6
+    assert run.analyzed(0.0).time_s[0] == 1.0

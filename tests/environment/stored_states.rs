@@ -162,6 +162,56 @@ fn states_of_another_format_are_refused_by_its_number() {
     );
 }
 
+/// The bytes of a flock or a batch in which a number is another one, with a seal that fits.
+fn forged(bytes: &[u8], number: f64, other: f64) -> Vec<u8> {
+    let mut forged = bytes.to_vec();
+    let places: Vec<_> = (16..bytes.len() - 7)
+        .filter(|&place| bytes[place..place + 8] == number.to_le_bytes())
+        .collect();
+    assert!(!places.is_empty(), "{number}");
+    for place in places {
+        forged[place..place + 8].copy_from_slice(&other.to_le_bytes());
+    }
+    reseal(&mut forged);
+    forged
+}
+
+#[test]
+fn states_with_numbers_that_no_boat_has_are_refused() {
+    let batch = batch(settings(12), &[1], 0);
+    let flock = batch.envs()[0].episode().unwrap().flock();
+    let mut moved = flock.clone();
+    moved.advance(0.5, None).unwrap();
+    let snapshot = moved.snapshot();
+    let pose = moved.poses()[4];
+    let velocity = moved.velocities()[4];
+    for number in [
+        pose.position.x,
+        pose.position.y,
+        pose.heading,
+        velocity.linear.x,
+        velocity.linear.y,
+        velocity.angular,
+    ] {
+        let same = forged(&snapshot, number, number);
+        assert_eq!(
+            Flock::from_snapshot(&same, None).unwrap().snapshot(),
+            snapshot
+        );
+        for other in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e10] {
+            let bytes = forged(&snapshot, number, other);
+            assert!(Flock::from_snapshot(&bytes, None).is_err(), "{other}");
+            assert!(moved.restore(&bytes, None).is_err(), "{other}");
+            assert_eq!(moved.snapshot(), snapshot);
+        }
+    }
+    let own = batch.to_bytes();
+    for number in [flock.poses()[2].position.x, flock.poses()[2].heading] {
+        let bytes = forged(&own, number, f64::NAN);
+        assert!(EnvBatch::from_bytes(&bytes).is_err());
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 400,

@@ -8,6 +8,7 @@ import pytest
 
 import flockenv
 from flockenv import order
+from flockenv.envs.batch import mean_rows
 
 SMALL = {"n_boats": 6, "n_leaders": 2}
 QUANTITIES = [
@@ -46,13 +47,15 @@ def test_a_time_that_never_came_is_infinite():
     assert summary.keys() >= WINDOW_MEANS
 
 
-def test_means_are_those_of_the_normal_boats_in_the_window():
-    env = flockenv.LeadersEnv(episode_s=8.0, target="cw", **SMALL)
+# A tenth of 15 s is in the window itself: the sample at that time does not count.
+@pytest.mark.parametrize("episode_s", [8.0, 15.0, 20.0])
+def test_means_are_those_of_the_normal_boats_in_the_window(episode_s):
+    env = flockenv.LeadersEnv(episode_s=episode_s, target="cw", **SMALL)
     env.reset(seed=3)
     seen, over = [], False
     while not over:
         _, _, _, over, info = env.step(np.array([0.4, -0.1]))
-        if env.flock.in_analysis_window and env.flock.time_s > 0.8:
+        if env.flock.in_analysis_window and env.flock.time_s > 0.1 * episode_s + 1e-9:
             seen.append(env.flock.order_parameters())
     series = flockenv.OrderSeries(
         **{name: np.array([getattr(each, name) for each in seen]) for name in RECORDED}
@@ -100,3 +103,36 @@ def test_infos_are_plain_and_seeds_are_whole(seed):
     for _ in range(60):
         infos = many.step(np.zeros((1, 2)))[-1]
     assert infos["episode_summary"]["flock_seed"].tolist() == [seed]
+
+
+@pytest.mark.parametrize("leaders", [1, 2, 3, 7, 8, 9, 20])
+def test_means_over_leaders_have_the_bits_of_numpy(leaders):
+    random = np.random.default_rng(leaders)
+    for _ in range(50):
+        rows = random.normal(size=(leaders, 8)) * 10.0 ** random.integers(-9, 9, (leaders, 8))
+        rows[random.uniform(size=rows.shape) < 0.2] = -0.0
+        expected = np.array([each.mean() for each in rows.T])
+        assert np.array(mean_rows(rows.tolist())).tobytes() == expected.tobytes()
+
+
+def test_actions_of_every_kind_have_the_same_bits():
+    """What the action spaces give is not checked as other kinds of numbers are."""
+    options = {"n_boats": 8, "n_leaders": 2, "episode_s": 2.0}
+    plain = np.array([0.3, -1.7], np.float32)
+    kinds = [plain, plain.astype(np.float64), plain.tolist(), plain[::-1].copy()[::-1]]
+    seen = []
+    for each in kinds:
+        env, agents = flockenv.LeadersEnv(**options), flockenv.parallel_env(**options)
+        env.reset(seed=1)
+        agents.reset(seed=1)
+        for _ in range(5):
+            step = env.step(each)
+            by_agent = agents.step({"leader_1": [each[1]], "leader_0": np.array([each[0]])})
+        assert step[1] == pytest.approx(np.mean([*by_agent[1].values()]))
+        infos = [by_agent[4][agent]["reward_terms"] for agent in agents.agents]
+        for name, mean in step[4]["reward_terms"].items():
+            assert mean == np.mean([info[name] for info in infos])
+            assert type(mean) is float
+        seen.append((env.get_state(), agents.get_state()))
+    assert seen == [seen[0]] * len(kinds)
+    assert {*seen[0]} == {seen[0][0]}

@@ -139,3 +139,36 @@ def test_weights_of_each_leader_pay_it_as_the_same_weights_of_all(options):
 def test_weights_that_are_none_are_refused(reward, words):
     with pytest.raises((ParameterError, TypeError), match=words):
         flockenv.parallel_env(**SMALL, reward=reward)
+
+
+@pytest.mark.parametrize("reward", ["function", "list"])
+@pytest.mark.parametrize("mode", ["next_step", "disabled"])
+def test_what_was_paid_starts_anew_with_each_episode(reward, mode):
+    """After 2 of 5 steps flock 1 alone starts again, and the others end before it."""
+    own = {
+        "function": lambda env: np.ones(env.num_envs),
+        "list": [{"rudder_effort": -1.0}, {"rudder_effort": -1.0}],
+    }
+    env = started(reward=own[reward], autoreset_mode=mode)
+    still, mask = np.ones((3, 2)), np.array([False, True, False])
+    for _ in range(2):
+        env.step(still)
+    env.reset(options={"reset_mask": mask})
+    for _ in range(2):
+        env.step(still)
+    env.set_state(env.get_state())
+    *_, truncated, infos = env.step(still)
+    assert truncated.tolist() == [True, False, True]
+    assert infos["episode_summary"]["total_reward"][~mask] == pytest.approx(5.0)
+    if mode == "disabled":
+        env.reset(options={"reset_mask": ~mask})
+    ends = {}
+    for step in range(12):
+        *_, truncated, infos = env.step(still)
+        for flock in np.flatnonzero(truncated).tolist():
+            ends.setdefault(flock, (step, infos["episode_summary"]["total_reward"][flock]))
+        if mode == "disabled" and truncated.any():
+            env.reset(options={"reset_mask": truncated})
+    assert {flock: total for flock, (_, total) in ends.items()} == pytest.approx(
+        dict.fromkeys(range(3), 5.0)
+    )

@@ -1,6 +1,7 @@
 """Law: closed-form laws read the observation that a learner gets; eq. (10) comes out to 1e-6."""
 
 import copy
+import json
 import math
 import pickle
 
@@ -135,3 +136,21 @@ def test_a_law_steers_in_the_core_as_it_does_from_observations(law):
         ]
         assert runs[0].pose.tobytes() == runs[1].pose.tobytes()
         assert runs[0].rudder.tobytes() == runs[1].rudder.tobytes()
+
+
+@pytest.mark.parametrize("gain", [math.nan, math.inf, -math.inf, 1e10])
+@pytest.mark.parametrize("place", range(3))
+def test_gains_are_finite(gain, place):
+    gains = [1.0, 2.0, 3.0]
+    assert [*DampedLaw(*gains).gains.values()] == gains
+    gains[place] = gain
+    with pytest.raises(flockenv.ParameterError, match="a finite number"):
+        DampedLaw(*gains)
+    text = json.loads(flockenv.policies.load("learned", pool="wide").to_json())
+    name = [*text["gains"]][place]
+    text["gains"][name] = 1e10
+    with pytest.raises(flockenv.ParameterError, match="a finite number"):
+        flockenv.policies.LeaningLaw.from_json(json.dumps(text))
+    text["gains"][name], text["bias"] = 1.0, 1e10
+    with pytest.raises(flockenv.ParameterError, match="a finite number"):
+        flockenv.policies.LeaningLaw.from_json(json.dumps(text))
