@@ -17,11 +17,11 @@ from flockenv.tracks.table import column, numbers, read_table, text_of
 Form = dict[str, Any]
 Doubts = dict[str, tuple[Any, str]]
 
-_THINGS = "boat|robot|animal|fish|individual|particle|agent|marker|tag|subject"
+_THINGS = "body|boat|robot|animal|fish|individual|particle|agent|marker|tag|subject"
 _MIDDLES = "pos(ition)?|cent(roid|er|re)|wcentroid"
 _NAMES = {
     "frame": (
-        *("time_s", "seconds?", "time", "t", "timestamp", "position_t", "step", "image"),
+        *("time_s", "seconds?", "(trial_)?time", "t", "timestamp", "position_t", "step", "image"),
         *("frames?", "frame_?(idx|index|no|nr|number|id)"),
     ),
     "id": ("track_id", "track", f"({_THINGS})s?(_?(id|name|no|nr|number))?", "id|name|instance"),
@@ -32,7 +32,7 @@ _NAMES = {
 
 _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$")
 _CM = {"cm": 1.0, "mm": 0.1, "m": 100.0}
-_PER_S = {"s": None, "ms": 1e3, "us": 1e6, "µs": 1e6, "ns": 1e9}
+_PER_S = {"s": None, "sec": None, "seconds": None, "ms": 1e3, "us": 1e6, "µs": 1e6, "ns": 1e9}
 _HEAD = "head|nose|snout|bow|front"
 _TAIL = "tail(_?base)?|stern|back|rear|abdomen"
 _MIDDLE = "cent(er|re|roid)|body|thorax|mid(dle)?"
@@ -59,7 +59,10 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         plain: Form = {n: tuple(v) if isinstance(v, list) else v for n, v in fields.items()}
         layout = TrackLayout(pool="wide", separator=";", decimal=form.get("decimal", "."), **plain)
         rows = long_table(table, layout) if layout.is_wide else table
-        _guess_place(rows, layout, form, doubts)
+        try:
+            _guess_place(rows, layout, form, doubts)
+        except ParameterError as error:
+            raise ParameterError(f"{path}: {error}") from error
         _guess_time(rows, form, doubts)
         if isinstance(form.get("heading"), str):
             _guess_turn(numbers(rows, form["heading"], layout), form, doubts)

@@ -170,8 +170,6 @@ class TrackLayout:
                 raise ParameterError(f"{each.name} = {shown(value)} is not accepted: {accepted}")
         if (self.confidence is None) != (self.least_confidence is None):
             raise ParameterError("confidence and least_confidence need each other")
-        if self.separator == self.decimal:
-            raise ParameterError("separator and decimal are the same character")
         count, (radius, shape) = len(self.leaders), self.hull
         try:
             FlockParameters(

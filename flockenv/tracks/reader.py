@@ -105,7 +105,7 @@ def _recording(
             broken=motion.broken,
             lone=int((there & np.isnan(velocity[..., 0])).sum()),
             cosine=motion.cosine(pose),
-            stuck=_stuck(rows),
+            stuck=_stuck(rows, layout),
         )
     )
     return recording
@@ -124,8 +124,7 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
         same = rows[(rows["id"] == row["id"]) & (rows["frame"] == row["frame"])]
         raise ParameterError(
             f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
-            f", at other places, the second time in {rows.index.name} {row.name}: if it is no "
-            f"boat's name, say unassigned = [{row['id']!r}]"
+            f", at other places, the second time in {rows.index.name} {row.name}"
         )
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
@@ -144,9 +143,14 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
     return names, time_s - time_s[0], stamps, pose
 
 
-def _stuck(rows: "pd.DataFrame") -> dict[str, tuple[float, float, int]]:
-    """Return boats that are at the very same point in many samples."""
+def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
+    """Return boats that are at the very same point in many samples, in units of the file."""
+    up = -1.0 if layout.y_down else 1.0
     used = rows[rows["why"] == ""]
+    used = used.assign(
+        x=used["x"] / layout.cm_per_unit + layout.center[0],
+        y=up * used["y"] / layout.cm_per_unit + layout.center[1],
+    )
     counts = used.value_counts(["id", "x", "y"]).reset_index().drop_duplicates("id")
     share = counts["id"].map(used["id"].value_counts()) / 10
     counts = counts[(counts["count"] >= _STUCK) & (counts["count"] >= share)]

@@ -30,8 +30,8 @@ class TrackReport:
         Mean cosine between heading and motion, weighted by the way. It is near 1 for what moves
         ahead, and small or negative if axes, units or directions are wrong; NaN if nothing moves.
     stuck : dict of (float, float, int)
-        Boats that are at one point in at least 20 samples and a tenth of them: x and y in cm, and
-        in how many.
+        Boats that are at one point in at least 20 samples and a tenth of them: x and y in units of
+        the file, and in how many.
     """
 
     frames: int
@@ -62,6 +62,8 @@ class TrackReport:
             f"samples without a velocity: {self.lone}",
             f"mean cosine between heading and motion: {self.cosine:.2f}",
         ]
+        if self.lone == self.samples and self.frames > 1:
+            lines[-1] += ": no boat is there in two frames one after another; are the names right?"
         if self.cosine < _WEAK:
             lines[-1] += (
                 ", far from 1: are y_down, heading_unit, heading_turns, heading_zero and the order "
@@ -69,13 +71,13 @@ class TrackReport:
             )
         if self.stuck:
             points = (
-                f"{name} at ({x:.4g}, {y:.4g}) cm in {count} frames"
+                f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
                 for name, (x, y, count) in list(self.stuck.items())[:5]
             )
             more = f", and {len(self.stuck) - 5} more boats" if len(self.stuck) > 5 else ""
             lines.append(
                 f"the same point in many frames: {', '.join(points)}{more}; "
-                "if it stands for a lost boat, name it in `lost`, in units of the file"
+                "if one stands for a lost boat, name it in `lost`"
             )
         return "\n  ".join(lines)
 

@@ -225,6 +225,7 @@ def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encodin
         ("time_s;robot_no;x_m;y_m;heading_deg", {"cm_per_unit": 100.0, "heading_unit": "deg"}),
         ("Timestamp;Tag ID;X;Y;Orientation", {"id": "Tag ID", "heading": "Orientation"}),
         ("step;fish;pos_x;pos_y;theta", {"frame": "step", "id": "fish", "x": "pos_x"}),
+        ("Time (Seconds);Body;X (m);Y (m);Yaw", {"fps": None, "id": "Body", "cm_per_unit": 100.0}),
     ],
 )
 def test_units_in_a_header_are_taken(tmp_path, names, expected):
@@ -338,8 +339,12 @@ def test_decimal_commas_are_named(seen, tmp_path):
     table.to_csv(tmp_path / "tracks.csv", index=False, sep=";", decimal=",")
     with pytest.raises(flockenv.ParameterError, match=r"'1015,5' in line 2; is decimal = ','\?"):
         read_tracks(tmp_path / "tracks.csv", but(LAYOUT, separator=";"))
-    with pytest.raises(flockenv.ParameterError, match="same character"):
-        but(LAYOUT, decimal=",")
+    # Cells with decimal commas in a file that commas separate are quoted.
+    table.assign(x_px=table["x_px"].astype(str).str.replace(".", ",")).to_csv(
+        tmp_path / "quoted.csv", index=False
+    )
+    found = read_tracks(tmp_path / "quoted.csv", but(LAYOUT, decimal=","))
+    assert found == read_tracks(table, LAYOUT)
 
 
 @pytest.mark.parametrize(
@@ -389,3 +394,31 @@ def test_text_is_not_executed():
     table = pd.read_csv(io.StringIO("frame,id,x,y,heading\n0,=1+1,1,1,0\n1,=1+1,2,1,0\n"))
     found = read_tracks(table, TrackLayout(pool=(90.0, 0.0), fps=1.0))
     assert found.ids.tolist() == ["=1+1"]
+
+
+def test_ethovision(seen, tmp_path):
+    """One animal: lines before the header, units below it, "-" for a lost one, UTF-16."""
+    rows = seen.table[seen.table["track"] == "boat5"]
+    cells = rows.assign(frame=rows["frame"] / 10).drop(columns="track").astype(object)
+    cells.iloc[5] = [cells.iloc[5, 0], "-", "-", "-"]
+    lines = cells.to_csv(index=False, sep=";", header=False)
+    before = '"Number of header lines:";"5"\n"Start time";"05/04/2026 10:00:00"\n\n'
+    header = '"Trial time";"X center";"Y center";"Direction"\n"s";"px";"px";"deg"\n'
+    (tmp_path / "etho.csv").write_bytes((before + header + lines).encode("utf-16"))
+    guess_layout(tmp_path / "etho.csv")
+    guessed = read_layout(tmp_path / "etho.toml")
+    assert (guessed.frame, guessed.x, guessed.heading) == ("Trial time", "X center", "Direction")
+    assert (guessed.separator, guessed.skip, guessed.id) == (";", 3, None)
+    found, report = read_and_counted(
+        tmp_path / "etho.csv", but(guessed, **but_units(), heading_unit="deg")
+    )
+    assert report.left_out == {"without a position": {"0": 1}}
+    assert len(found) == len(rows)
+
+
+def test_names_of_spots_are_no_names_of_boats(seen):
+    """Each row has a name of its own, so that nothing moves: it is said."""
+    table = seen.table[:2000].assign(track=np.arange(2000))
+    _, report = read_and_counted(table, but(LAYOUT, leaders=()))
+    assert report.lone == report.samples
+    assert "no boat is there in two frames one after another" in str(report)

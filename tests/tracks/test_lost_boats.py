@@ -7,7 +7,7 @@ import pytest
 import flockenv
 from flockenv.tracks import TrackLayout, read_tracks, recording_of
 
-from .conftest import LAYOUT, PIXEL_CM, but, read_and_counted
+from .conftest import LAYOUT, but, read_and_counted
 
 LOST = {"boat4": (200, 420), "boat9": (100, 350)}
 """The frames in which two of the boats are lost."""
@@ -57,7 +57,7 @@ def test_a_point_in_the_water_is_said_and_can_be_left_out(seen):
     assert report.left_out == {}
     assert set(report.stuck) >= set(LOST)
     x, y, count = report.stuck["boat4"]
-    assert (x, y, count) == (-300 * PIXEL_CM, 0.5 * PIXEL_CM, lost[table["track"] == "boat4"].sum())
+    assert (x, y, count) == (512.0, 604.0, lost[table["track"] == "boat4"].sum())
     assert "the same point in many frames: " in str(report)
     found, report = read_and_counted(table, but(LAYOUT, lost=((512.0, 604.0),)))
     assert set(report.left_out) == {"at a point that stands for a lost boat"}
