@@ -1,5 +1,6 @@
 """Times of tracks: seconds from whatever a column holds, clocks that go back, and frames."""
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,7 +65,8 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     if not len(steps):
         return
     is_whole = (times == np.rint(times)).all()
-    if layout.fps is None and is_whole and "frame" in layout.frame.lower():
+    counts = re.search("frame|step|image|index|idx|sample|number", layout.frame.lower())
+    if layout.fps is None and is_whole and counts:
         raise ParameterError(
             f"fps is missing: column {layout.frame!r} holds whole numbers (fps = 1 if it counts s)"
         )

@@ -155,7 +155,10 @@ class TrackLayout:
     max_speed_cm_s: float = 200.0
     confidence: str | tuple[str, ...] | None = None
     least_confidence: float | None = None
-    unassigned: tuple[str, ...] = ("-1", "nan", "none", "null", "<na>", "unassigned", "unknown")
+    unassigned: tuple[str, ...] = (
+        *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
+        *("unidentified", "untracked", "unlabeled"),
+    )
     lost: tuple[tuple[float, float], ...] = ()
     missing: tuple[str, ...] = ()
     separator: Literal[",", ";", "\t", " ", "|"] = ","

@@ -72,6 +72,8 @@ def test_ms_of_a_fast_camera_are_refused_by_their_speeds():
     ("times", "changes", "words"),
     [
         (lambda s: np.rint(s * 10).astype(int), {"frame": "frame_no"}, "fps is missing"),
+        (lambda s: np.rint(s * 10), {"frame": "Step"}, "fps is missing"),
+        (lambda s: np.rint(s * 10), {"frame": "image_idx"}, "fps is missing"),
         (lambda s: s, {"fps": 25.0}, "which are no frames"),
         (lambda s: s / 1e6, {}, "are times in s"),
         (lambda s: "about " + s.astype(str), {}, "other things than numbers: 'about 0.0'"),
