@@ -3,8 +3,8 @@
 use super::near_obstacles::NearObstacles;
 use super::{Contact, Partner};
 use crate::geometry::{
-    Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, inner_wall_gap, outer_wall_gap,
-    pair_gap, pair_gaps,
+    Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, end_gaps, inner_wall_gap,
+    outer_wall_gap, pair_gap, pair_gaps,
 };
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
@@ -75,13 +75,21 @@ impl ContactDetector {
         dt: f64,
         contacts: &mut Vec<Contact>,
     ) -> f64 {
-        let fastest = self.fastest(velocities);
+        let hull = self.hull;
+        self.reaches.clear();
+        self.reaches
+            .extend(velocities.iter().map(|each| hull.speed(each)));
+        let mut fastest = 0.0;
+        for &speed in &self.reaches {
+            if speed > fastest {
+                fastest = speed;
+            }
+        }
         self.farthest = fastest * dt;
         let room = 0.5 * (self.farthest + 1e-3 * self.hull.radius);
-        let hull = self.hull;
-        let reaches = velocities.iter().map(|each| hull.speed(each) * dt + room);
-        self.reaches.clear();
-        self.reaches.extend(reaches);
+        self.reaches
+            .iter_mut()
+            .for_each(|reach| *reach = *reach * dt + room);
         let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
         self.detect_within_reach(boats, margin, contacts);
         margin
@@ -154,24 +162,13 @@ impl ContactDetector {
 
     /// Whether what was found as a contact overlaps at other poses by more than `allowed`.
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
-        let boat = (&boats[contact.boat as usize], self.hull);
-        let mut overlaps = false;
-        match contact.partner {
-            Partner::Boat(second) => {
-                let second = (&boats[second as usize], self.hull);
-                pair_gaps(boat, second, 0.0, |_, gap| overlaps |= gap.gap < -allowed);
-            }
-            Partner::Obstacle(number) => {
-                let obstacle = &self.obstacles.obstacles[number as usize];
-                obstacle.gaps(boat.0, self.hull, 0.0, &mut |_, gap| {
-                    overlaps |= gap.gap < -allowed;
-                });
-            }
-            Partner::OuterWall | Partner::InnerWall => {
-                overlaps = self.gap_at(contact, boats).gap < -allowed;
-            }
-        }
-        overlaps
+        let gap = if contact.has_ends() {
+            let [stern, bow] = self.end_gaps_at(contact, boats);
+            stern.min(bow)
+        } else {
+            self.gap_at(contact, boats).gap
+        };
+        gap < -allowed
     }
 
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
@@ -290,25 +287,20 @@ impl ContactDetector {
     }
 
     /// The gaps of the two ends of a contact's boat at other poses, where they face another boat or an
-    /// obstacle. Crossed cores count for both.
-    pub(crate) fn end_gaps_at(&self, contact: &Contact, boats: &[HullPose]) -> [Option<f64>; 2] {
-        let mut gaps = [None; 2];
-        let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
+    /// obstacle; infinite where they do not. Crossed cores count for both.
+    #[inline]
+    pub(crate) fn end_gaps_at(&self, contact: &Contact, boats: &[HullPose]) -> [f64; 2] {
         let boat = &boats[contact.boat as usize];
-        if let Some(second) = contact.second() {
-            let second = (&boats[second], hull);
-            pair_gaps((boat, hull), second, margin, |feature, gap| {
-                note_end(&mut gaps, feature, &gap);
-            });
-            return gaps;
+        match contact.second() {
+            Some(second) => end_gaps((boat, self.hull), (&boats[second], self.hull)),
+            None => self.obstacle_end_gaps(contact, boat),
         }
-        self.obstacle_end_gaps(contact, boat)
     }
 
     // Apart from boats, whose gaps then stay in registers.
     #[inline(never)]
-    fn obstacle_end_gaps(&self, contact: &Contact, boat: &HullPose) -> [Option<f64>; 2] {
-        let mut gaps = [None; 2];
+    fn obstacle_end_gaps(&self, contact: &Contact, boat: &HullPose) -> [f64; 2] {
+        let mut gaps = [f64::INFINITY; 2];
         if let Partner::Obstacle(number) = contact.partner {
             let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
             let obstacle = &self.obstacles.obstacles[number as usize];
@@ -344,10 +336,10 @@ impl ContactDetector {
 
 /// Notes a gap under the end of the boat that it is at; what is at no end counts for both.
 #[inline]
-fn note_end(gaps: &mut [Option<f64>; 2], feature: Feature, gap: &Gap) {
+fn note_end(gaps: &mut [f64; 2], feature: Feature, gap: &Gap) {
     match feature {
-        Feature::Stern => gaps[0] = Some(gap.gap),
-        Feature::Bow => gaps[1] = Some(gap.gap),
-        Feature::Crossed | Feature::Flank => *gaps = [Some(gap.gap); 2],
+        Feature::Stern => gaps[0] = gap.gap,
+        Feature::Bow => gaps[1] = gap.gap,
+        Feature::Crossed | Feature::Flank => *gaps = [gap.gap; 2],
     }
 }

@@ -193,7 +193,8 @@ impl ContactResolver {
         dt: f64,
         allowed: f64,
     ) -> bool {
-        self.trial.place(poses, velocities, dt);
+        self.trial
+            .place(poses, velocities, dt, self.detector.hull());
         self.trial.overlaps(&self.detector, &self.contacts, allowed)
     }
 
@@ -353,7 +354,8 @@ impl ContactResolver {
         allowed: f64,
         statistics: &mut Statistics,
     ) {
-        self.trial.place(poses, &self.solver.velocities, dt);
+        let hull = self.detector.hull();
+        self.trial.place(poses, &self.solver.velocities, dt, hull);
         let mut left = std::mem::take(&mut self.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
@@ -378,10 +380,11 @@ impl ContactResolver {
                 let islands = left
                     .iter()
                     .map(|&island| solver.islands().contacts(island as usize));
+                let velocities = &solver.velocities;
                 self.trial
-                    .move_islands(contacts, islands, poses, &solver.velocities, dt);
+                    .move_islands(contacts, islands, poses, velocities, dt, hull);
             } else {
-                self.trial.place(poses, &self.solver.velocities, dt);
+                self.trial.place(poses, &self.solver.velocities, dt, hull);
             }
         }
         self.overlapping = left;
@@ -397,9 +400,7 @@ impl ContactResolver {
         self.end_gaps.clear();
         for &k in self.solver.islands().contacts(island as usize) {
             let contact = &self.contacts[k as usize];
-            let speed = |boat: usize| self.detector.hull().speed(&velocities[boat]);
-            let closing = speed(contact.boat as usize) + contact.second().map_or(0.0, speed);
-            if contact.gap.gap <= closing * dt && contact.gap.gap >= -self.penetration_slop {
+            if self.trial.may_close(contact) && contact.gap.gap >= -self.penetration_slop {
                 let end_gap = self.trial.gap(&self.detector, &self.contacts, k as usize)
                     - left_over * contact.gap.gap.min(0.0);
                 deepest = deepest.max(-end_gap);

@@ -1,7 +1,7 @@
 //! The boats where a solve would move them, and the gaps there.
 
 use super::{Contact, ContactDetector};
-use crate::geometry::{Feature, HullPose, Pose, Velocity};
+use crate::geometry::{Feature, Hull, HullPose, Pose, Velocity};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
@@ -10,6 +10,8 @@ pub(super) struct Trial {
     hulls: Vec<HullPose>,
     /// Whether boats with the velocities that were solved for last end there.
     is_end: bool,
+    /// How far each boat's hull moves at most, in cm.
+    ways: Vec<f64>,
     /// Boats that are moved again, and whether each boat is one of them.
     listed: Vec<u32>,
     is_listed: Vec<bool>,
@@ -17,7 +19,7 @@ pub(super) struct Trial {
 
 impl Trial {
     /// Moves boats from these poses with these velocities for `dt`.
-    pub(super) fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64) {
+    pub(super) fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64, hull: Hull) {
         let moved = poses
             .iter()
             .zip(velocities)
@@ -25,6 +27,9 @@ impl Trial {
         self.poses.clear();
         self.poses.extend(moved);
         HullPose::replace_all(&mut self.hulls, &self.poses);
+        self.ways.clear();
+        self.ways
+            .extend(velocities.iter().map(|each| hull.speed(each) * dt));
         self.is_end = true;
     }
 
@@ -36,6 +41,7 @@ impl Trial {
         poses: &[Pose],
         velocities: &[Velocity],
         dt: f64,
+        hull: Hull,
     ) {
         self.is_listed.resize(poses.len(), false);
         self.listed.clear();
@@ -52,6 +58,7 @@ impl Trial {
             let boat = boat as usize;
             self.is_listed[boat] = false;
             self.poses[boat] = poses[boat].moved(&velocities[boat], dt);
+            self.ways[boat] = hull.speed(&velocities[boat]) * dt;
         }
         HullPose::replace_some(&mut self.hulls, &self.poses, &self.listed);
         self.is_end = true;
@@ -82,6 +89,13 @@ impl Trial {
         contacts.any(|contact| detector.overlaps_at(contact, &self.hulls, allowed))
     }
 
+    /// Whether the boats of a contact move far enough to close it.
+    #[inline]
+    pub(super) fn may_close(&self, contact: &Contact) -> bool {
+        let way = |boat: usize| self.ways[boat];
+        contact.gap.gap <= way(contact.boat as usize) + contact.second().map_or(0.0, way)
+    }
+
     /// Whether boats with the velocities that were solved for last end at the trial's poses.
     pub(super) fn is_end(&self) -> bool {
         self.is_end
@@ -92,23 +106,23 @@ impl Trial {
     /// for the whole pair.
     pub(super) fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
         let contact = &contacts[k];
-        let own = || detector.gap_at(contact, &self.hulls).gap;
         let end = match contact.feature {
             Feature::Stern if contact.has_ends() => 0,
             Feature::Bow if contact.has_ends() => 1,
-            _ => return own(),
+            _ => return detector.gap_at(contact, &self.hulls).gap,
         };
         let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contact.is_twin(other));
-        let has_twin = || {
-            is_twin(contacts.get(k + 1))
-                || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)))
-        };
+        let has_twin = is_twin(contacts.get(k + 1))
+            || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
         let gaps = detector.end_gaps_at(contact, &self.hulls);
-        match (gaps[end], gaps[1 - end]) {
-            (Some(same), Some(other)) if !has_twin() => same.min(other),
-            (Some(same), _) => same,
-            (None, Some(other)) if !has_twin() => other,
-            (None, _) => own(),
+        let gap = if has_twin {
+            gaps[end]
+        } else {
+            gaps[0].min(gaps[1])
+        };
+        if gap == f64::INFINITY {
+            return detector.gap_at(contact, &self.hulls).gap;
         }
+        gap
     }
 }

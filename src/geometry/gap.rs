@@ -147,6 +147,8 @@ impl<'a> Pair<'a> {
     }
 
     /// The nearest points of the group of ends on one side of hull a.
+    // Part of its callers: elsewhere touches would pass through memory.
+    #[inline(always)]
     fn nearest_towards(&self, side: f64) -> Option<Touch> {
         let follows = if self.cosine >= 0.0 { side } else { -side };
         match (self.end_of_a(side, true), self.end_of_b(follows)) {
@@ -156,6 +158,16 @@ impl<'a> Pair<'a> {
             }
             (at_a, at_b) => at_a.or(at_b),
         }
+    }
+
+    /// The square of their distance, infinite if no end faces the other core.
+    #[inline]
+    fn square_towards(&self, side: f64) -> f64 {
+        let square = |touch: Touch| touch.between.norm_squared();
+        let follows = if self.cosine >= 0.0 { side } else { -side };
+        let of_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
+        let of_b = self.end_of_b(follows).map_or(f64::INFINITY, square);
+        of_a.min(of_b)
     }
 
     fn cores_cross(&self) -> bool {
@@ -219,6 +231,22 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     touch
         .and_then(|touch| pair.gap(&touch))
         .unwrap_or_else(|| crossed_gap(first, second))
+}
+
+/// The gaps of the two groups of ends, at the stern and at the bow of the first hull: infinite where no end faces the
+/// other hull. That of crossed cores counts for both.
+#[inline]
+pub(crate) fn end_gaps(first: Placed, second: Placed) -> [f64; 2] {
+    let pair = Pair::new(first, second);
+    let (hull_a, hull_b) = (pair.hull_a, pair.hull_b);
+    let lengths = hull_a.half_length + hull_b.half_length;
+    let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
+    let near = squares[0].min(squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
+    let may_cross = pair.apart.norm_squared() <= lengths * lengths;
+    if near || (may_cross && pair.cores_cross()) {
+        return [crossed_gap(first, second).gap; 2];
+    }
+    squares.map(|square| square.sqrt() - (hull_a.radius + hull_b.radius))
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
