@@ -115,7 +115,9 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
     """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
     rows = every[every["why"] == ""]
     if rows.empty:
-        raise ParameterError("no row has a name, a position and a heading in the water")
+        counts = [f"{count} {why}" for why, count in every["why"].value_counts().items()]
+        found = f"{', '.join(counts)}" if counts else "there are no rows"
+        raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
     again = rows.duplicated(["id", "frame"], keep="first")
     if again.any():
         row = rows[again].iloc[0]

@@ -7,7 +7,7 @@ import pytest
 import flockenv
 from flockenv.tracks import TrackLayout, read_tracks, recording_of
 
-from .conftest import LAYOUT, but, read_and_counted
+from .conftest import LAYOUT, PIXEL_CM, but, read_and_counted
 
 LOST = {"boat4": (200, 420), "boat9": (100, 350)}
 """The frames in which two of the boats are lost."""
@@ -141,13 +141,30 @@ def test_arrays_with_a_boat_in_no_water_are_refused():
         pose[20:, 1, :2] = place
         with pytest.raises(flockenv.ParameterError, match=r"17% of the centers \(10\) lie outside"):
             recording_of(np.arange(30.0), pose, pool="narrow")
+    # A hull's width beyond a wall is what a camera's errors and a tilted boat may make.
+    for place in ((99.0, 0.0), (0.0, -39.0)):
+        pose[20:, 1, :2] = place
+        assert recording_of(np.arange(30.0), pose, pool="narrow").ids.tolist() == ["0", "1"]
     pose[20:, 1] = np.nan
     assert recording_of(np.arange(30.0), pose, pool="narrow").ids.tolist() == ["0", "1"]
 
 
 def test_everything_in_no_water_is_named():
     table = pd.DataFrame({"frame": [0, 1, 2], "id": "a", "x": 0.0, "y": 0.0, "heading": 0.0})
-    with pytest.raises(
-        flockenv.ParameterError, match="no row has a name, a position and a heading"
-    ):
-        read_tracks(table, TrackLayout(pool="narrow", fps=10.0))
+    layout = TrackLayout(pool="narrow", fps=10.0)
+    with pytest.raises(flockenv.ParameterError, match="heading in the water: 3 in no water"):
+        read_tracks(table, layout)
+    with pytest.raises(flockenv.ParameterError, match="water: 3 without a heading"):
+        read_tracks(table.assign(heading=np.nan, x=60.0), layout)
+    with pytest.raises(flockenv.ParameterError, match="there are no rows"):
+        read_tracks(table[:0], layout)
+
+
+def test_centers_within_a_hull_of_a_wall_are_kept(seen):
+    """Pixels and tilted hulls put centers beyond a wall; ten centimeters are a hull's width."""
+    table = seen.table.astype({"x_px": float, "y_px": float})
+    row = table["track"] == "boat5"
+    for distance, is_kept in ((99.9, True), (100.3, False), (38.7, True), (38.2, False)):
+        table.loc[row, "x_px"], table.loc[row, "y_px"] = 812.0 + distance / PIXEL_CM, 604.5
+        _, report = read_and_counted(table, LAYOUT)
+        assert report.left_out == ({} if is_kept else {"in no water": {"boat5": row.sum()}})
