@@ -134,7 +134,7 @@ fn readable(text: &str) -> String {
         match digits.parse::<f64>() {
             // What is cut off is not known here.
             Ok(number) if digits.len() > MOST_DIGITS && !after.starts_with('…') => {
-                written += &format!("{number:e}")
+                written += &format!("{number:e}");
             }
             _ => written += digits,
         }

@@ -1,9 +1,7 @@
 //! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
 
 use super::credit::{ContactCredit, LeaderCredit};
-use super::observation::{
-    Camera, CourseView, FlockFeatures, FlockView, Lens, Observer, StateObserver,
-};
+use super::observation::{Camera, CourseView, FlockFeatures, FlockView, Observer, StateObserver};
 use super::reset::check_flock;
 use super::reward::stored_rows;
 use super::statistics::EpisodeStatistics;
@@ -40,7 +38,7 @@ impl EpisodeState {
     fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Self {
         let parameters = flock.parameters();
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
-        let lens = Lens::new(settings);
+        let lens = settings.lens();
         let credit = settings.reward.need_credit();
         Self {
             rudders: vec![0.0; leaders],
@@ -66,7 +64,7 @@ impl EpisodeState {
             && self.schedule.targets() == self.flock.parameters().target
             && credit.is_some() == settings.reward.need_credit()
             && credit.is_none_or(|credit| credit.fits(leaders, boats))
-            && camera.is_some() == Lens::new(settings).is_some()
+            && camera.is_some() == settings.lens().is_some()
             && camera.is_none_or(|camera| camera.fits(boats))
     }
 
@@ -104,7 +102,7 @@ impl Episode {
     fn of(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
         state.order = state.flock.order_parameters(false).ok();
         let parameters = state.flock.parameters();
-        let law = settings.steering_law(parameters)?;
+        let law = settings.action_mode.steering_law(parameters)?;
         let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
         Ok(Self {
             observer: Observer::new(settings.layout(), parameters)?,
@@ -127,7 +125,7 @@ impl Episode {
         let why = "the state holds an episode that this environment cannot have";
         FlockError::unless_fitting(state.fits(settings, parameters), why)?;
         let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
-        let camera = Lens::new(settings).zip(state.camera);
+        let camera = settings.lens().zip(state.camera);
         state.camera = camera.map(|(lens, camera)| camera.restored(lens, seed, leaders));
         Self::of(settings, state)
     }
@@ -246,7 +244,7 @@ impl Episode {
             let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
             *command = match &self.law {
                 Some((law, courses)) => {
-                    let angle = settings.angle(value);
+                    let angle = settings.action_mode.angle(value);
                     let rudder = law.rudder(&courses.course(&view, leader, angle));
                     f64::from(rudder as f32)
                 }

@@ -1,5 +1,6 @@
 //! The task that leaders are trained on: episodes, observations, rewards, many flocks at once.
 
+mod action;
 mod batch;
 mod credit;
 mod drawn;
@@ -8,18 +9,19 @@ mod flock_env;
 pub mod observation;
 mod reset;
 mod reward;
-mod rudder;
 mod schedule;
+mod servo;
 mod settings;
 mod statistics;
 
+pub use action::{ActionMode, LARGEST_LEAN};
 pub use batch::{BatchRows, EnvBatch};
 pub use drawn::{Drawn, TargetChoice};
 pub use episode::Episode;
 pub use flock_env::FlockEnv;
 pub use reset::{ResetRequest, Start, Upcoming};
 pub use reward::{Reward, RewardTerm, RewardTerms, RewardWeights, TERMS, Weights};
-pub use rudder::{LARGEST_LEAN, Servo};
 pub use schedule::{EpisodeSchedule, EpisodeSeeds};
-pub use settings::{ActionMode, Autoreset, EnvSettings};
+pub use servo::Servo;
+pub use settings::{Autoreset, EnvSettings};
 pub use statistics::{Averages, EpisodeSummary, ORDERED_WITHIN, TOWARDS_TARGET};

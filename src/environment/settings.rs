@@ -1,24 +1,12 @@
 //! Everything about an environment that is not the flock's own parameters, each option declared once. The bindings,
 //! their defaults and the documentation follow from this table.
 
-use super::observation::{Block, ObservationLayout, Observer};
-use super::{Drawn, TargetChoice, Weights};
+use super::action::{self, ActionMode};
+use super::observation::{Block, Lens, ObservationLayout, Observer};
+use super::{Drawn, Servo, TargetChoice, Weights};
 use crate::clock::{Ticks, ticks, whole_steps};
 use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, Range, declare_fields, named_choice};
-
-named_choice! {
-    /// What an action stands for.
-    pub enum ActionMode ("action_mode") {
-        /// The rudder itself.
-        Rudder = "rudder",
-        /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
-        Heading = "heading",
-        /// A heading about the tangent: its angle outward over [`super::LARGEST_LEAN`]. The pool's tuned law steers to
-        /// it, and 0 is that law itself.
-        Lean = "lean",
-    }
-}
 
 named_choice! {
     /// What happens when an episode has ended.
@@ -98,7 +86,7 @@ impl EnvSettings {
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
         self.target.check(parameters.n_leaders)?;
         self.observation.check()?;
-        self.steering_law(parameters)?;
+        self.action_mode.steering_law(parameters)?;
         if let Some(period) = self.decision_period_s {
             let (name, steps) = ("decision_period_s", "control steps");
             whole_steps(name, period, self.control_hz, steps)?;
@@ -147,5 +135,32 @@ impl EnvSettings {
     pub(crate) fn reward_factor(&self) -> f64 {
         self.reward_horizon_s
             .map_or(1.0, |horizon| 1.0 / (self.control_hz * horizon))
+    }
+    /// Checks one action.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for NaN and for choices that do not exist. Rudders beyond ±1 are
+    /// accepted: they are clipped.
+    pub fn check_action(&self, action: f64) -> Result<()> {
+        action::check(action, self.rudder_levels)
+    }
+
+    /// The rudder of a checked action, in [−1, 1].
+    pub fn command(&self, action: f64) -> f64 {
+        action::command(action, self.rudder_levels)
+    }
+
+    /// The servo, prepared for control steps.
+    pub fn servo(&self) -> Servo {
+        Servo::new(
+            self.rudder_lag_s,
+            self.rudder_rate_per_s,
+            1.0 / self.control_hz,
+        )
+    }
+
+    /// What stands between the flock and the leaders' eyes; `None` where nothing does.
+    pub(crate) fn lens(&self) -> Option<Lens> {
+        Lens::new(self.dropout_rate, self.delay_frames)
     }
 }

@@ -2,37 +2,67 @@
 
 Its `Cargo.toml` lists the layers, from the top down. A folder may name what stands below it.
 
-Folders may not name each other in a circle, and neither may files of one folder. A file that is
-called `mod.rs` may name its own files, and a name that it only re-exports is not followed.
+The files of a folder and the folders beside them may not name each other in a circle. A name that
+`mod.rs` re-exports stands for the module that it comes from; `mod.rs` itself may name its files.
 """
 
 import re
 import sys
 import tomllib
-from collections.abc import Callable
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 COMMENT = re.compile(r"//[^\n]*")
-GROUP = re.compile(r"\b(crate|super)::\{(.*?)\};", re.DOTALL)
-NAMED = {"crate": re.compile(r"\bcrate::(\w+)"), "super": re.compile(r"\bsuper::(\w+)")}
+START = re.compile(r"\b(?:crate|super)::|(?<=\buse )\w+::")
+WORD, SPACE, REST = (re.compile(pattern) for pattern in (r"\s*(\w+)", r"\s*", r"[^,{}]*,?"))
+
+Name = tuple[str, ...]
 
 
-def code_of(path: Path) -> str:
-    """Return a file without comments, and with each name of a group by its whole path."""
+def tree(code: str, at: int, prefix: Name) -> tuple[list[Name], int]:
+    """Return the names of a path at a place, several if it ends in a group, and where it ends."""
+    word = WORD.match(code, at)
+    if word is None:
+        return [prefix], at
+    name, at = (*prefix, word[1]), word.end()
+    if not code.startswith("::", at):
+        return [name], at
+    if not code.startswith("{", at + 2):
+        return tree(code, at + 2, name)
+    found, at = [], SPACE.match(code, at + 3).end()  # type: ignore[union-attr]
+    while code[at] != "}":
+        inner, at = tree(code, at, name)
+        found += inner
+        at = REST.match(code, at).end()  # type: ignore[union-attr]
+        at = SPACE.match(code, at).end()  # type: ignore[union-attr]
+    return found, at + 1
 
-    def spread(group: re.Match[str]) -> str:
-        inner = re.sub(r"::\{[^{}]*\}", "", group[2])
-        return " ".join(f"{group[1]}::{name.strip()};" for name in inner.split(","))
 
-    return GROUP.sub(spread, COMMENT.sub("", path.read_text(encoding="utf-8")))
+def names_of(path: Path) -> set[Name]:
+    """Return the paths that the code of a file names."""
+    code = COMMENT.sub("", path.read_text(encoding="utf-8"))
+    return {name for start in START.finditer(code) for name in tree(code, start.start(), ())[0]}
 
 
-def circle(files: list[Path], module: Callable[[Path], str], start: str) -> list[str] | None:
-    """Return modules of some files that depend on each other in a circle, or None."""
-    graph: dict[str, set[str]] = {module(path): set() for path in files}
-    for path in files:
-        graph[module(path)] |= {*NAMED[start].findall(code_of(path))} & graph.keys()
+def circle(root: Path, folder: Path, every: list[Path]) -> list[str] | None:
+    """Return modules of a folder that depend on each other in a circle, or None."""
+    parts = ("crate", *folder.relative_to(root).parts)
+    front = folder / ("lib.rs" if folder == root else "mod.rs")
+    inside = [path for path in every if folder in path.parents and path != front]
+
+    def module(path: Path) -> str:
+        return path.relative_to(folder).with_suffix("").parts[0]
+
+    graph: dict[str, set[str]] = {module(path): set() for path in inside}
+    rooms = {(name,): name for name in graph}
+    if front.exists():
+        rooms |= {name[-1:]: name[0] for name in names_of(front) if name[0] in graph}
+    for path in inside:
+        up = ("super",) * (len(path.relative_to(folder).parts) - (path.name == "mod.rs"))
+        for name in names_of(path):
+            for start in (parts, up):
+                if name[: len(start)] == start and name[len(start) : len(start) + 1] in rooms:
+                    graph[module(path)].add(rooms[name[len(start) : len(start) + 1]])
     try:
         TopologicalSorter({name: of - {name} for name, of in graph.items()}).prepare()
     except CycleError as error:
@@ -50,7 +80,8 @@ def upward(root: Path, files: list[Path]) -> str | None:
         own = path.relative_to(root).with_suffix("").parts[0]
         if own not in floor:
             return f"{own} stands in no layer of {manifest}"
-        for other in {*NAMED["crate"].findall(code_of(path))} & floor.keys() - {own}:
+        others = {name[1] for name in names_of(path) if name[0] == "crate"}
+        for other in others & floor.keys() - {own}:
             if floor[other] >= floor[own]:
                 return f"{path} names {other}, which does not stand below {own}"
     return None
@@ -61,10 +92,9 @@ def main(root: Path) -> str | None:
     every = [path for path in sorted(root.rglob("*.rs")) if path != root / "lib.rs"]
     if wrong := upward(root, every):
         return wrong
-    found = circle(every, lambda path: path.relative_to(root).with_suffix("").parts[0], "crate")
-    for folder in {path.parent for path in every} - {root}:
-        own = [path for path in every if path.parent == folder and path.name != "mod.rs"]
-        found = found or circle(own, lambda path: path.stem, "super")
+    folders = sorted({path.parent for path in every} | {root})
+    circles = (circle(root, folder, every) for folder in folders)
+    found = next((each for each in circles if each), None)
     return found and "modules depend on each other in a circle: " + " -> ".join(found)
 
 

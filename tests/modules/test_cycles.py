@@ -24,12 +24,22 @@ ONE_WAY = {
         ({"hull": "fn walls() -> usize { crate::pool::Wall::COUNT }\n"}, {"hull", "pool"}),
         ({"hull": "use crate::{\n    pool::{Wall},\n};\n"}, {"hull", "pool"}),
         ({"pool/gap": "use super::wall::Wall;\n"}, {"wall", "gap"}),
+        # Through a name that mod.rs re-exports, and between a folder and the files beside it.
+        ({"pool/gap": "use super::Wall;\n"}, {"wall", "gap"}),
+        ({"pool/gap": "use crate::pool::{Wall as Other, Gap};\n"}, {"wall", "gap"}),
+        ({"pool/gap/near": "use super::super::wall::Wall;\n"}, {"wall", "gap"}),
+        (
+            {"pool/gap/near": "use crate::pool::{hull::Hull, wall::{Wall, Side}};\n"},
+            {"wall", "gap"},
+        ),
+        ({"pool/gap/mod": "use super::Wall;\n"}, {"wall", "gap"}),
+        ({"pool/gap/near": "use super::Wall;\nuse super::super::super::hull::Hull;\n"}, set()),
     ],
 )
 def test_circles_are_named(tmp_path, changes, circle):
     for name, text in {**ONE_WAY, **changes}.items():
         path = tmp_path / f"{name}.rs"
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(exist_ok=True, parents=True)
         path.write_text(text)
     run = [sys.executable, str(SCRIPT), str(tmp_path)]
     done = subprocess.run(run, capture_output=True, text=True, check=False)

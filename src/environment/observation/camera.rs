@@ -3,7 +3,6 @@
 
 use super::view::FlockView;
 use crate::analysis::OrderParameters;
-use crate::environment::EnvSettings;
 use crate::flock::Flock;
 use crate::geometry::{HullPose, Pose, Velocity};
 use crate::random::Stream;
@@ -19,11 +18,12 @@ pub(crate) struct Lens {
 }
 
 impl Lens {
-    /// That of some settings; `None` where the picture does not differ from the flock at all.
-    pub(crate) fn new(settings: &EnvSettings) -> Option<Self> {
+    /// A lens that loses boats at a rate and is so many frames late; `None` where the picture does not differ from the
+    /// flock at all.
+    pub(crate) fn new(dropout_rate: f64, delay_frames: usize) -> Option<Self> {
         let lens = Self {
-            dropout_rate: settings.dropout_rate,
-            is_late: settings.delay_frames > 0,
+            dropout_rate,
+            is_late: delay_frames > 0,
         };
         (lens.dropout_rate > 0.0 || lens.is_late).then_some(lens)
     }

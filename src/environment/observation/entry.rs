@@ -133,9 +133,6 @@ impl Entry {
 pub(super) const UNIT: (f64, f64) = (-1.0, 1.0);
 pub(super) const FLAG: (f64, f64) = (0.0, 1.0);
 pub(super) const TWICE: (f64, f64) = (-2.0, 2.0);
-const SQUARE: (f64, f64) = (0.0, 4.0);
-const PRODUCT: (f64, f64) = (-2.2, 2.2);
-const SEVERAL: (f64, f64) = (-40.0, 40.0);
 
 /// One boat of the global state.
 #[rustfmt::skip]
@@ -156,41 +153,3 @@ pub const BOAT: [Entry; 10] = [
 #[rustfmt::skip]
 pub(super) const CLOCK: [Entry; 1] =
     [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];
-
-/// Means over a group of boats, in the frame of the target.
-#[rustfmt::skip]
-pub(super) const GROUP: [Entry; 24] = [
-    Entry::new("radial_position", "", Scale::Plain, (-1.1, 1.1), "mean radial position r, scaled as that of a leader"),
-    Entry::new("radial_position_squared", "", Scale::Plain, (0.0, 1.21), "mean r^2"),
-    Entry::new("outward", "", Scale::Plain, UNIT, "mean cosine of the LAP orientation"),
-    Entry::new("outward_squared", "", Scale::Plain, FLAG, "its mean square"),
-    Entry::new("ahead", "", Scale::Plain, UNIT, "mean cosine of the angle to the target's tangent: the signed order"),
-    Entry::new("ahead_outward", "", Scale::Plain, UNIT, "mean product of the two"),
-    Entry::new("outward_velocity", "", Scale::Plain, TWICE, "mean velocity away from the center over the preferred speed"),
-    Entry::new("outward_velocity_squared", "", Scale::Plain, SQUARE, "its mean square"),
-    Entry::new("velocity_ahead", "", Scale::Plain, TWICE, "mean tangential velocity v towards the target over the preferred speed"),
-    Entry::new("velocity_ahead_squared", "", Scale::Plain, SQUARE, "mean v^2"),
-    Entry::new("spin_ahead", "", Scale::Plain, TWICE, "mean angular velocity over 2 rad/s, positive in the sense of the target's circulation"),
-    Entry::new("spin_ahead_squared", "", Scale::Plain, SQUARE, "its mean square"),
-    Entry::new("radial_outward", "", Scale::Plain, (-1.1, 1.1), "mean of r times the cosine of the LAP orientation"),
-    Entry::new("radial_ahead", "", Scale::Plain, (-1.1, 1.1), "mean of r times the cosine of the angle to the tangent"),
-    Entry::new("radial_velocity_ahead", "", Scale::Plain, PRODUCT, "mean of r*v"),
-    Entry::new("against_inside", "", Scale::Plain, FLAG, "share of boats in the inner half (r <= 0) that head against the target, within 60 degrees"),
-    Entry::new("against_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
-    Entry::new("across_inside", "", Scale::Plain, FLAG, "share in the inner half that head neither against nor along the target"),
-    Entry::new("across_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
-    Entry::new("along_inside", "", Scale::Plain, FLAG, "share in the inner half that head along the target, within 60 degrees"),
-    Entry::new("along_outside", "", Scale::Plain, FLAG, "the same in the outer half"),
-    Entry::new("clumping_1", "", Scale::Plain, FLAG, "|mean exp(i*theta)| of the polar angles theta"),
-    Entry::new("clumping_2", "", Scale::Plain, FLAG, "|mean exp(2i*theta)|"),
-    Entry::new("clumping_3", "", Scale::Plain, FLAG, "|mean exp(3i*theta)|"),
-];
-
-/// Means over the leaders of sums over the normal boats, each with exp(-d²/2) of its distance in 6 boat radii.
-#[rustfmt::skip]
-pub(super) const NEAR_LEADERS: [Entry; 4] = [
-    Entry::new("near", "", Scale::Plain, SEVERAL, "mean over leaders of the sum over normal boats of the weight exp(-d^2/2), d their distance over 6 boat radii"),
-    Entry::new("near_outward", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the LAP orientation"),
-    Entry::new("near_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the cosine of the angle to the target's tangent"),
-    Entry::new("near_velocity_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the velocity towards the target over the preferred speed"),
-];

@@ -49,7 +49,7 @@ impl Observer {
         Ok(Self {
             physical: Vec::with_capacity(scaling.len()),
             scaling,
-            writers: Writers::new(&layout, parameters)?,
+            writers: Writers::new(|block| layout.repeats(block), parameters)?,
             layout,
         })
     }

@@ -16,65 +16,68 @@ pub const LEAN_FEATURES: usize = 29;
 /// The pools in which the features are standardized.
 const POOLS: [&str; 2] = ["wide", "narrow"];
 
-/// A number that the lean depends on, with its mean and standard deviation in each of [`POOLS`].
-type Feature = (Entry, [(f64, f64); POOLS.len()]);
-
 /// Standardized features are bounded by this; beyond are flocks far from those that were measured.
 const BOUND: f64 = 20.0;
 
-/// The features. Their usual values are those of three leaders among 27 boats whom the tuned law steers at each pool's
-/// critical noise, after 20 s (a least deviation of 0.05 for one that hardly varies).
-#[rustfmt::skip]
-const FEATURES: [Feature; LEAN_FEATURES] = [
-    feature("radial_position", [(0.77958703, 0.3927907), (0.38378146, 0.6506614)], "distance from the pool's center, -1 at the inner and 1 at the outer wall"),
-    feature("outward_velocity", [(0.006915828, 0.09161808), (0.0029166117, 0.14120841)], "velocity away from the center over the preferred speed"),
-    feature("clockwise_velocity", [(0.32546502, 0.31028074), (0.22737168, 0.32366183)], "velocity towards the target over the preferred speed"),
-    feature("forward_velocity", [(0.33450502, 0.3062338), (0.25260776, 0.32313827)], "velocity along the heading over the preferred speed"),
-    feature("near_outer_wall", [(0.2749842, 0.15736848), (0.16224986, 0.16723132)], "how much the radial position exceeds 0.6"),
-    feature("mean_cos_orientation", [(0.29308504, 0.10698857), (0.13457997, 0.12661627)], "mean orientation of the normal boats, outward part"),
-    feature("mean_sin_orientation", [(0.29194993, 0.30551064), (0.24358068, 0.22284192)], "the same, towards the target: the signed order"),
-    feature("mean_outward_velocity", [(0.0047155544, 0.057355236), (0.0019270346, 0.051377654)], "mean velocity of the normal boats over the preferred speed, outward part"),
-    feature("mean_clockwise_velocity", [(0.11824586, 0.1787373), (0.09045448, 0.13475148)], "the same, towards the target"),
-    feature("near", [(1.8629588, 1.0343264), (3.2381356, 0.9444781)], "sum over the normal boats among the six nearest of w = exp(-d^2/2), d their distance over 6 boat radii"),
-    feature("near_outward", [(-0.2572417, 0.6187044), (-0.71995515, 1.0882382)], "the same of w times the outward part of d"),
-    feature("near_ahead", [(0.37357002, 0.77000934), (0.42892686, 0.8944364)], "the same of w times the part of d towards the target"),
-    feature("near_opposed", [(0.45983633, 0.56821364), (1.1899537, 0.73591256)], "the same of w times o = (1 - cos)/2 of the angle between the headings"),
-    feature("near_turned", [(-0.40924382, 0.62842774), (-0.17122212, 1.0243492)], "the same of w times t = the sine of that angle, positive towards the target"),
-    feature("near_outward_velocity", [(-0.0354873, 0.20366889), (-0.038502537, 0.34501216)], "the same of w times the outward velocity over the preferred speed"),
-    feature("near_clockwise_velocity", [(0.3500997, 0.58770716), (0.31224063, 0.6643874)], "the same of w times the velocity towards the target over the preferred speed"),
-    feature("opposed_outward", [(-0.11047497, 0.33810177), (-0.2950035, 0.53181046)], "the same of w times o times the outward part of d"),
-    feature("opposed_ahead", [(0.052445494, 0.34723946), (0.094845355, 0.47088295)], "the same of w times o times the part of d towards the target"),
-    feature("turned_outward", [(-0.023802476, 0.30633375), (-0.10435423, 0.47644502)], "the same of w times t times the outward part of d"),
-    feature("turned_ahead", [(0.011867728, 0.43169528), (0.17430395, 0.61722195)], "the same of w times t times the part of d towards the target"),
-    feature("leaders", [(0.30498353, 0.42026863), (0.46581307, 0.55233985)], "sum over the leaders among the six nearest of exp(-d^2/8)"),
-    feature("leaders_outward", [(-0.058921587, 0.24014547), (-0.08986758, 0.3166352)], "the same times the outward part of d"),
-    feature("leaders_ahead", [(0.041072473, 0.52494305), (0.06270636, 0.52750385)], "the same times the part of d towards the target"),
-    feature("cos_orientation", [(0.12526937, 0.2072357), (0.07111309, 0.34482118)], "cosine of the leader's LAP orientation"),
-    feature("sin_orientation", [(0.94523215, 0.21885419), (0.8571048, 0.3760487)], "its sine, positive towards the target"),
-    feature("clockwise_spin", [(0.01386493, 0.061017614), (0.02126557, 0.12919016)], "angular velocity over 2 rad/s, positive in the sense of the target's circulation"),
-    feature("fw", [(0.46666667, 0.49888766), (0.45, 0.4974937)], "1 in the forward phase"),
-    feature("bw", [(0.06666667, 0.24944383), (0.1, 0.3)], "1 in the backward phase"),
-    feature("bw_duration", [(0.31, 0.05), (0.45, 0.05)], "length of the backward phase in s"),
-];
-
-const fn feature(
-    name: &'static str,
-    usual: [(f64, f64); POOLS.len()],
-    meaning: &'static str,
-) -> Feature {
-    let entry = Entry::new(name, "", Scale::Plain, (-BOUND, BOUND), meaning);
-    (entry, usual)
-}
+/// Usual values of the features, a row each: the mean and the standard deviation in each of [`POOLS`]. They are those of
+/// three leaders among 27 boats whom the tuned law steers at each pool's critical noise, after 20 s (a least deviation
+/// of 0.05 for one that hardly varies).
+const USUAL: &str = include_str!("lean_features.csv");
 
 /// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.
-pub(super) const ENTRIES: [Entry; LEAN_FEATURES] = {
-    let (mut entries, mut place) = ([FEATURES[0].0; LEAN_FEATURES], 0);
-    while place < LEAN_FEATURES {
-        entries[place] = FEATURES[place].0;
-        place += 1;
+#[rustfmt::skip]
+pub(super) const ENTRIES: [Entry; LEAN_FEATURES] = [
+    feature("radial_position", "distance from the pool's center, -1 at the inner and 1 at the outer wall"),
+    feature("outward_velocity", "velocity away from the center over the preferred speed"),
+    feature("clockwise_velocity", "velocity towards the target over the preferred speed"),
+    feature("forward_velocity", "velocity along the heading over the preferred speed"),
+    feature("near_outer_wall", "how much the radial position exceeds 0.6"),
+    feature("mean_cos_orientation", "mean orientation of the normal boats, outward part"),
+    feature("mean_sin_orientation", "the same, towards the target: the signed order"),
+    feature("mean_outward_velocity", "mean velocity of the normal boats over the preferred speed, outward part"),
+    feature("mean_clockwise_velocity", "the same, towards the target"),
+    feature("near", "sum over the normal boats among the six nearest of w = exp(-d^2/2), d their distance over 6 boat radii"),
+    feature("near_outward", "the same of w times the outward part of d"),
+    feature("near_ahead", "the same of w times the part of d towards the target"),
+    feature("near_opposed", "the same of w times o = (1 - cos)/2 of the angle between the headings"),
+    feature("near_turned", "the same of w times t = the sine of that angle, positive towards the target"),
+    feature("near_outward_velocity", "the same of w times the outward velocity over the preferred speed"),
+    feature("near_clockwise_velocity", "the same of w times the velocity towards the target over the preferred speed"),
+    feature("opposed_outward", "the same of w times o times the outward part of d"),
+    feature("opposed_ahead", "the same of w times o times the part of d towards the target"),
+    feature("turned_outward", "the same of w times t times the outward part of d"),
+    feature("turned_ahead", "the same of w times t times the part of d towards the target"),
+    feature("leaders", "sum over the leaders among the six nearest of exp(-d^2/8)"),
+    feature("leaders_outward", "the same times the outward part of d"),
+    feature("leaders_ahead", "the same times the part of d towards the target"),
+    feature("cos_orientation", "cosine of the leader's LAP orientation"),
+    feature("sin_orientation", "its sine, positive towards the target"),
+    feature("clockwise_spin", "angular velocity over 2 rad/s, positive in the sense of the target's circulation"),
+    feature("fw", "1 in the forward phase"),
+    feature("bw", "1 in the backward phase"),
+    feature("bw_duration", "length of the backward phase in s"),
+];
+
+const fn feature(name: &'static str, meaning: &'static str) -> Entry {
+    Entry::new(name, "", Scale::Plain, (-BOUND, BOUND), meaning)
+}
+
+/// Mean and standard deviation of each feature in one of [`POOLS`], by its place.
+fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
+    let mut usual = [(f64::NAN, f64::NAN); LEAN_FEATURES];
+    for row in USUAL.lines().skip(1) {
+        let mut cells = row.split(',');
+        let name = cells.next();
+        let place = ENTRIES.iter().position(|entry| Some(entry.name) == name);
+        let mut numbers = cells.skip(2 * pool).map(str::parse);
+        if let (Some(place), Some(Ok(mean)), Some(Ok(deviation))) =
+            (place, numbers.next(), numbers.next())
+        {
+            usual[place] = (mean, deviation);
+        }
     }
-    entries
-};
+    usual
+}
 
 /// The neighbors that the features look at.
 const SEEN_NEIGHBORS: usize = 6;
@@ -109,7 +112,7 @@ impl LeanFeatures {
         let neighbors = neighbors.take(SEEN_NEIGHBORS * NEIGHBOR.len());
         let entries = OWN.iter().chain(&PHASE).chain(neighbors).chain(&ORDER);
         Ok(Self {
-            usual: FEATURES.map(|(_, usual)| usual[place]),
+            usual: usual(place),
             scaling: Scaling::new(entries.copied(), parameters),
             neighbors: Neighbors::default(),
             order: Order::default(),

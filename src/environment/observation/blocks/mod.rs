@@ -14,7 +14,6 @@ pub(crate) use own::{OWN, own};
 pub(crate) use phase::{PHASE, phase};
 pub(crate) use target::TARGET;
 
-use super::ObservationLayout;
 use super::entry::Entry;
 use super::view::FlockView;
 use crate::error::Result;
@@ -102,12 +101,12 @@ macro_rules! declare_blocks {
         pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
 
         impl Writers {
-            /// For a layout and checked parameters.
+            /// For a layout, which says how often each occurs, and checked parameters.
             ///
             /// # Errors
             /// [`crate::FlockError::Parameter`] for flocks that one of the blocks is not made for.
-            pub(super) fn new(layout: &ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
-                Ok(Self { $($module: match layout.repeats(Block::$block) {
+            pub(super) fn new(repeats: impl Fn(Block) -> usize, parameters: &FlockParameters) -> Result<Self> {
+                Ok(Self { $($module: match repeats(Block::$block) {
                     0 => None,
                     count => Some((count, $module::$writer::made_for(parameters)?)),
                 },)+ })

@@ -1,0 +1,73 @@
+//! What an action stands for: a rudder, one of some levels, or the heading that a law steers to.
+
+use crate::boat::DampedLaw;
+use crate::error::{FlockError, Result};
+use crate::parameters::{FlockParameters, named_choice};
+use std::f64::consts::PI;
+
+/// The angle in rad that a lean of 1 stands for.
+pub const LARGEST_LEAN: f64 = 1.2;
+
+named_choice! {
+    /// What an action stands for.
+    pub enum ActionMode ("action_mode") {
+        /// The rudder itself.
+        Rudder = "rudder",
+        /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
+        Heading = "heading",
+        /// A heading about the tangent: its angle outward over [`LARGEST_LEAN`]. The pool's tuned law steers to it, and 0
+        /// is that law itself.
+        Lean = "lean",
+    }
+}
+
+impl ActionMode {
+    /// The law that steers to the heading that an action stands for; `None` where actions are rudders.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
+    pub fn steering_law(self, parameters: &FlockParameters) -> Result<Option<DampedLaw>> {
+        match self {
+            Self::Rudder => Ok(None),
+            Self::Heading => Ok(Some(DampedLaw::default())),
+            Self::Lean => {
+                DampedLaw::tuned("action_mode", "\"lean\"", parameters.pool.name()).map(Some)
+            }
+        }
+    }
+
+    /// The angle in rad outward of the target's tangent that an action in [−1, 1] stands for.
+    pub fn angle(self, action: f64) -> f64 {
+        match self {
+            Self::Rudder => 0.0,
+            Self::Heading => PI * action,
+            Self::Lean => LARGEST_LEAN * action,
+        }
+    }
+}
+
+/// Checks an action, a number of a level where there are so many levels.
+///
+/// # Errors
+/// [`FlockError::Parameter`] for NaN and for levels that do not exist. Rudders beyond ±1 are accepted: they are clipped.
+pub(super) fn check(action: f64, levels: Option<usize>) -> Result<()> {
+    if let Some(levels) = levels {
+        let is_level = action >= 0.0 && action < levels as f64 && action.fract() == 0.0;
+        let accepted = format!("whole numbers from 0 to {}", levels - 1);
+        return FlockError::unless(is_level, "action", action, accepted);
+    }
+    let accepted = "numbers; those beyond [-1, 1] are clipped";
+    FlockError::unless(!action.is_nan(), "action", action, accepted)
+}
+
+/// The rudder of a checked action, in [−1, 1].
+pub(super) fn command(action: f64, levels: Option<usize>) -> f64 {
+    match levels {
+        // Levels i and n - 1 - i are opposite to the bit: mirrored tasks stay the same task.
+        Some(levels) => {
+            let highest = (levels - 1) as f64;
+            (2.0 * action - highest) / highest
+        }
+        None => action.clamp(-1.0, 1.0),
+    }
+}
