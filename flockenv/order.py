@@ -6,7 +6,7 @@ The core computes them in the LAP frame; its table of quantities names them.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, make_dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,20 +61,33 @@ RECORDED = tuple(each for each in QUANTITIES if each.kind == "recorded")
 ORDER = tuple(each.name for each in RECORDED)
 """Their names."""
 
+_T = TypeVar("_T")
+_NAN: Any = math.nan
+
 if TYPE_CHECKING:
-
-    class _Recorded:
-        def __init__(self, *values: Any, **named: Any) -> None: ...
-
-        def __getattr__(self, name: str) -> Any: ...
+    # The table, written out for editors and mypy; a test compares them.
+    @dataclass(frozen=True, eq=False)
+    class _Recorded(Generic[_T]):
+        psi_o: _T = _NAN
+        phi_o: _T = _NAN
+        c_o: _T = _NAN
+        psi_v: _T = _NAN
+        phi_v: _T = _NAN
+        c_v: _T = _NAN
+        nematic: _T = _NAN
+        milling: _T = _NAN
 
 else:
     _Recorded = make_dataclass(
-        "_Recorded", [(name, Any, field(default=math.nan)) for name in ORDER], frozen=True, eq=False
+        "_Recorded",
+        [(name, Any, field(default=_NAN)) for name in ORDER],
+        namespace={"__class_getitem__": classmethod(lambda cls, kind: cls)},
+        frozen=True,
+        eq=False,
     )
 
 
-class OrderParameters(_Recorded):
+class OrderParameters(_Recorded[float]):
     """Alignment of a set of boats at one time: a float for each recorded quantity of the table.
 
     LAP angles count clockwise from the outward radial: 0 is jammed outward, +π/2 clockwise. Values
@@ -95,7 +108,7 @@ class OrderParameters(_Recorded):
 
 
 @dataclass(frozen=True, eq=False)
-class OrderSeries(_Recorded):
+class OrderSeries(_Recorded[NDArray[np.float64]]):
     """Order parameters one after another: the fields of `OrderParameters` as float64 arrays (t,).
 
     All are NaN if there is no boat to take them of; ``c_o`` and ``c_v`` are NaN for a single boat.
@@ -108,10 +121,6 @@ class OrderSeries(_Recorded):
     """
 
     time_s: NDArray[np.float64] | None = field(default=None, repr=False, kw_only=True)
-
-    if TYPE_CHECKING:
-
-        def __init__(self, *values: Any, **named: Any) -> None: ...
 
     def __post_init__(self) -> None:
         lengths = [len(column) for column in self.columns() if np.ndim(column)]

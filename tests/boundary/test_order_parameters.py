@@ -1,12 +1,15 @@
 """Law: order parameters are those of Section 3.2, of the normal boats or of all."""
 
+import ast
+import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import flockenv
-from flockenv import Flock, OrderParameters, OrderSeries, ParameterError
+from flockenv import Flock, OrderParameters, OrderSeries, ParameterError, _core
 
 
 def test_no_boat_is_refused(parameters):
@@ -14,6 +17,15 @@ def test_no_boat_is_refused(parameters):
     with pytest.raises(ParameterError, match="at least one normal boat"):
         flock.order_parameters()
     assert flock.order_parameters(include_leaders=True).psi_o <= 1.0
+
+
+def test_the_fields_that_are_written_out_are_those_of_the_table():
+    """An editor completes `order.psi_o`, and mypy knows that it is a float."""
+    tree = ast.parse(Path(flockenv.order.__file__).read_text(encoding="utf-8"))
+    classes = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    written = [field.target.id for field in classes["_Recorded"].body]
+    assert written == [each["name"] for each in _core.QUANTITIES if each["kind"] == "recorded"]
+    assert [field.name for field in dataclasses.fields(OrderParameters)] == written
 
 
 def test_a_series_compares_and_indexes(parameters):
