@@ -23,7 +23,8 @@ from flockenv.policies.base import (
     control_rate,
 )
 from flockenv.policies.model import ModelPolicy, as_policy
-from flockenv.policies.registry import EVERY_SUBSTEP, named_policy
+from flockenv.policies.names import EVERY_SUBSTEP
+from flockenv.policies.registry import named_policy
 from flockenv.runs.executors import in_order
 from flockenv.runs.seeds import check_evaluation_seeds
 from flockenv.simulation import simulate
@@ -248,9 +249,6 @@ def _simulated(
     progress: Callable[[float], None],
 ) -> dict[str, NDArray[np.float64]]:
     target = parameters.target if isinstance(parameters.target, str) else parameters.target[0]
-    # The environment derives a flock's seed from its own, which pairs the runs.
-    some = parameters.replace(n_leaders=max(1, parameters.n_leaders))
-    _, infos = _environment(some, len(seeds), duration_s, {}).reset(seed=list(seeds))
     is_each = isinstance(policy, Mapping)
     if is_each:
         policy = _first(policy, parameters.n_leaders)
@@ -275,5 +273,6 @@ def _simulated(
         return means + [recording.order.ordering_time(recording.time_s, each) for each in times]
 
     # Policies in Python may draw from a generator of their own: one run after another.
-    rows = in_order(run, infos["flock_seed"].tolist(), 1 if is_each else None)
+    # The first episode of an environment has its seed, which pairs these runs with those there.
+    rows = in_order(run, list(seeds), 1 if is_each else None)
     return dict(zip((*QUANTITIES, *ORDERING_TIMES), np.array(rows).T, strict=True))
