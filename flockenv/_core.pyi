@@ -66,7 +66,6 @@ USES_AVX2: bool
 ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]
-LAWS: list[str]
 LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]
@@ -76,6 +75,9 @@ OBSERVATION_VERSION: int
 PARAMETERS: tuple[dict[str, Any], ...]
 OPTIONS: tuple[dict[str, Any], ...]
 QUANTITIES: tuple[dict[str, Any], ...]
+# Of each law name, doc, color (None: any that is free) and is_of_pool; the first acts at every
+# substep.
+LAWS: tuple[dict[str, Any], ...]
 FLOCK_FEATURES: tuple[dict[str, Any], ...]
 # Name and meaning.
 REWARD_TERMS: list[tuple[str, str]]

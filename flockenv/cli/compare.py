@@ -22,9 +22,10 @@ from flockenv.comparison.report import ComparisonReport
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
+from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 from flockenv.policies.registry import FILES, named_policy
 
-REFERENCES = ("learned", "tuned law", "paper's law")
+REFERENCES = (LEARNED, TUNED_LAW, PAPERS_LAW)
 """What policies are compared with, unless `--only` is given."""
 
 _BOATS = 27

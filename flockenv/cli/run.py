@@ -11,7 +11,8 @@ from flockenv.cli.options import TRUST, OneFlock, Overwriting, Printing, option,
 from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
 from flockenv.cli.parameters import read_parameters
 from flockenv.errors import ParameterError
-from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES, quoted
+from flockenv.policies.names import EVERY_SUBSTEP
+from flockenv.policies.registry import POLICIES, POOL_POLICIES, quoted
 from flockenv.simulation import simulate
 
 _OUT = Path("results/run.npz")

@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.policies.names import LAWS
 from flockenv.statistics import CONFIDENCE
 
-# Okabe and Ito's, which every kind of eye distinguishes, and three that differ from them.
-COLORS = {"paper's law": "#0072b2", "tuned law": "#e69f00", "learned": "#009e73"}
+COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 """The color that a policy has in every figure."""
 
+# Of Okabe and Ito's, which every kind of eye distinguishes, and three that differ from them.
 OWN_COLORS = ("#d55e00", "#cc79a7", "#56b4e9", "#332288", "#661100", "#ddcc77")
 """Colors of other policies, in turn."""
 

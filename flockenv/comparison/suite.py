@@ -16,6 +16,7 @@ from flockenv.comparison.case import Case
 from flockenv.comparison.report import ComparisonReport
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
+from flockenv.policies.names import TUNED_LAW
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import (
     bootstrap_interval,
@@ -33,7 +34,7 @@ SUITE = "v2"
 EPISODES = 256
 """Episodes of each task."""
 
-REFERENCE = "tuned law"
+REFERENCE = TUNED_LAW
 """The policy from which scores are differences."""
 
 _SEEDS = release_seeds("v0.1.0", EPISODES)

@@ -19,6 +19,7 @@ from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import CONTROL_HZ, RowPolicy, control_rate
 from flockenv.policies.model import ModelPolicy
+from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
@@ -84,7 +85,7 @@ class SteeringLaw(LawPolicy):
     def __init__(
         self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
     ) -> None:
-        super().__init__(_core.Law.named("paper's law"), observation, mirror_to_target)
+        super().__init__(_core.Law.named(PAPERS_LAW), observation, mirror_to_target)
 
 
 class NamedLaw(LawPolicy):
@@ -166,7 +167,7 @@ class DampedLaw(LawPolicy):
 
         A ParameterError refuses other pools.
         """
-        return cls(*dict(_core.Law.named("tuned law", pool).gains).values(), **layout)
+        return cls(*dict(_core.Law.named(TUNED_LAW, pool).gains).values(), **layout)
 
 
 class LeaningLaw(LawPolicy):
@@ -218,7 +219,7 @@ class LeaningLaw(LawPolicy):
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         if gains is None:
-            gains = dict(_core.Law.named("tuned law", pool).gains)
+            gains = dict(_core.Law.named(TUNED_LAW, pool).gains)
         values = {
             "format": 1,
             "pool": pool,
@@ -320,7 +321,7 @@ class LeaningLaw(LawPolicy):
 
         A ParameterError refuses other pools.
         """
-        return cls.from_json(_core.Law.named("learned", pool).to_json())
+        return cls.from_json(_core.Law.named(LEARNED, pool).to_json())
 
     def _read(self, text: str) -> None:
         law = _core.Law.from_json(text)

@@ -5,45 +5,41 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from flockenv import _core
 from flockenv.errors import ParameterError, nearest, shown
 from flockenv.policies.base import LeaderPolicy, check_pool
 from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import DampedLaw, LeaningLaw, NamedLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy, is_model_file, load_model
+from flockenv.policies.names import (
+    DAMPED_LAW,
+    EVERY_SUBSTEP,
+    LEARNED,
+    OTHER_LAWS,
+    PAPERS_LAW,
+    TUNED_LAW,
+)
 from flockenv.policies.network import NetworkPolicy
 
 FILES = (".json", ".npz", ".zip")
 """How the files of policies end: laws, networks, and models of stable-baselines3."""
 
-EVERY_SUBSTEP = "paper's law at every substep"
-"""The paper's law evaluated at every substep, from the pose: what `simulate` does without a policy.
-"paper's law" is evaluated at every decision, from the observation, as other policies are."""
-
-LEARNED = "learned"
-"""Name of the pretrained leaders, which are others in each pool."""
-
 POOLS = ("wide", "narrow")
 """The pools for which laws were tuned and leaders were trained."""
 
 POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
-    "tuned law": lambda pool: DampedLaw.tuned(_named(pool)),
+    TUNED_LAW: lambda pool: DampedLaw.tuned(_named(pool)),
     LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
 }
 """Policies by name, each tuned or trained for a pool."""
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
-    "paper's law": SteeringLaw,
-    "damped law": DampedLaw,
+    PAPERS_LAW: SteeringLaw,
+    DAMPED_LAW: DampedLaw,
     EVERY_SUBSTEP: lambda: EVERY_SUBSTEP,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
     # A law of the core without a class has a line there alone.
-    **{
-        name: partial(NamedLaw, name)
-        for name in _core.LAWS
-        if name not in ("paper's law", "damped law", *POOL_POLICIES)
-    },
+    **{name: partial(NamedLaw, name) for name in OTHER_LAWS},
 }
 """Policies by name that are the same in every pool."""
 

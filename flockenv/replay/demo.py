@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import EVERY_SUBSTEP, LEARNED
+from flockenv.policies.names import EVERY_SUBSTEP, LEARNED, PAPERS_LAW
 from flockenv.recording import Recording
 from flockenv.replay.template import as_script_content
 from flockenv.simulation import simulate
@@ -14,7 +14,7 @@ from flockenv.simulation import simulate
 DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
 
-DEMO_POLICIES: Final = {"paper's law": EVERY_SUBSTEP, "learned": LEARNED}
+DEMO_POLICIES: Final = {PAPERS_LAW: EVERY_SUBSTEP, LEARNED: LEARNED}
 """How the leaders steer, by the name that a run has on the page."""
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import EVERY_SUBSTEP, POLICIES, POOL_POLICIES
+from flockenv.policies.names import EVERY_SUBSTEP
+from flockenv.policies.registry import POLICIES, POOL_POLICIES
 from flockenv.recording import Recording
 from flockenv.simulation import simulate
 

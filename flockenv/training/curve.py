@@ -10,6 +10,7 @@ from flockenv._io.extras import require
 from flockenv.comparison import compare_leaders
 from flockenv.parameters import FlockParameters
 from flockenv.policies import SteeringLaw
+from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
 from flockenv.policies.registry import named_policy
 from flockenv.training.settings import TrainingSettings
 
@@ -87,8 +88,8 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     """
     flocks = FlockParameters.preset("simulation").replace(**settings.flocks())
     policies = {
-        "paper's law": SteeringLaw,
-        "tuned law": named_policy("tuned law", settings.pool),
+        PAPERS_LAW: SteeringLaw,
+        TUNED_LAW: named_policy(TUNED_LAW, settings.pool),
         "trained": lambda: model,
     }
     return compare_leaders(flocks, [settings.n_leaders], policies, range(episodes), _EPISODE_S)

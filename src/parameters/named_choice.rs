@@ -25,7 +25,7 @@ macro_rules! named_choice {
             }
 
             /// The public name.
-            pub fn name(self) -> &'static str {
+            pub const fn name(self) -> &'static str {
                 match self { $($(#[cfg(feature = $feature)])? Self::$variant => $name,)+ }
             }
         }

@@ -3,6 +3,57 @@
 use super::LeaningLaw;
 use crate::boat::{Course, DampedLaw, steering_law};
 use crate::error::{FlockError, Result};
+use crate::parameters::{Value, named_choice};
+
+named_choice! {
+    /// What leaders follow, by the name that commands, recordings, pictures and pages have for it.
+    pub enum LawName ("law") {
+        /// The paper's law, eq. (10), at every substep, from the flock itself.
+        EverySubstep = "paper's law at every substep",
+        /// The paper's law at every decision, from what a leader observes, as all that follow.
+        Paper = "paper's law",
+        /// The damped law with its default gains.
+        Damped = "damped law",
+        /// The damped law with the gains tuned in the pool.
+        Tuned = "tuned law",
+        /// The pretrained leaders of the pool.
+        Learned = "learned",
+    }
+}
+
+impl LawName {
+    /// The color that it has in every picture: one of Okabe and Ito's, which every kind of eye distinguishes; `None`: the
+    /// next that is free.
+    pub fn color(self) -> Option<&'static str> {
+        match self {
+            Self::Paper => Some("#0072b2"),
+            Self::Tuned => Some("#e69f00"),
+            Self::Learned => Some("#009e73"),
+            Self::EverySubstep | Self::Damped => None,
+        }
+    }
+
+    /// Whether it is another law in each pool.
+    pub fn is_of_pool(self) -> bool {
+        match self {
+            Self::Tuned | Self::Learned => true,
+            Self::EverySubstep | Self::Paper | Self::Damped => false,
+        }
+    }
+
+    /// What is declared of it by name.
+    pub fn named(self) -> Value {
+        let (name, doc) = (self.name(), self.doc());
+        let (color, is_of_pool) = (self.color(), self.is_of_pool());
+        let each = [
+            ("name", Value::from(name)),
+            ("doc", doc.into()),
+            ("color", color.into()),
+            ("is_of_pool", is_of_pool.into()),
+        ];
+        each.into_iter().collect()
+    }
+}
 
 /// A law that leaders can follow, each by what it sees.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,23 +67,21 @@ pub enum Law {
 }
 
 impl Law {
-    /// The names of laws: those of [`Self::named`].
-    pub const NAMES: [&'static str; 4] = ["paper's law", "damped law", "tuned law", "learned"];
-
     /// The law of a name. Two of them are others in each pool, which is given by its name, if it has one.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for other names, and pools in which a law has not been tuned or learned.
+    /// [`FlockError::Parameter`] for other names, for the law at every substep, which a flock follows by itself, and for
+    /// pools in which a law has not been tuned or learned.
     pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
-        match name {
-            "paper's law" => Ok(Self::Paper),
-            "damped law" => Ok(Self::Damped(DampedLaw::default())),
-            "tuned law" => DampedLaw::tuned("law", name, pool).map(Self::Damped),
-            "learned" => LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law))),
-            _ => {
-                let accepted = format!("one of {}", Self::NAMES.join(", "));
+        match name.parse()? {
+            LawName::EverySubstep => {
+                let accepted = "a law that leaders follow by what they observe";
                 Err(FlockError::parameter("law", name, accepted))
             }
+            LawName::Paper => Ok(Self::Paper),
+            LawName::Damped => Ok(Self::Damped(DampedLaw::default())),
+            LawName::Tuned => DampedLaw::tuned("law", name, pool).map(Self::Damped),
+            LawName::Learned => LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law))),
         }
     }
 

@@ -27,7 +27,7 @@ mod _core {
     };
     use crate::integrator::Phase;
     use crate::parameters::{Field, FlockParameters, Preset, Value};
-    use crate::policies::Law;
+    use crate::policies::LawName;
 
     #[pymodule_export]
     use super::analysis::{
@@ -58,7 +58,8 @@ mod _core {
         error::add_exceptions(module)?;
         module.add("ACTION_MODES", ActionMode::names())?;
         module.add("COLLECTIVE_STATES", CollectiveState::names())?;
-        module.add("LAWS", Law::NAMES)?;
+        let laws = LawName::ALL.iter().map(|law| law.named());
+        module.add("LAWS", Value::List(laws.collect()))?;
         module.add("LEAN_FEATURES", LeanFeatures::names().collect::<Vec<_>>())?;
         module.add("PHASES", Phase::names())?;
         module.add("PRESETS", Preset::names())?;

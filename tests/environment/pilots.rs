@@ -5,7 +5,7 @@ use flockenv::Flock;
 use flockenv::environment::observation::{Block, ObservationLayout};
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, TargetChoice};
 use flockenv::parameters::{Target, Targets};
-use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
+use flockenv::policies::{Law, LawName, LeaningLaw, ObservedLaw, Pilot};
 
 /// The learned law, holding its leans for so long with the tuned gains.
 fn holding(period_s: f64) -> Law {
@@ -19,7 +19,7 @@ fn holding(period_s: f64) -> Law {
 }
 
 fn laws() -> Vec<(Law, Option<f64>)> {
-    let named = Law::NAMES.iter();
+    let named = LawName::names().into_iter().skip(1);
     let mut laws: Vec<_> = named
         .map(|name| (Law::named(name, Some("narrow")).unwrap(), None))
         .collect();

@@ -1,10 +1,14 @@
 """Law: a policy's name, its file and the object itself steer the same, wherever they are given."""
 
+import ast
 from pathlib import Path
 
 import pytest
 
 import flockenv
+from flockenv import _core
+from flockenv.comparison.figure import COLORS
+from flockenv.policies.names import LAWS
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
@@ -57,3 +61,18 @@ def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) ->
     with pytest.raises(flockenv.ParameterError) as reported:
         named_policy(name, "narrow")
     assert words in str(reported.value)
+
+
+def test_names_of_laws_and_their_colors_stand_in_the_core_alone():
+    assert [*LAWS] == [each["name"] for each in _core.LAWS]
+    assert {*LAWS} <= {*POLICIES, *POOL_POLICIES}
+    assert {name for name, law in LAWS.items() if law["is_of_pool"]} == {*POOL_POLICIES}
+    assert {name: law["color"] for name, law in LAWS.items() if law["color"]} == COLORS
+    folder = Path(flockenv.__file__).parent
+    written = {
+        (path.name, node.value)
+        for path in folder.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and node.value in LAWS
+    }
+    assert written == set()

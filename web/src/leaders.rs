@@ -2,15 +2,20 @@
 
 use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
 use flockenv::parameters::FlockParameters;
-use flockenv::policies::{Law, ObservedLaw, Pilot};
+use flockenv::policies::{Law, LawName, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
 
 /// The paper's law at every substep, by the name that the command line has for it.
-pub(crate) const EVERY_SUBSTEP: &str = "paper's law at every substep";
+pub(crate) const EVERY_SUBSTEP: &str = LawName::EverySubstep.name();
 
 /// The policies, by the names that the command line has for them; `you` is the visitor.
-pub(crate) const POLICIES: [&str; 5] =
-    [EVERY_SUBSTEP, "paper's law", "tuned law", "learned", "you"];
+pub(crate) const POLICIES: [&str; 5] = [
+    EVERY_SUBSTEP,
+    LawName::Paper.name(),
+    LawName::Tuned.name(),
+    LawName::Learned.name(),
+    "you",
+];
 
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
