@@ -8,7 +8,7 @@ use flockenv::Result;
 use flockenv::environment::observation::{Block, ObservationLayout};
 use flockenv::environment::{
     ActionMode, BatchRows, EnvBatch, EnvSettings, ResetRequest, RewardTerm, RewardWeights,
-    TargetChoice,
+    TargetChoice, Weights,
 };
 use flockenv::parameters::{FlockParameters, Physics, Pool, Preset};
 use std::hint::black_box;
@@ -44,7 +44,7 @@ pub fn leaning() -> EnvSettings {
         observation: ObservationLayout::of(&[Block::LeanFeatures]),
         action_mode: ActionMode::Lean,
         decision_period_s: Some(1.0),
-        reward,
+        reward: Weights::One(reward),
         reward_horizon_s: Some(40.0),
         ..EnvSettings::default()
     }
