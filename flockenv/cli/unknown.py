@@ -13,20 +13,9 @@ _FIELDS = tuple(each.name for each in fields(FlockParameters))
 
 
 def refuse_unknown_options(commands: Any, words: Sequence[str]) -> None:
-    """Refuse the first option that the command of a line does not have.
+    """Refuse the first option that the command of a line does not have, with the line to type.
 
-    Parameters
-    ----------
-    commands
-        The commands by name, as click has them.
-    words
-        The line, without the program.
-
-    Raises
-    ------
-    ParameterError
-        With the line to type if the option is a field or an option of the environment, or is like
-        one.
+    Commands are click's by name; the line comes without the program.
     """
     if not words or words[0] not in commands:
         return
