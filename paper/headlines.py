@@ -206,9 +206,10 @@ def judge(table: pd.DataFrame) -> Claims:
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw each headline's value in each variant with its interval and the claimed range."""
     claims = judge(table)
-    with picture(options, "headlines", height_cm=13.0) as figure:
-        panels = figure.subplots(3, 3)
-        for axes, words in zip(panels.flat, HEADLINES, strict=True):
+    shown = [words for words in HEADLINES if any(each.claim == words for each in claims)]
+    with picture(options, "headlines", height_cm=10.0) as figure:
+        panels = figure.subplots(-(-max(len(shown), 1) // 3), 3, squeeze=False, sharex=True)
+        for axes, words in zip(panels.flat, shown, strict=False):
             *_, lowest, highest = HEADLINES[words]
             for claim in (each for each in claims if each.claim == words):
                 place = CHANGES.index(claim.reading)
@@ -219,7 +220,9 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
             axes.set_ylim(low, high)
             axes.set(xlim=(-0.6, len(CHANGES) - 0.4), xticks=[])
-            axes.set_title(words, fontsize=7)
+            axes.set_title(words, fontsize=6)
+        for axes in panels.flat[len(shown) :]:
+            axes.set(frame_on=False, yticks=[])
         for axes in panels[-1]:
             axes.set_xticks(range(len(CHANGES)), CHANGES, rotation=40, ha="right")
 

@@ -7,8 +7,7 @@ from claim import Interval, critical_bw, mean, unknown
 from study import COLORS, SEEDS, Options, Row, Study, curve, order_row, picture, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
-LOW_S, HIGH_S = 0.2, 1.0
-"""Up to LOW_S the noise is low; from HIGH_S on the flock is disordered."""
+LOW_S, HIGH_S = 0.2, 1.0  # The most that is low noise, and the least that is disorder.
 
 _LEAPFROG: Row = {"scheme": "leapfrog", "noise_scheme": "white", "overlap_tolerance_cm": 0.01}
 _PAPER: Row = {"scheme": "paper", "noise_scheme": "per-step", "overlap_tolerance_cm": 0.01}

@@ -40,8 +40,7 @@ MOSTLY = 0.7
 """Share of a run's frames from which on it counts as mostly jammed or mostly rotating."""
 FIRST_SEED = POLICY_SEEDS["paper"].first
 """Seeds of these studies are from here on; nothing else uses them."""
-SEEDS = 24
-"""Runs at each point of a design, unless it says otherwise."""
+SEEDS = 24  # Runs at each point of a design, unless it says otherwise.
 
 VERSION = "results_version"
 """The last column of every file of results: `RESULTS_VERSION` of the code that made a run."""

@@ -9,8 +9,7 @@ from study import FIRST_SEED, Row, Study, flock
 import flockenv
 from flockenv.policies.registry import named_policy
 
-RUNS, MORE_RUNS = 64, 256
-"""Seeds of every line, and of those of 27 boats."""
+RUNS, MORE_RUNS = 64, 256  # Seeds of every line, and of those of 27 boats.
 DENSITY_BOATS = 27
 LAW = "law"
 POLICIES = (LAW, "learned", "tuned law", "damped law")
