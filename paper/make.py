@@ -23,10 +23,10 @@ def main(arguments: list[str] | None = None) -> None:
     unknown = [name for name in names if name not in FIGURES]
     if unknown:
         sys.exit(f"Error: {unknown[0]!r} is no figure of this folder: {', '.join(FIGURES)}")
-    for name in names or FIGURES:
-        done = subprocess.run([sys.executable, HERE / f"{name}.py", *options], check=False)
-        if done.returncode:
-            sys.exit(f"{name} did not end well; the same command resumes from there")
+    commands = {name: [sys.executable, HERE / f"{name}.py", *options] for name in names or FIGURES}
+    failed = [n for n, each in commands.items() if subprocess.run(each, check=False).returncode]
+    if failed:
+        sys.exit(f"{', '.join(failed)} did not end well; the same command resumes from there")
 
 
 if __name__ == "__main__":
