@@ -73,13 +73,18 @@ impl Depenetration {
             // in its order, and results made before rest on that.
             detector.update(boats, wide);
             detector.detect(boats, margin.min(wide), found);
-            if smallest_gap(found) >= -allowed {
+            if smallest_gap(found) >= -allowed || self.is_exhausted() {
                 break;
             }
         }
         if margin > wide {
             detector.detect(boats, margin, found);
         }
+    }
+
+    /// Whether the last pass was too much work.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.solver.is_exhausted()
     }
 
     /// One pass, for the contacts at hand.

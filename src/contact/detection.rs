@@ -14,6 +14,12 @@ const LONG: f64 = 0.1;
 /// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
 /// are left out, with less more have to be taken back.
 const ADDED: f64 = 0.125;
+/// Pairs per boat that one substep looks at where boats move by more than half their length in it: in the densest flock
+/// each can then reach what lies within a few lengths. Beyond it a linearized gap means nothing, and memory and time grow
+/// with the square of the number of boats.
+const MOST_PAIRS_A_BOAT: usize = 32;
+/// Part of `dt_s` below which no substep is cut for what boats can reach in it.
+const SHORTEST_SHARE: f64 = 1e-3;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
 #[derive(Debug, Clone)]
@@ -24,6 +30,10 @@ pub struct ContactDetector {
     pub(crate) neighbors: NeighborList,
     pub(super) obstacles: NearObstacles,
     skin: f64,
+    /// Substeps are not cut for what boats can reach in them below this length, in s.
+    shortest_s: f64,
+    /// Whether boats reach so many others in the substep that it was not worth finding them.
+    is_crowded: bool,
     /// How near something has to be to each boat to count: two boats that are nearer than both together.
     reaches: Vec<f64>,
     /// How far the fastest boat moves in the substep at hand, in cm.
@@ -43,6 +53,8 @@ impl ContactDetector {
             neighbors: NeighborList::default(),
             obstacles: NearObstacles::new(Obstacle::all(parameters)),
             skin,
+            shortest_s: SHORTEST_SHARE * parameters.dt_s,
+            is_crowded: false,
             reaches: Vec::new(),
             farthest: 0.0,
         }
@@ -91,7 +103,14 @@ impl ContactDetector {
             .iter_mut()
             .for_each(|reach| *reach = *reach * dt + room);
         let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
-        self.detect_within_reach(boats, margin, contacts);
+        let may_crowd = boats.len() > 2 * MOST_PAIRS_A_BOAT && dt > self.shortest_s;
+        self.is_crowded =
+            may_crowd && fastest * dt > self.hull.reach() && self.crowds(boats, margin);
+        if self.is_crowded {
+            contacts.clear();
+        } else {
+            self.detect_within_reach(boats, margin, contacts);
+        }
         margin
     }
 
@@ -171,6 +190,21 @@ impl ContactDetector {
         gap < -allowed
     }
 
+    /// Whether too many pairs of boats are nearer than `margin`. A list from a longer substep would tell of more.
+    #[cold]
+    fn crowds(&mut self, boats: &[HullPose], margin: f64) -> bool {
+        if self.neighbors.cutoff() > 2.0 * (2.0 * self.hull.reach() + margin + self.skin) {
+            self.neighbors.clear();
+        }
+        self.update(boats, margin);
+        let pairs: usize = self
+            .neighbors
+            .groups()
+            .map(|(_, partners)| partners.len())
+            .sum();
+        pairs > MOST_PAIRS_A_BOAT * boats.len()
+    }
+
     /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
     pub fn detect(&mut self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
         self.reaches.clear();
@@ -222,12 +256,12 @@ impl ContactDetector {
         self.obstacles.update(&self.neighbors);
     }
 
-    /// Whether moving with these velocities for `dt` might take a boat through a wall that has no
-    /// thickness. A boat that moves by at most half its radius cannot; afterwards no gap would show on which
-    /// side it was.
-    pub(crate) fn may_pass_walls(&self, velocities: &[Velocity], dt: f64) -> bool {
+    /// Whether moving with these velocities for `dt` is too far for one substep: boats reach too many others, or might
+    /// pass through a wall that has no thickness. A boat that moves by at most half its radius cannot; afterwards no gap
+    /// would show on which side it was.
+    pub(crate) fn moves_too_far(&self, velocities: &[Velocity], dt: f64) -> bool {
         let farthest = 0.5 * self.hull.radius;
-        self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
+        self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
     /// Squared distances from the pool's center at which no wall is nearer than `margin`.

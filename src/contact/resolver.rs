@@ -22,8 +22,7 @@ pub(crate) enum ContactOutcome {
     Untouched,
     /// The contacts have been solved.
     Solved,
-    /// Contacts turn too far within the substep, and a shorter one is possible; or a boat might pass
-    /// through a wall.
+    /// Contacts turn too far within the substep, and a shorter one is possible; or a boat moves too far in it.
     TooLong,
 }
 
@@ -44,6 +43,8 @@ pub(crate) struct ContactResolver {
     /// Contacts that carried an impulse, in the order of detection.
     warm_start_cache: WarmStartCache,
     depenetration: Option<Box<Depenetration>>,
+    /// Whether the contacts of this substep were too much work, and a shorter one would not help.
+    pub(crate) is_exhausted: bool,
     passivity: Passivity,
     trial: Trial,
     /// Islands that overlap at the substep's end.
@@ -74,6 +75,7 @@ impl ContactResolver {
             persistent: Vec::new(),
             warm_start_cache: WarmStartCache::default(),
             depenetration: None,
+            is_exhausted: false,
             passivity: Passivity::default(),
             trial: Trial::default(),
             overlapping: Vec::new(),
@@ -132,6 +134,7 @@ impl ContactResolver {
                 smallest = contact.gap.gap;
             }
         }
+        self.is_exhausted = false;
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
             self.depenetrate(poses, boats, velocities, margin, statistics);
@@ -170,6 +173,7 @@ impl ContactResolver {
             margin,
             &mut self.contacts,
         );
+        self.is_exhausted = depenetration.is_exhausted();
         statistics.depenetration_passes += depenetration.passes - passes;
         statistics.displaced_angular_momentum_cm2_s +=
             (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
@@ -216,7 +220,10 @@ impl ContactResolver {
             closing_s: dt.max(self.whole_substep_s),
             penetration_slop: self.penetration_slop,
         };
-        self.solve_and_relinearize(poses, free, inertia, bias, statistics);
+        if self.is_exhausted {
+            return ContactOutcome::TooLong;
+        }
+        self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
         let is_apart = |allowed| {
             let Self {
                 trial,
@@ -226,19 +233,26 @@ impl ContactResolver {
             } = &*self;
             trial.is_end() && !trial.overlaps(detector, parting, allowed)
         };
-        if !self.parting.is_empty() && !self.allowed_overlap.is_some_and(is_apart) {
+        if !self.is_exhausted
+            && !self.parting.is_empty()
+            && !self.allowed_overlap.is_some_and(is_apart)
+        {
             statistics.contacts += self.parting.len() as u64;
             self.contacts.append(&mut self.parting);
             self.warm_start(poses.len());
-            self.solve_and_relinearize(poses, free, inertia, bias, statistics);
+            self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
         }
-        if self.stop_driving(free, inertia, bias) {
+        if !self.is_exhausted && self.stop_driving(free, inertia, bias) {
             if shorter_possible {
                 return ContactOutcome::TooLong;
             }
             self.solve(None, free, inertia, statistics);
         }
-        if self.detector.may_pass_walls(&self.solver.velocities, dt) {
+        if self.is_exhausted {
+            self.is_exhausted = !shorter_possible;
+            return ContactOutcome::TooLong;
+        }
+        if self.detector.moves_too_far(&self.solver.velocities, dt) {
             return ContactOutcome::TooLong;
         }
         let impulses = self.solver.impulses.iter().copied();
@@ -254,6 +268,7 @@ impl ContactResolver {
         free: &[Velocity],
         inertia: &[InverseInertia],
         bias: VelocityBias,
+        shorter_possible: bool,
         statistics: &mut Statistics,
     ) {
         self.biases.clear();
@@ -262,6 +277,9 @@ impl ContactResolver {
             bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         }));
         self.solver.reset(poses.len(), &self.contacts);
+        if shorter_possible {
+            self.solver.give_up_early();
+        }
         let solved = self.solve(None, free, inertia, statistics);
         if let Some(allowed) = self.allowed_overlap
             && solved
@@ -309,6 +327,7 @@ impl ContactResolver {
             contacts,
             biases,
             solver,
+            is_exhausted,
             ..
         } = self;
         let problem = ContactProblem {
@@ -321,6 +340,10 @@ impl ContactResolver {
             Some(islands) => solver.solve_again(&problem, islands),
             None => solver.solve(&problem),
         };
+        if solver.is_exhausted() {
+            *is_exhausted = true;
+            return false;
+        }
         statistics.count(&report);
         if report.converged {
             return true;
@@ -335,7 +358,9 @@ impl ContactResolver {
             free,
             biases,
         };
-        if !solver.solve(&problem).converged {
+        let is_solved = solver.solve(&problem).converged;
+        *is_exhausted = solver.is_exhausted();
+        if !is_solved && !*is_exhausted {
             solver.impulses.fill(0.0);
             solver.solve_as(Solver::GaussSeidel, &problem);
         }

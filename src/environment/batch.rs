@@ -37,6 +37,8 @@ struct Share<'a> {
     observations: &'a mut [f32],
     rewards: &'a mut [f64],
     truncated: &'a mut bool,
+    /// Whether somebody looks before it whether to continue.
+    is_looked_before: bool,
 }
 
 impl EnvBatch {
@@ -113,17 +115,42 @@ impl EnvBatch {
     /// # Panics
     /// If the rows have other lengths than the batch.
     pub fn step(&mut self, actions: &[f64], out: BatchRows) -> Result<()> {
+        self.step_while(&|| true, actions, out)
+    }
+
+    /// As [`Self::step`], asking now and then whether to continue.
+    ///
+    /// # Errors
+    /// As for [`Self::step`]; [`FlockError::Interrupted`] where `keep_going` said no: all flocks have to be reset then.
+    ///
+    /// # Panics
+    /// As for [`Self::step`].
+    pub fn step_while(
+        &mut self,
+        keep_going: KeepGoing,
+        actions: &[f64],
+        out: BatchRows,
+    ) -> Result<()> {
         self.check_step(actions)?;
         let settings = &self.settings;
         let shares = shares(&mut self.envs, settings.observation.size(), actions, out);
         let step = |share: Share| {
+            if share.is_looked_before && !keep_going() {
+                return Err(FlockError::Interrupted);
+            }
             let (actions, observations) = (share.actions, share.observations);
-            *share.truncated = share
-                .env
-                .step(settings, actions, observations, share.rewards)?;
+            *share.truncated =
+                share
+                    .env
+                    .step(keep_going, settings, actions, observations, share.rewards)?;
             Ok(())
         };
         let moved: Vec<Result<()>> = parallel::map(shares, step);
+        if moved.contains(&Err(FlockError::Interrupted)) {
+            // Some have moved and others not: whoever goes on after that begins anew.
+            self.envs.iter_mut().for_each(FlockEnv::abandon);
+            return Err(FlockError::Interrupted);
+        }
         let is_alone = moved.len() == 1;
         let failed = moved.into_iter().enumerate();
         let mut failed = failed.filter_map(|(flock, outcome)| Some((flock, outcome.err()?)));
@@ -265,6 +292,9 @@ impl EnvBatch {
     }
 }
 
+/// Flocks between two points at which a step of many can be ended; within one that takes long there are others.
+const FLOCKS_BETWEEN_LOOKS: usize = 16;
+
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.
 const MOST_BYTES: u64 = 16 << 30;
 /// What a flock takes at most, however few its boats, and what a boat takes with its contacts.
@@ -311,7 +341,9 @@ fn shares<'a>(
     );
     assert_eq!(rewards.len(), actions.len(), "one reward a leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
+    let mut number = 0_usize;
     let share = |(env, truncated): (&'a mut FlockEnv, _)| {
+        number += 1;
         let leaders = env.parameters().n_leaders;
         Share {
             actions: actions.split_off(..leaders).unwrap_or_default(),
@@ -320,6 +352,7 @@ fn shares<'a>(
                 .unwrap_or_default(),
             rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
+            is_looked_before: number.is_multiple_of(FLOCKS_BETWEEN_LOOKS),
             env,
         }
     };

@@ -10,6 +10,7 @@ use crate::analysis::OrderParameters;
 use crate::analysis::quantities::Boats;
 use crate::boat::DampedLaw;
 use crate::clock::{Ticks, seconds};
+use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::integrator::{Integrator, Steering};
@@ -207,9 +208,11 @@ impl Episode {
     /// and writes the rewards, sums over them.
     ///
     /// # Errors
-    /// [`FlockError::Solver`]; the flock stays where it was in that control step, and the episode is over.
+    /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stays where it was in that control step, and the
+    /// episode is over.
     pub fn step(
         &mut self,
+        keep_going: KeepGoing,
         settings: &EnvSettings,
         servo: &Servo,
         actions: &[f64],
@@ -222,7 +225,7 @@ impl Episode {
         let mut taken = 0;
         while taken == 0 || (taken < settings.period_steps() && !self.state.ended) {
             self.command(settings, actions, mirror_to.as_ref());
-            let elapsed = self.advance(settings, servo)?;
+            let elapsed = self.advance(keep_going, settings, servo)?;
             self.pay(settings, rewards);
             self.note_order(elapsed);
             self.advance_schedule()?;
@@ -256,7 +259,12 @@ impl Episode {
     }
 
     /// Moves the flock through a control step; returns the time from the episode's start to its end.
-    fn advance(&mut self, settings: &EnvSettings, servo: &Servo) -> Result<Ticks> {
+    fn advance(
+        &mut self,
+        keep_going: KeepGoing,
+        settings: &EnvSettings,
+        servo: &Servo,
+    ) -> Result<Ticks> {
         let state = &mut self.state;
         for (rudder, &command) in state.rudders.iter_mut().zip(&self.commands) {
             *rudder = servo.moved(*rudder, command);
@@ -266,11 +274,12 @@ impl Episode {
         let end = state.flock.time() + elapsed - before;
         let steering = Steering::Held(&state.rudders);
         let advanced = match &mut state.credit {
-            None => state.flock.advance_to(end, steering),
+            None => state.flock.advance_while(keep_going, end, steering),
             Some(credit) => {
                 credit.start();
                 let watch = &mut |flock: &Integrator| credit.add(flock);
-                state.flock.advance_watched(end, steering, watch)
+                let flock = &mut state.flock;
+                flock.advance_watched(keep_going, end, steering, watch)
             }
         };
         if let Err(error) = advanced {

@@ -128,6 +128,11 @@ impl FlockEnv {
         (self.seeds, self.episode) = (Some(seeds), Some(episode));
     }
 
+    /// Drops the episode: the environment has to be reset.
+    pub(crate) fn abandon(&mut self) {
+        self.episode = None;
+    }
+
     /// Whether a step is due, be it one that only starts the next episode.
     ///
     /// # Errors
@@ -147,9 +152,10 @@ impl FlockEnv {
     /// observations and rewards of the leaders and returns whether the episode was truncated.
     ///
     /// # Errors
-    /// [`FlockError::Solver`], [`FlockError::Placement`]; the episode is over then.
+    /// [`FlockError::Solver`], [`FlockError::Placement`], [`FlockError::Interrupted`]; the episode is over then.
     pub fn step(
         &mut self,
+        keep_going: KeepGoing,
         settings: &EnvSettings,
         actions: &[f64],
         observations: &mut [f32],
@@ -158,13 +164,13 @@ impl FlockEnv {
         self.check_ready(settings.autoreset_mode)?;
         if self.episode.as_ref().is_some_and(Episode::has_ended) {
             rewards.fill(0.0);
-            self.start_next(settings, observations)?;
+            self.start_next(keep_going, settings, observations)?;
             return Ok(false);
         }
         let Some(episode) = &mut self.episode else {
             return Ok(false);
         };
-        episode.step(settings, &self.servo, actions, rewards)?;
+        episode.step(keep_going, settings, &self.servo, actions, rewards)?;
         episode.observe_and_count(observations);
         if !episode.has_ended() {
             return Ok(false);
@@ -173,7 +179,7 @@ impl FlockEnv {
         if settings.autoreset_mode == Autoreset::SameStep {
             self.final_observation.clear();
             self.final_observation.extend_from_slice(observations);
-            self.start_next(settings, observations)?;
+            self.start_next(keep_going, settings, observations)?;
         }
         Ok(true)
     }
@@ -189,8 +195,13 @@ impl FlockEnv {
         }
     }
 
-    fn start_next(&mut self, settings: &EnvSettings, observations: &mut [f32]) -> Result<()> {
-        let next = self.prepare(settings, &ResetRequest::default(), &|| true)?;
+    fn start_next(
+        &mut self,
+        keep_going: KeepGoing,
+        settings: &EnvSettings,
+        observations: &mut [f32],
+    ) -> Result<()> {
+        let next = self.prepare(settings, &ResetRequest::default(), keep_going)?;
         self.start(next, observations);
         Ok(())
     }

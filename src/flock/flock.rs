@@ -29,12 +29,15 @@ pub struct Flock {
     before: Box<Checkpoint>,
 }
 
-/// Work between two points at which a long run can be ended: about 30 ms.
-pub(crate) const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
+/// Work between two points at which a long run can be ended, in boats moved, contacts and rows factored: some
+/// milliseconds, or a single substep that takes longer.
+const WORK_BETWEEN_LOOKS: u64 = 20_000;
 /// Part of `dt_s` below which no substep is cut for the sake of walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
                         boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
+const TOO_MUCH: &str = "the contacts of a substep are too many and too entangled to be solved; a smaller dt_s, slower \
+                        boats or milder constants may help";
 
 impl Flock {
     /// A flock placed at random without overlap, at rest.
@@ -221,12 +224,27 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
     pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        self.advance_watched(end, steering, &mut |_| {})
+        self.advance_while(&|| true, end, steering)
     }
 
-    /// As [`Self::advance_to`], showing the motion after every substep.
+    /// As [`Self::advance_to`], asking now and then whether to continue.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`], and [`FlockError::Interrupted`] where `keep_going` said no; the flock is unchanged
+    /// then.
+    pub fn advance_while(
+        &mut self,
+        keep_going: KeepGoing,
+        end: Ticks,
+        steering: Steering,
+    ) -> Result<()> {
+        self.advance_watched(keep_going, end, steering, &mut |_| {})
+    }
+
+    /// As [`Self::advance_while`], showing the motion after every substep.
     pub(crate) fn advance_watched(
         &mut self,
+        keep_going: KeepGoing,
         end: Ticks,
         steering: Steering,
         watch: &mut impl FnMut(&Integrator),
@@ -236,6 +254,7 @@ impl Flock {
         let dt = ticks(self.parameters.dt_s);
         let shortest = (dt / SHORTEST_SHARE).max(1);
         let unsolved = self.integrator.statistics.unsolved;
+        let mut seen = self.work();
         while self.time < end {
             let moment = self.schedule.at(self.time);
             let grid = (self.time / dt + 1) * dt;
@@ -245,15 +264,28 @@ impl Flock {
                 phase: moment.phase,
                 steering,
             };
-            while self.integrator.step(&substep) == StepOutcome::TooLong {
-                if substep.length <= shortest {
-                    self.return_to_start(start);
-                    return Err(FlockError::Solver(TOO_FAST.to_owned()));
-                }
-                substep.length = substep.length.div_ceil(2);
+            loop {
+                let failure = match self.integrator.step(&substep) {
+                    StepOutcome::Taken => break,
+                    StepOutcome::TooLong if substep.length > shortest => {
+                        substep.length = substep.length.div_ceil(2);
+                        continue;
+                    }
+                    StepOutcome::TooLong => TOO_FAST,
+                    StepOutcome::Exhausted => TOO_MUCH,
+                };
+                self.return_to_start(start);
+                return Err(FlockError::Solver(failure.to_owned()));
             }
             self.time += substep.length;
             watch(&self.integrator);
+            if self.work() - seen >= WORK_BETWEEN_LOOKS {
+                seen = self.work();
+                if !keep_going() {
+                    self.return_to_start(start);
+                    return Err(FlockError::Interrupted);
+                }
+            }
             // Contacts of numbers out of range take long to give up: no more of them.
             if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
                 break;
@@ -268,6 +300,13 @@ impl Flock {
              may help"
                 .to_owned(),
         ))
+    }
+
+    /// What the substeps so far cost: boats moved, contacts and rows factored.
+    fn work(&self) -> u64 {
+        let statistics = &self.integrator.statistics;
+        let moved = statistics.substeps * self.parameters.n_boats as u64;
+        moved + statistics.contacts + statistics.factored_rows
     }
 
     /// Undoes the substeps of an advance.
@@ -287,39 +326,16 @@ impl Flock {
         steering: Steering,
         boat_substeps: u64,
     ) -> Result<bool> {
-        let dt = ticks(self.parameters.dt_s);
-        let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
-        let stop = end.min((self.time / dt + substeps) * dt);
+        let stop = self.stop_towards(end, boat_substeps);
         self.advance_to(stop, steering)?;
         Ok(stop == end)
     }
 
-    /// As [`Self::advance_to`], in pieces between which it asks whether to continue.
-    ///
-    /// # Errors
-    /// As for [`Self::advance_to`], and [`FlockError::Interrupted`] where `keep_going` said no; the flock is unchanged
-    /// then.
-    pub fn advance_while(
-        &mut self,
-        keep_going: KeepGoing,
-        end: Ticks,
-        steering: Steering,
-    ) -> Result<()> {
-        let substeps = seconds(end - self.time) / self.parameters.dt_s;
-        if substeps * self.parameters.n_boats as f64 <= BOAT_SUBSTEPS_A_PIECE as f64 {
-            return self.advance_to(end, steering);
-        }
-        let before = self.clone();
-        loop {
-            let error = match self.advance_towards(end, steering, BOAT_SUBSTEPS_A_PIECE) {
-                Ok(true) => return Ok(()),
-                Ok(false) if keep_going() => continue,
-                Ok(false) => FlockError::Interrupted,
-                Err(error) => error,
-            };
-            *self = before;
-            return Err(error);
-        }
+    /// Where [`Self::advance_towards`] stops.
+    pub(crate) fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
+        let dt = ticks(self.parameters.dt_s);
+        let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
+        end.min((self.time / dt + substeps) * dt)
     }
 
     /// Order parameters of the normal boats, or of all.

@@ -14,8 +14,6 @@ mod state;
 
 pub use change::Change;
 pub use contact_force::ContactForce;
-#[cfg(feature = "python")]
-pub(crate) use flock::BOAT_SUBSTEPS_A_PIECE;
 pub use flock::Flock;
 pub(crate) use flock::LATEST;
 pub use recorder::{ContactSamples, Pause, Real, Recorder, Recording, Sampling};

@@ -5,6 +5,7 @@ use super::contact_force::ContactForce;
 use super::flock::Flock;
 use crate::analysis::quantities::{RECORDED, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
+use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::integrator::{Phase, Steering};
 use crate::parameters::FlockParameters;
@@ -294,8 +295,8 @@ impl<T: Real> Recorder<T> {
     /// Where it pauses for its work changes nothing.
     ///
     /// # Errors
-    /// As for [`Flock::advance_to`] and [`Flock::change`].
-    pub fn run(&mut self, boat_substeps: u64) -> Result<Pause> {
+    /// As for [`Flock::advance_while`] and [`Flock::change`].
+    pub fn run(&mut self, keep_going: KeepGoing, boat_substeps: u64) -> Result<Pause> {
         let mut left = boat_substeps;
         loop {
             let now = self.flock.time() - self.start;
@@ -319,7 +320,8 @@ impl<T: Real> Recorder<T> {
                 None => Steering::Law,
             };
             let before = self.flock.statistics().substeps;
-            self.flock.advance_towards(next, steering, left)?;
+            let stop = self.flock.stop_towards(next, left);
+            self.flock.advance_while(keep_going, stop, steering)?;
             let substeps = self.flock.statistics().substeps - before;
             left = left.saturating_sub(substeps * self.flock.parameters().n_boats as u64);
         }

@@ -15,7 +15,7 @@ impl Integrator {
         let shorter_possible = dt > SHORTEST_SHARE * self.parameters.dt_s;
         let (contacts, free, statistics) = (&mut self.contacts, &self.free, &mut self.statistics);
         if !contacts.find(&mut self.poses, &mut self.boats, free, dt, statistics) {
-            if contacts.detector.may_pass_walls(free, dt) {
+            if contacts.detector.moves_too_far(free, dt) {
                 return ContactOutcome::TooLong;
             }
             contacts.clear_warm_start();

@@ -13,6 +13,9 @@ impl Integrator {
             Scheme::Moreau => moreau::step(self, substep),
             Scheme::Paper => paper::step(self, substep),
         };
+        if self.contacts.is_exhausted {
+            return StepOutcome::Exhausted;
+        }
         self.statistics.substeps += u64::from(outcome == StepOutcome::Taken);
         outcome
     }

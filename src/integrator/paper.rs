@@ -38,7 +38,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
         flock.drift(dt);
         return StepOutcome::Taken;
     }
-    if contacts.detector.may_pass_walls(velocities, dt) {
+    if contacts.detector.moves_too_far(velocities, dt) {
         return StepOutcome::TooLong;
     }
     contacts.clear_warm_start();

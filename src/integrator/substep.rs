@@ -34,6 +34,8 @@ pub(crate) enum StepOutcome {
     /// It is too long for its contacts: a shorter one has to be tried. Deep overlaps may have been
     /// undone, but no time has passed.
     TooLong,
+    /// Its contacts were too much work; the motion is to be thrown away.
+    Exhausted,
 }
 
 /// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.

@@ -2,6 +2,7 @@
 
 use super::Law;
 use crate::clock::whole_steps;
+use crate::contact::KeepGoing;
 use crate::environment::LARGEST_LEAN;
 use crate::environment::observation::{CourseView, FlockView, LeanFeatures};
 use crate::error::Result;
@@ -97,12 +98,13 @@ impl Pilot {
     pub fn run<T: Real>(
         &mut self,
         recorder: &mut Recorder<T>,
+        keep_going: KeepGoing,
         boat_substeps: u64,
     ) -> Result<Pause> {
         let mut left = boat_substeps;
         loop {
             let before = recorder.flock().statistics().substeps;
-            let pause = recorder.run(left)?;
+            let pause = recorder.run(keep_going, left)?;
             if pause != Pause::Control {
                 return Ok(pause);
             }

@@ -121,7 +121,9 @@ impl PyEnvBatch {
             rewards: &mut rewards,
             truncated: &mut truncated,
         };
-        py.detach(|| batch.step(&actions, rows))?;
+        interruptible(py, |keep_going| {
+            batch.step_while(keep_going, &actions, rows)
+        })?;
         Ok((
             rows_of(py, observations, size)?,
             PyArray1::from_vec(py, rewards),

@@ -2,13 +2,14 @@
 
 use super::analysis;
 use super::arrays::floats;
+use super::exclusive::interruptible;
 use super::flock::{PyFlock, contact_columns};
 use super::law::PyLaw;
 use super::observation::{layout_from, observed};
 use super::value::given;
 use crate::clock::ticks;
 use crate::environment::observation::ObservationLayout;
-use crate::flock::{BOAT_SUBSTEPS_A_PIECE, Change, Pause, Real, Recorder, Recording, Sampling};
+use crate::flock::{Change, Pause, Real, Recorder, Recording, Sampling};
 use crate::parameters::Targets;
 use crate::policies::Pilot;
 use numpy::{Element, PyArray1, PyArrayMethods};
@@ -56,6 +57,9 @@ pub(super) fn record<'py>(
         recorded::<f64>(py, flock, sampling, &plan)
     }
 }
+
+/// Substeps times boats between two reports of progress: about 30 ms.
+const BOAT_SUBSTEPS_A_PIECE: u64 = 200_000;
 
 fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
     if value.hasattr("n_boats")? {
@@ -107,9 +111,9 @@ fn run<T: Real>(
     const REPORTED_EVERY_S: f64 = 10.0;
     let mut reported_s = 0.0;
     loop {
-        let pause = py.detach(|| match &mut pilot {
-            Some(pilot) => pilot.run(recorder, BOAT_SUBSTEPS_A_PIECE),
-            None => recorder.run(BOAT_SUBSTEPS_A_PIECE),
+        let pause = interruptible(py, |keep_going| match &mut pilot {
+            Some(pilot) => pilot.run(recorder, keep_going, BOAT_SUBSTEPS_A_PIECE),
+            None => recorder.run(keep_going, BOAT_SUBSTEPS_A_PIECE),
         })?;
         match (pause, &plan.control) {
             (Pause::End, _) => return Ok(()),

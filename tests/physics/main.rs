@@ -47,4 +47,5 @@ mod symmetry;
 mod tracks;
 mod turning_bias;
 mod water_current;
+mod work_bound;
 mod work_counts;

@@ -6,6 +6,8 @@ use crate::geometry::Velocity;
 
 /// Sweeps after which the solver gives up.
 const MOST_SWEEPS: u64 = 20_000;
+/// The same for contacts times sweeps, for huge flocks.
+const MOST_UPDATES: u64 = 1_000_000_000;
 /// Sweeps between two evaluations of the residual.
 const SWEEPS_BETWEEN_CHECKS: u64 = 10;
 
@@ -20,7 +22,8 @@ pub(super) fn solve(
         .for_each(|impulse| *impulse = impulse.max(0.0));
     problem.velocities(impulses, velocities);
     let mut report = SolveReport::default();
-    while report.iterations < MOST_SWEEPS {
+    let most_sweeps = MOST_SWEEPS.min(MOST_UPDATES / impulses.len().max(1) as u64);
+    while report.iterations < most_sweeps {
         for (k, impulse) in impulses.iter_mut().enumerate() {
             let wanted = *impulse - problem.slack(k, velocities) / problem.diagonal(k);
             let change = wanted.max(0.0) - *impulse;

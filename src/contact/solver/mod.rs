@@ -86,6 +86,16 @@ impl ContactSolver {
         self.pivoting.reset(boats, self.islands.count());
     }
 
+    /// Has the contacts taken on last be given up after a small part of the work: the next ones are easier.
+    pub(crate) fn give_up_early(&mut self) {
+        self.pivoting.room /= 16;
+    }
+
+    /// Whether the contacts taken on last were too much work, so that there is no solution.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.pivoting.room < 0
+    }
+
     /// The islands of the contacts taken on last.
     pub fn islands(&self) -> &Islands {
         &self.islands

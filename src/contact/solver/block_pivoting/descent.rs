@@ -12,12 +12,16 @@ use crate::contact::solver::{EXACT, SolveReport};
 /// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
 const CONTRADICTION: f64 = 1e9;
 
+/// Multiplications per row in each round, besides the factor's.
+const ROUND: i64 = 10;
+
 impl IslandSolver {
     /// Solves the island again: where it is large from the impulses of the last round that push, and where it is
     /// small, or that fails, from no impulses at all.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let rows = &self.rows.rows;
-        let pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
+        let mut pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
+        self.keep_strongest(&mut pushes);
         let is_warm = rows.len() > SWEPT_ROWS && pushes.iter().any(|&impulse| impulse > 0.0);
         if !(is_warm && self.descend_from(pushes, regularization, report)) {
             self.descend_from(vec![0.0; self.rows.rows.len()], regularization, report);
@@ -47,7 +51,7 @@ impl IslandSolver {
         let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
             let largest = held.iter().copied().fold(0.0, f64::max);
-            if !largest.is_finite() || largest > CONTRADICTION {
+            if !largest.is_finite() || largest > CONTRADICTION || self.factor.room < 0 {
                 return false;
             }
             let Some(entering) = self.most_violated(&is_refused) else {
@@ -71,13 +75,32 @@ impl IslandSolver {
         false
     }
 
-    /// Has all contacts enter whose gaps close. Those that would have to pull leave again at once; in a large island
-    /// the others are mostly far apart.
+    /// Of more impulses than can be independent of each other, keeps the strongest.
+    fn keep_strongest(&self, pushes: &mut [f64]) {
+        let most = self.most_active();
+        if pushes.len() <= most || pushes.iter().filter(|&&push| push > 0.0).count() <= most {
+            return;
+        }
+        let mut order: Vec<usize> = (0..pushes.len()).collect();
+        order.sort_by(|&a, &b| pushes[b].total_cmp(&pushes[a]));
+        order[most..].iter().for_each(|&k| pushes[k] = 0.0);
+    }
+
+    /// Has all contacts enter whose gaps close, or the fastest of them, as many as can be independent of each other.
+    /// Those that would have to pull leave again at once; in a large island the others are mostly far apart.
     fn enter_violated(&mut self) {
-        for k in 0..self.rows.rows.len() {
-            if !self.rows.rows[k].is_active && self.rows.rows[k].is_violated() {
-                self.set_active(k, true);
-            }
+        let rows = &self.rows.rows;
+        let active = rows.iter().filter(|row| row.is_active).count();
+        let mut entering: Vec<usize> = (0..rows.len())
+            .filter(|&k| !rows[k].is_active && rows[k].is_violated())
+            .collect();
+        let room = self.most_active().saturating_sub(active).max(1);
+        if entering.len() > room {
+            entering.sort_by(|&a, &b| rows[a].slack.total_cmp(&rows[b].slack));
+            entering.truncate(room);
+        }
+        for k in entering {
+            self.set_active(k, true);
         }
     }
 
@@ -97,6 +120,8 @@ impl IslandSolver {
             report.iterations += 1;
             report.factored_rows += self.solve_active(regularization);
             self.refine(regularization);
+            // Rounds that compute few rows still go through all of them.
+            self.factor.room -= ROUND * self.rows.rows.len() as i64;
             let step = self.feasible_step(held);
             first.get_or_insert(step);
             for (k, held) in held.iter_mut().enumerate() {
@@ -109,7 +134,7 @@ impl IslandSolver {
                     *held = 0.0;
                 }
             }
-            if step == 1.0 {
+            if step == 1.0 || self.factor.room < 0 {
                 return first.unwrap_or(0.0);
             }
         }

@@ -11,6 +11,9 @@ use super::rows::{NONE, Row, Rows, WALLS};
 /// the processor cannot foresee cost more than the arithmetic.
 const GROUP: usize = 2;
 
+/// Rows of fewer entries cost too little to be counted.
+const LONG_ROW: usize = 64;
+
 /// An entry of L.
 #[derive(Debug, Clone, Copy, Default)]
 struct Entry {
@@ -71,6 +74,8 @@ pub(super) struct Factor {
     used: usize,
     /// Whether rows have entered or left since it was brought up to date.
     is_stale: bool,
+    /// About how many multiplications it may still make; negative once it has stopped halfway.
+    pub room: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
     /// A row that is being computed; zero between two rows, and always zero beyond the rows.
@@ -113,6 +118,9 @@ impl Factor {
         for (k, row) in rows.rows.iter().enumerate() {
             if row.is_active {
                 computed += u64::from(self.visit(&rows.rows, k, regularization));
+                if self.room < 0 {
+                    break;
+                }
             } else if self.nodes[k].is_factored {
                 self.release(k);
                 self.nodes[k] = EMPTY;
@@ -205,6 +213,9 @@ impl Factor {
     /// Fills up the entries of a row that has been computed, and clears `work`.
     fn finish(&mut self, k: usize, count: usize) {
         let start = self.used;
+        if count > LONG_ROW {
+            self.charge(start, count);
+        }
         self.used = start + count.max(1).div_ceil(GROUP) * GROUP;
         self.entries[start + count..start + count + GROUP].fill(Entry {
             column: self.nodes.len() as u32,
@@ -217,6 +228,16 @@ impl Factor {
         (node.start, node.end) = (start as u32, self.used as u32);
         node.count = count as u32;
         (node.is_factored, node.is_dirty) = (true, false);
+    }
+
+    /// Takes what a long row cost off the room: each of its entries was a product with another row.
+    #[cold]
+    fn charge(&mut self, start: usize, count: usize) {
+        let entries = &self.entries[start..start + count];
+        let others = entries
+            .iter()
+            .map(|entry| &self.nodes[entry.column as usize]);
+        self.room -= others.map(|node| i64::from(node.count)).sum::<i64>();
     }
 
     /// Puts row k's couplings with the active rows before it to `work`.

@@ -1,7 +1,7 @@
 //! Block principal pivoting on one island.
 
 use super::factor::Factor;
-use super::rows::{Rows, TOLERANCE, residual};
+use super::rows::{Row, Rows, TOLERANCE, residual};
 use crate::contact::ContactProblem;
 use crate::contact::solver::{EXACT, SolveReport};
 use crate::geometry::Velocity;
@@ -74,6 +74,34 @@ impl IslandSolver {
         if std::mem::take(&mut self.is_guess_old) && self.rows.rows.len() > SWEPT_ROWS {
             self.rows.sweep(SWEEPS);
         }
+        if self.are_dependent(regularization, |row| row.is_active) {
+            self.descend(regularization, report);
+        } else {
+            self.pivot(regularization, report);
+        }
+        report.factor_entries += self.factor.len();
+        self.drop_negative();
+        report.residual = self.worst_residual(regularization, report.residual);
+    }
+
+    /// Whether these rows are certain to depend on each other: no set of rows that solves an island needs more of them
+    /// than its boats have ways to move, and each round with more fills the whole factor. A regularized problem shares
+    /// impulses among all of them.
+    fn are_dependent(&self, regularization: f64, is_in: impl Fn(&Row) -> bool) -> bool {
+        let (rows, most) = (&self.rows.rows, self.most_active());
+        rows.len() > most.max(SWEPT_ROWS)
+            && regularization < TOLERANCE
+            && rows.iter().filter(|row| is_in(row)).count() > most
+    }
+
+    /// How many rows can be independent of each other.
+    pub(super) fn most_active(&self) -> usize {
+        3 * (self.rows.bodies.len() - 1)
+    }
+
+    /// Pivots until no sign is wrong, or leaves it to the descent.
+    #[inline]
+    fn pivot(&mut self, regularization: f64, report: &mut SolveReport) {
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         loop {
             report.iterations += 1;
@@ -83,7 +111,7 @@ impl IslandSolver {
                 refinements += 1;
             }
             let violations = self.violations;
-            if violations == 0 {
+            if violations == 0 || self.factor.room < 0 {
                 break;
             }
             if violations < fewest {
@@ -91,14 +119,13 @@ impl IslandSolver {
             } else if patience > 0 {
                 patience -= 1;
             } else {
-                self.descend(regularization, report);
-                break;
+                return self.descend(regularization, report);
+            }
+            if self.are_dependent(regularization, |row| row.is_active != row.is_violated()) {
+                return self.descend(regularization, report);
             }
             self.flip_violated();
         }
-        report.factor_entries += self.factor.len();
-        self.drop_negative();
-        report.residual = self.worst_residual(regularization, report.residual);
     }
 
     /// The contacts, whether they are active, and their impulses.

@@ -1,0 +1,144 @@
+//! The work of a substep is bounded, and a long run can be ended between two substeps.
+//!
+//! On paper: n boats have 3·n ways to move, so that no more than 3·n contacts determine what they do; a set of more is
+//! not worth a factor, whose rows would all be as long as the set. Where boats move by many lengths in a substep, every
+//! pair is in reach, n²/2 of them: the substep is cut until a boat reaches a few.
+
+use crate::support::{bits, driven};
+use flockenv::contact::Statistics;
+use flockenv::geometry::{Pose, Vec2, Velocity};
+use flockenv::integrator::Steering;
+use flockenv::parameters::{Pool, Preset, Scheme};
+use flockenv::{Flock, FlockError, FlockParameters};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+fn crowd(n_boats: usize) -> FlockParameters {
+    FlockParameters {
+        n_boats,
+        ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+/// What so many steps of `dt_s` did.
+fn steps(p: &FlockParameters, count: u32) -> Statistics {
+    let mut flock = Flock::new(p.clone(), 1).expect("room");
+    for _ in 0..count {
+        flock
+            .advance(p.dt_s, None)
+            .expect("contacts that can be solved");
+    }
+    *flock.statistics()
+}
+
+#[test]
+fn boats_far_too_fast_for_their_substep_cost_about_what_others_do() {
+    let fast = FlockParameters {
+        speed_cm_s: 1e5,
+        c1: 6.0,
+        ..crowd(300)
+    };
+    let noisy = FlockParameters {
+        c4: 1000.0,
+        ..crowd(300)
+    };
+    let long = FlockParameters {
+        dt_s: 1.0,
+        speed_cm_s: 100.0,
+        ..crowd(300)
+    };
+    for p in [fast, noisy, long] {
+        let done = steps(&p, 5);
+        // A single round on all contacts that close would compute a thousand rows of a thousand entries and more.
+        assert!(done.factored_rows < 150_000, "{done:?}");
+        assert!(done.most_factor_entries < 10_000, "{done:?}");
+        // At most two contacts for each of 32 pairs a boat, and three with the walls.
+        assert!(done.contacts <= 67 * 300 * done.substeps, "{done:?}");
+        assert!(done.worst_residual_cm_s < 1e-10, "{done:?}");
+        assert_eq!(done.unsolved, 0, "{done:?}");
+    }
+}
+
+#[test]
+fn contacts_that_are_too_much_work_are_an_error_and_change_nothing() {
+    // On one spot, each boat overlaps all others: 45 000 contacts that have to share what pushes them apart.
+    let n = 300;
+    let mut flock = Flock::new(crowd(n), 2).expect("room");
+    flock.advance(0.1, None).expect("finite motion");
+    let pose = |boat: usize| Pose {
+        position: Vec2::new(140.0 + 1e-3 * boat as f64, 0.0),
+        heading: 0.01 * boat as f64,
+    };
+    let poses: Vec<_> = (0..n).map(pose).collect();
+    let at_rest = vec![Velocity::default(); n];
+    flock
+        .set_state(&poses, &at_rest, 0.0, true)
+        .expect("overlaps that are allowed");
+    let before = (bits(&flock), flock.time(), flock.snapshot());
+    let failed = flock.advance(0.02, None);
+    assert!(matches!(failed, Err(FlockError::Solver(_))), "{failed:?}");
+    assert!((bits(&flock), flock.time(), flock.snapshot()) == before);
+    // It is not left over: the next boats have nothing to do with these.
+    let apart = Flock::new(crowd(n), 2).expect("room");
+    flock
+        .set_state(apart.poses(), &at_rest, 0.0, false)
+        .expect("no overlap");
+    flock
+        .advance(0.02, None)
+        .expect("contacts that can be solved");
+}
+
+#[test]
+fn packed_flocks_are_far_from_the_bound() {
+    // A ring of 3 000 boats that leave a tenth of it free, half a minute long without a pause.
+    let p = FlockParameters {
+        pool: Pool {
+            outer_radius_cm: 440.0,
+            inner_radius_cm: 100.0,
+        },
+        bw_s: 0.0,
+        dt_s: 0.1,
+        ..crowd(3000)
+    };
+    let done = steps(&p, 30);
+    assert_eq!(done.unsolved, 0, "{done:?}");
+    assert!(done.substeps >= 30, "{done:?}");
+}
+
+#[test]
+fn a_long_run_can_be_ended_between_substeps_and_nothing_has_changed() {
+    for (p, duration_s) in [(crowd(300), 60.0), (driven(Scheme::Leapfrog), 3600.0)] {
+        let mut flock = Flock::new(p, 3).expect("room");
+        flock.advance(1.0, None).expect("finite motion");
+        let before = (bits(&flock), flock.time(), flock.snapshot());
+        let end = flock.end_of(duration_s).expect("a duration");
+        let asked = AtomicU64::new(0);
+        let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < 2;
+        let ended = flock.advance_while(&keep_going, end, Steering::Law);
+        assert_eq!(ended, Err(FlockError::Interrupted));
+        assert_eq!(asked.into_inner(), 3);
+        assert!((bits(&flock), flock.time(), flock.snapshot()) == before);
+    }
+}
+
+#[test]
+fn costly_substeps_are_asked_about_one_by_one() {
+    let p = FlockParameters {
+        speed_cm_s: 1e5,
+        c1: 6.0,
+        ..crowd(300)
+    };
+    let mut flock = Flock::new(p, 1).expect("room");
+    let asked = AtomicU64::new(0);
+    let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < u64::MAX;
+    let end = flock.end_of(0.1).expect("a duration");
+    flock
+        .advance_while(&keep_going, end, Steering::Law)
+        .expect("contacts that can be solved");
+    let done = flock.statistics();
+    let most = done.contacts + done.factored_rows + 300 * done.substeps;
+    let asked = asked.into_inner();
+    assert!(
+        asked >= 5 && asked >= most / 60_000,
+        "{asked} of {most}, {done:?}"
+    );
+}
