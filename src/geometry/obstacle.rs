@@ -19,8 +19,15 @@ pub enum Obstacle {
         pose: HullPose,
         /// Half its length in cm.
         half_length: f64,
+        /// For its start and its end, in which direction another wall leaves from there, if one does.
+        joints: [Option<Vec2>; 2],
     },
 }
+
+/// Ends of walls nearer than this, in cm, are one point.
+const JOINED: f64 = 1e-6;
+/// Cosine below which a normal is at right angles to a wall but for rounding.
+const UPRIGHT: f64 = 1e-9;
 
 impl From<&Disc> for Obstacle {
     fn from(disc: &Disc) -> Self {
@@ -44,23 +51,50 @@ impl From<&Wall> for Obstacle {
                 axis: (end - start) * (0.5 / half_length),
             },
             half_length,
+            joints: [None; 2],
         }
     }
 }
 
 impl Obstacle {
-    /// The obstacles of checked parameters: discs, then walls.
+    /// The obstacles of checked parameters: discs, then walls, which know where others continue them.
     pub fn all(parameters: &FlockParameters) -> Vec<Self> {
         let discs = parameters.discs.iter().map(Self::from);
         let walls = parameters.walls.iter().map(Self::from);
-        discs.chain(walls).collect()
+        let mut all: Vec<Self> = discs.chain(walls).collect();
+        join(&mut all);
+        all
+    }
+
+    /// Where it ends, and the direction from there into it: at its start, and at its end. A disc has no end.
+    fn ends(&self) -> Option<[(Vec2, Vec2); 2]> {
+        let Self::Wall {
+            pose, half_length, ..
+        } = self
+        else {
+            return None;
+        };
+        Some([-1.0, 1.0].map(|side| (pose.end(side, *half_length), -pose.axis * side)))
+    }
+
+    /// Whether what is pushed along a normal lies beyond an end from which another wall leads nearer to it: there is
+    /// nothing to touch at that end, and what looks ahead along such a normal would brake a boat that slides past.
+    fn leads_on(&self, normal: Vec2) -> bool {
+        let Self::Wall { pose, joints, .. } = self else {
+            return false;
+        };
+        let beyond = normal.dot(&pose.axis);
+        let joint = joints[usize::from(beyond > 0.0)];
+        beyond.abs() > UPRIGHT && joint.is_some_and(|onward| normal.dot(&onward) > UPRIGHT)
     }
 
     /// The point of its core, which a disc has at its center, that is nearest to a place, and its radius about that.
     fn core(&self, place: Vec2) -> (Vec2, f64) {
         match self {
             Self::Disc { center, radius } => (*center, *radius),
-            Self::Wall { pose, half_length } => {
+            Self::Wall {
+                pose, half_length, ..
+            } => {
                 let along = (place - pose.center).dot(&pose.axis);
                 let along = along.clamp(-half_length, *half_length);
                 (pose.center + pose.axis * along, 0.0)
@@ -96,12 +130,16 @@ impl Obstacle {
                     found(Feature::Flank, gap);
                 }
             }
-            Self::Wall { pose, half_length } => pair_gaps(
-                (boat, hull),
-                (pose, wall_hull(*half_length)),
-                margin,
-                |feature, gap| found(feature, beside_wall(feature, gap, hull)),
-            ),
+            Self::Wall {
+                pose, half_length, ..
+            } => {
+                let wall = (pose, wall_hull(*half_length));
+                pair_gaps((boat, hull), wall, margin, |feature, gap| {
+                    if feature == Feature::Crossed || !self.leads_on(gap.normal) {
+                        found(feature, beside_wall(feature, gap, hull));
+                    }
+                });
+            }
         }
     }
 
@@ -115,10 +153,34 @@ impl Obstacle {
                 };
                 inner_wall_gap(&seen, hull, *radius)
             }
-            Self::Wall { pose, half_length } => {
+            Self::Wall {
+                pose, half_length, ..
+            } => {
                 let wall = (pose, wall_hull(*half_length));
                 beside_wall(feature, pair_gap(feature, (boat, hull), wall), hull)
             }
+        }
+    }
+}
+
+/// Tells walls with an end in common of each other; of several, of the one that turns off least.
+fn join(obstacles: &mut [Obstacle]) {
+    let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
+    for (number, obstacle) in obstacles.iter().enumerate() {
+        let each = obstacle.ends().into_iter().flatten().enumerate();
+        ends.extend(each.map(|(side, (place, inward))| (place, inward, number, side)));
+    }
+    ends.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+    for (k, &(place, inward, number, side)) in ends.iter().enumerate() {
+        let near = |other: &&(Vec2, Vec2, usize, usize)| (other.0.x - place.x).abs() <= JOINED;
+        let (before, after) = (ends[..k].iter().rev(), ends[k + 1..].iter());
+        let others = before.take_while(near).chain(after.take_while(near));
+        let others = others.filter(|other| (other.0 - place).norm() <= JOINED && other.2 != number);
+        let onward = others
+            .map(|other| other.1)
+            .min_by(|a, b| a.dot(&inward).total_cmp(&b.dot(&inward)));
+        if let Obstacle::Wall { joints, .. } = &mut obstacles[number] {
+            joints[side] = onward;
         }
     }
 }

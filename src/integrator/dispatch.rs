@@ -3,11 +3,21 @@
 use super::state::Integrator;
 use super::substep::{StepOutcome, Substep};
 use super::{leapfrog, moreau, paper};
+use crate::clock::{TICKS_PER_SECOND, Ticks};
 use crate::parameters::Scheme;
+
+/// Speeds below this, in cm/s or rad/s, count as rest. Drag alone would never end: their squares, and in the end they
+/// themselves, are so small that processors take ten times as long over each.
+const REST: f64 = 1e-150;
+/// How often boats are brought to rest.
+const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
 
 impl Integrator {
     /// Takes one substep with the scheme of the parameters.
     pub(crate) fn step(&mut self, substep: &Substep) -> StepOutcome {
+        if substep.start.next_multiple_of(SECOND) < substep.start + substep.length {
+            self.bring_to_rest();
+        }
         let outcome = match self.parameters.scheme {
             Scheme::Leapfrog => leapfrog::step(self, substep),
             Scheme::Moreau => moreau::step(self, substep),
@@ -18,5 +28,15 @@ impl Integrator {
         }
         self.statistics.substeps += u64::from(outcome == StepOutcome::Taken);
         outcome
+    }
+
+    /// Stops what only creeps. Once a second, at whole seconds, so that it costs nothing and pauses change nothing.
+    #[inline(never)]
+    fn bring_to_rest(&mut self) {
+        for velocity in &mut self.velocities {
+            let stop = |speed: f64| if speed.abs() < REST { 0.0 } else { speed };
+            velocity.linear = velocity.linear.map(stop);
+            velocity.angular = stop(velocity.angular);
+        }
     }
 }
