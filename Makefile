@@ -139,6 +139,10 @@ docs: $(STAMPS)/test $(STAMPS)/docs $(CORE) ## build the pages, warnings are err
 extend: $(STAMPS)/venv
 	$(BIN)/python docs/extend/follow.py $(PAGE)
 
+# It installs cross compilers and emulators of Debian where it may, and says what is missing where not.
+test-processors: ## the tests of the same bits on aarch64 and riscv64, emulated
+	tests/processors.sh
+
 paper: build ## make every figure and question of paper/ that has runs missing, or draw it again
 	OMP_NUM_THREADS=1 $(BIN)/python paper/make.py $(PAPER_ARGS)
 
@@ -153,7 +157,7 @@ audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what thi
 # The notices of the crates that are compiled in; the crate as it would be published, its API against the last release.
 licenses publish-check:
 	.github/release.sh $@
-release-check: audit publish-check docs test-oldest test-wheel extend ## all of a release that can run here, and what is left for the owner
+release-check: audit publish-check test-processors docs test-oldest test-wheel extend ## all of a release that can run here, and what is left for the owner
 	.github/release.sh owner
 
 throughput soak speed-vs-error lint-benches: build $(STAMPS)/test ## measure, and compare with other engines (minutes; benches/Makefile)
