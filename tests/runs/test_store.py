@@ -105,8 +105,8 @@ def test_runs_with_more_or_less_are_read_and_stay(spec: RunSpec, tmp_path: Path,
     assert np.isnan(run.order.nematic).all() == (keep != "poses")
     assert np.isnan(summary(run)["nematic_mean"]) == (keep != "poses")
     assert store.path(spec).read_bytes() == less
-    more = changed(store.path(spec), lambda arrays: arrays.update(order_spin=arrays["time_s"]))
-    with pytest.warns(RecordingWarning, match="order_spin"):
+    more = changed(store.path(spec), lambda arrays: arrays.update(order_unknown=arrays["time_s"]))
+    with pytest.warns(RecordingWarning, match="order_unknown"):
         assert run_missing([spec], store) == {}
     assert store.path(spec).read_bytes() == more
 
