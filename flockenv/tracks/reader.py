@@ -118,12 +118,12 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
         counts = [f"{count} {why}" for why, count in every["why"].value_counts().items()]
         found = f"{', '.join(counts)}" if counts else "there are no rows"
         raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
-    again = rows.duplicated(["id", "frame"], keep="first")
+    again = rows.duplicated(["id", "time"])
     if again.any():
         row = rows[again].iloc[0]
         if layout.id is None and not layout.is_wide:
             raise ParameterError("id is missing: several rows have one time, so boats have names")
-        same = rows[(rows["id"] == row["id"]) & (rows["frame"] == row["frame"])]
+        same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
         raise ParameterError(
             f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
             f", at other places, the second time in {rows.index.name} {row.name}"

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from flockenv import FlockError, FlockParameters, simulate
@@ -130,6 +130,7 @@ def quantities(found):
 
 
 @FUZZ
+@example("absent", "as said", "stamps of each boat", "two in each other", (",", "."), True, 0)
 @given(
     st.sampled_from(sorted(LOST)),
     st.sampled_from(sorted(HEADINGS)),

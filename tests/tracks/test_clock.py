@@ -181,6 +181,14 @@ def test_boats_with_time_stamps_of_their_own_share_frames(seen):
     )
 
 
+def test_two_places_at_one_time_are_refused_on_clocks_of_each_boat(seen):
+    number = seen.table["track"].str.removeprefix("boat").astype(int)
+    table = seen.table.assign(t=seen.table["frame"] / 10 + number * 0.004)
+    other = table.assign(x_px=1600 - table["x_px"])
+    with pytest.raises(flockenv.ParameterError, match="is there 2 times"):
+        read_tracks(pd.concat([table, other]).sort_index(kind="stable"), TIMED)
+
+
 def test_boats_seen_in_turn_share_frames():
     frame = np.arange(400)
     table = pd.DataFrame(
