@@ -219,11 +219,14 @@ class NetworkPolicy(RowPolicy):
             places = range(len(arrays) // 2)
             layers = [f"{kind}_{place}" for place in places for kind in ("weight", "bias")]
             refuse_unknown(arrays, layers, "array of a network")
+            # An option that is younger than the file has its default.
+            options = {name: header[name] for name in _OPTIONS if name in header}
             return cls(
                 [arrays[f"weight_{place}"] for place in places],
                 [arrays[f"bias_{place}"] for place in places],
+                header["activation"],
                 provenance=header["made"],
-                **{name: header[name] for name in (*_OPTIONS, "activation")},
+                **options,
             )
         except KeyError as error:
             raise ParameterError(f"{path} is no whole policy: it has no {error}") from error

@@ -183,6 +183,21 @@ def test_files_that_are_no_policy_are_named(tmp_path, entries, message):
     assert str(raised.value).startswith(str(path))
 
 
+def test_an_option_that_a_file_lacks_has_its_default(tmp_path):
+    policy = network()
+    policy.save(tmp_path / "policy.npz")
+    arrays = read_arrays(tmp_path / "policy.npz")
+    whole = json.loads(str(arrays["header"]))
+    for name, reads in (("decision_period_s", True), ("activation", False), ("made", False)):
+        header = {each: value for each, value in whole.items() if each != name}
+        write_arrays(tmp_path / "less.npz", {**arrays, "header": np.array(json.dumps(header))})
+        if reads:
+            assert load(tmp_path / "less.npz").digest == policy.digest
+        else:
+            with pytest.raises(flockenv.ParameterError, match=f"it has no '{name}'"):
+                load(tmp_path / "less.npz")
+
+
 def test_damaged_and_foreign_files(tmp_path):
     (tmp_path / "damaged.npz").write_bytes(b"PK" + bytes(1000))
     with pytest.raises(flockenv.ParameterError, match=r"damaged\.npz"):
