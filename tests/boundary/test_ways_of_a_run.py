@@ -207,9 +207,11 @@ def test_a_mirrored_policy_follows_a_target_that_changes():
     law = flockenv.policies.SteeringLaw
     change = [(1.0, {"target": "ccw"})]
     plain = simulate(PARAMETERS, 3, 3.0, policy=law(), schedule=change)
-    mirrored = simulate(PARAMETERS, 3, 3.0, policy=law(mirror_to_target=True), schedule=change)
     assert np.abs(plain.rudder).max() > 0.5
-    assert mirrored.rudder == pytest.approx(plain.rudder, abs=1e-4)
+    alone = law(mirror_to_target=True)
+    for policy in (alone, {"leader_0": alone, "leader_1": alone}):
+        mirrored = simulate(PARAMETERS, 3, 3.0, policy=policy, schedule=change)
+        assert mirrored.rudder == pytest.approx(plain.rudder, abs=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import json
 import os
 import pickle
 import zipfile
+from types import SimpleNamespace
 
 import gymnasium
 import numpy as np
@@ -213,3 +214,16 @@ def test_files_of_models_in_vec_normalize_are_refused(tmp_path):
     plain = PPO("MlpPolicy", rows_env(), n_steps=8, batch_size=8, device="cpu")
     plain.learn(32).save(tmp_path / "plain.zip")
     assert flockenv.policies.load(tmp_path / "plain.zip", trust=True).leaders == 1
+
+
+def test_what_a_model_says_beyond_the_rudders_range_is_clipped():
+    """Models of stable-baselines3 clip by themselves, others that have their spaces may not."""
+    env = flockenv.parallel_env(n_boats=8, n_leaders=2)
+    model = SimpleNamespace(
+        observation_space=env.observation_space("leader_0"),
+        action_space=env.action_space("leader_0"),
+        predict=lambda rows, *_: (np.array([[3.0], [-7.5]])[: len(rows)], None),
+    )
+    observations, _ = env.reset(seed=1)
+    rudders, _ = ModelPolicy(model).predict(np.concatenate([*observations.values()]))
+    assert rudders.tolist() == [1.0, -1.0]
