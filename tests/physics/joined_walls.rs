@@ -153,7 +153,7 @@ fn joined_ends_hold_boats_from_everywhere() {
                 ..driven(Scheme::Leapfrog)
             };
             let x = -35.0 + 1.3 * f64::from(k);
-            let mut flock = flock_of(&p, &[([x, 40.0, -1.5707], [0.0; 3])]);
+            let mut flock = flock_of(&p, &[([x, 40.0, -1.55], [0.0; 3])]);
             for _ in 0..60 {
                 flock.advance(0.1, None).expect("finite motion");
                 let at = flock.poses()[0].position;
