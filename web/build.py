@@ -22,7 +22,7 @@ MOST_BYTES = 500_000
 _TARGET = "wasm32-unknown-unknown"
 _THREAD = ("core.mjs", "worker.mjs")
 # In the order in which one needs another.
-_SHARED = ("words.mjs", "run.mjs", "forces.mjs", "scene.mjs", "chart.mjs", "panel.mjs")
+_SHARED = ("words", "run", "forces", "scene", "chart", "panel")
 _OWN = (
     "core.mjs",
     "npz.mjs",
@@ -48,8 +48,8 @@ def wasm() -> bytes:
 
 def page(compiled: bytes) -> str:
     """Return the page around a compiled simulator."""
-    own = [(WEB / name).read_text("utf-8") for name in _OWN]
-    script = joined([*((REPLAY / name).read_text("utf-8") for name in _SHARED), *own])
+    shared = [(REPLAY / "shared" / f"{name}.mjs").read_text("utf-8") for name in _SHARED]
+    script = joined([*shared, *((WEB / name).read_text("utf-8") for name in _OWN)])
     thread = joined([(WEB / name).read_text("utf-8") for name in _THREAD])
     style = (REPLAY / "replay.css").read_text("utf-8") + (WEB / "live.css").read_text("utf-8")
     about = {"version": flockenv.__version__, "format": FORMAT, "opening": None}

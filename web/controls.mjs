@@ -1,6 +1,6 @@
 // Sliders and choices, one for each parameter that the page lets a visitor change.
 
-import { element, plain } from "../flockenv/replay/words.mjs";
+import { element, plain } from "../flockenv/replay/shared/words.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
 /** Parameter, words, least, most, step; those that everybody needs, and more. */

@@ -1,6 +1,6 @@
 // A run that grows while it is shown, and forgets its oldest samples: memory stays what it is.
 
-import { Run } from "../flockenv/replay/run.mjs";
+import { Run } from "../flockenv/replay/shared/run.mjs";
 import { CONTACT } from "./core.mjs";
 
 /** How many leaders a flock of the page has at most. */

@@ -1,6 +1,6 @@
 // Five short lessons: a link each, and two sentences with the links that belong to them.
 
-import { element } from "../flockenv/replay/words.mjs";
+import { element } from "../flockenv/replay/shared/words.mjs";
 
 const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=16&speed=16";
 const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=2&speed=16";

@@ -1,9 +1,9 @@
 // The page: flocks that the simulator moves, their pictures and series, and everything that a visitor may do.
 
-import { Chart, legendOf } from "../flockenv/replay/chart.mjs";
-import { Panel, parameterTable, runSwitch } from "../flockenv/replay/panel.mjs";
-import { colors } from "../flockenv/replay/scene.mjs";
-import { element, fixed } from "../flockenv/replay/words.mjs";
+import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
+import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
+import { colors } from "../flockenv/replay/shared/scene.mjs";
+import { element, fixed } from "../flockenv/replay/shared/words.mjs";
 import { Controls, LEADERS, opposedTargets, policiesOf } from "./controls.mjs";
 import { byKind } from "./core.mjs";
 import { GrowingRun } from "./growing_run.mjs";

@@ -1,7 +1,7 @@
 // Order against noise: where the flock is, and what it has shown so far.
 
-import { fitted } from "../flockenv/replay/scene.mjs";
-import { plain } from "../flockenv/replay/words.mjs";
+import { fitted } from "../flockenv/replay/shared/scene.mjs";
+import { plain } from "../flockenv/replay/shared/words.mjs";
 
 const EDGE_OF_MAP = { left: 30, right: 8, top: 6, bottom: 30 };
 /** The longest backward phase on the map, in s, and how many cells it and order are divided into. */

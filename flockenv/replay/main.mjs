@@ -2,7 +2,7 @@
 
 import { unpack } from "./packing.mjs";
 import { Player } from "./player.mjs";
-import { Run } from "./run.mjs";
+import { Run } from "./shared/run.mjs";
 
 async function start() {
   const { runs: described, quantities, moment } = JSON.parse(document.getElementById("data").textContent);

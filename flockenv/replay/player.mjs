@@ -1,12 +1,12 @@
 // The clock of the page: playing, scrubbing, keys, the link, and what is shown.
 
-import { Chart, legendOf } from "./chart.mjs";
-import { forceScale } from "./forces.mjs";
+import { Chart, legendOf } from "./shared/chart.mjs";
+import { forceScale } from "./shared/forces.mjs";
 import { linkTo, readLink } from "./link.mjs";
-import { Panel, parameterTable, runSwitch } from "./panel.mjs";
-import { span } from "./run.mjs";
-import { colors } from "./scene.mjs";
-import { caption, fixed } from "./words.mjs";
+import { Panel, parameterTable, runSwitch } from "./shared/panel.mjs";
+import { span } from "./shared/run.mjs";
+import { colors } from "./shared/scene.mjs";
+import { caption, fixed } from "./shared/words.mjs";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const FIRST_SPEED = 8;

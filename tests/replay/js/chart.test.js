@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ticks, timeStep } from "../../../flockenv/replay/chart.mjs";
+import { ticks, timeStep } from "../../../flockenv/replay/shared/chart.mjs";
 
 test("round numbers between two", () => {
   assert.deepEqual(ticks(-1, 1, 4), [-1, -0.5, 0, 0.5, 1]);

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { barOf, drawForces, forceScale, LONGEST } from "../../../flockenv/replay/forces.mjs";
+import { barOf, drawForces, forceScale, LONGEST } from "../../../flockenv/replay/shared/forces.mjs";
 import { runOf } from "./runs.js";
 
 test("twice the force is twice the bar", () => {

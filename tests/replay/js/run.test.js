@@ -2,8 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { boatNumbers } from "../../../flockenv/replay/panel.mjs";
-import { Run, span } from "../../../flockenv/replay/run.mjs";
+import { boatNumbers } from "../../../flockenv/replay/shared/panel.mjs";
+import { Run, span } from "../../../flockenv/replay/shared/run.mjs";
 import { column, runOf } from "./runs.js";
 
 test("the last sample at or before a time", () => {

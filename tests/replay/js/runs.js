@@ -1,7 +1,7 @@
 // Runs that are small enough to be checked on paper.
 
 import { Column } from "../../../flockenv/replay/packing.mjs";
-import { Run } from "../../../flockenv/replay/run.mjs";
+import { Run } from "../../../flockenv/replay/shared/run.mjs";
 
 /** A series from whole numbers of quanta, channel after channel. */
 export function column(values, quantum = 1, channels = 1) {

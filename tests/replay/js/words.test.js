@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { caption, clockText, fixed, plain, roundNumber, wrapped } from "../../../flockenv/replay/words.mjs";
+import { caption, clockText, fixed, plain, roundNumber, wrapped } from "../../../flockenv/replay/shared/words.mjs";
 
 test("numbers with a fixed number of decimals", () => {
   assert.equal(fixed(1.25, 1), "1.3");
