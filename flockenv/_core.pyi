@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "ACTION_MODES",
     "COLLECTIVE_STATES",
+    "COLORINGS",
     "FLOCK_FEATURES",
     "JAM_ANGLE",
     "LARGEST_LEAN",
@@ -66,6 +67,8 @@ USES_AVX2: bool
 ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]
+COLORINGS: list[str]
+STYLE_SHEET: str
 LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]
@@ -183,7 +186,9 @@ class EnvBatch:
 @final
 class FrameRenderer:
     def __new__(cls, width: int, height: int) -> Self: ...
-    def draw(self, flock: Flock) -> NDArray[np.uint8]: ...
+    def draw(
+        self, flock: Flock, colors: str = "direction", caption: str = ""
+    ) -> NDArray[np.uint8]: ...
 
 @final
 class Flock:

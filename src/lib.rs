@@ -53,7 +53,6 @@ pub mod boat;
 mod by_name;
 pub mod clock;
 pub mod contact;
-#[cfg(feature = "draw")]
 pub mod draw;
 pub mod environment;
 pub mod error;

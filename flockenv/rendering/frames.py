@@ -17,19 +17,26 @@ DEFAULT_SIZE = (600, 600)
 
 @singledispatch
 def frame(
-    flock: Any, width: int = DEFAULT_SIZE[0], height: int = DEFAULT_SIZE[1]
+    flock: Any,
+    width: int = DEFAULT_SIZE[0],
+    height: int = DEFAULT_SIZE[1],
+    *,
+    colors: str = "direction",
+    caption: str = "",
 ) -> NDArray[np.uint8]:
     """Return a picture of a flock in its present state, or of a recording at a time.
 
     ``frame(flock)`` shows a flock, ``frame(recording, time_s)`` the last sample of a recording up
     to a time in s. Both take a width and a height.
 
-    It shows the pool (in open water the part where the boats are), the boats with a mark towards
-    the bow, leaders in amber, and in the corners the time and phase, the target and bw, Ψ_o and the
-    signed order towards the target; without leaders there is no target, and Ψ_o·sin φ_o (positive
-    clockwise) stands in its place, as it does where leaders have opposite targets. Then those with
-    a counter-clockwise one are purple. Several threads may draw at a time. A ParameterError refuses
-    a size out of range, and a time outside the recording.
+    It shows the pool (in open water the part where the boats are) and the boats with a mark towards
+    the bow. Boats that head clockwise are blue, counter-clockwise ones orange, and those that head
+    along the radius (outward in a jam) gray; leaders have an amber ring. If leaders have opposite
+    targets, those with a counter-clockwise one have a plum ring. The corners show the time and
+    phase, the target and bw, Ψ_o and the order towards the target. Without a common target the
+    rotation Ψ_o·sin φ_o, positive clockwise, stands in its place. Several threads may draw at a
+    time. A ParameterError refuses a size out of range, other colors, and a time outside the
+    recording.
 
     Parameters
     ----------
@@ -37,6 +44,11 @@ def frame(
         A `Flock`, or a `Recording` with the time after it; the same flock gives the same bytes.
     width, height
         Size in pixels, 64 to 4096 each.
+    colors
+        What color shows: "direction", or "role": leaders amber (or plum), other boats blue. In
+        open water, where boats circle around nothing, it is always the role.
+    caption
+        What stands above the time, cut to fit its corner.
 
     Returns
     -------
@@ -45,7 +57,7 @@ def frame(
     """
     if not isinstance(flock, Flock):
         raise TypeError(f"a frame is of a Flock or a Recording, not of {shown(flock)}")
-    return renderer(width, height).draw(flock.core)
+    return renderer(width, height).draw(flock.core, colors, caption)
 
 
 @frame.register
@@ -54,8 +66,11 @@ def _frame_of_recording(
     time_s: float,
     width: int = DEFAULT_SIZE[0],
     height: int = DEFAULT_SIZE[1],
+    *,
+    colors: str = "direction",
+    caption: str = "",
 ) -> NDArray[np.uint8]:
-    return renderer(width, height).draw(recording.flock_at(time_s).core)
+    return renderer(width, height).draw(recording.flock_at(time_s).core, colors, caption)
 
 
 @lru_cache(maxsize=4)

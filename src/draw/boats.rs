@@ -1,6 +1,6 @@
 //! The boats: hulls (segments swept by a disc) with a mark towards the bow.
 
-use super::palette::{INK, LEADER, LEADER_MARK, NORMAL, NORMAL_MARK, OPPONENT, Rgb};
+use super::palette::{Coloring, LEADER, LEADER_MARK, MARK, NORMAL, OPPONENT, OUTLINE, Rgb, tint};
 use super::view::View;
 use crate::flock::Flock;
 use crate::geometry::{Hull, HullPose, turned_left};
@@ -8,32 +8,55 @@ use crate::parameters::{Target, Targets};
 use tiny_skia::{PathBuilder, Pixmap};
 
 /// Width of outlines as a share of the hull's radius, and the least in pixels.
-const OUTLINE: (f32, f32) = (0.14, 1.0);
+const EDGE: (f32, f32) = (0.14, 1.0);
+/// Width of a leader's ring, likewise.
+const RING: (f32, f32) = (0.34, 1.8);
 /// The least radius that is drawn, in pixels: boats of a huge pool stay visible.
 const LEAST_RADIUS: f32 = 1.0;
 /// The radius from which on marks are legible, in pixels.
 const LEAST_MARKED: f32 = 2.5;
 
+/// The colors of a boat: a ring, if it has one, its body and its mark.
+struct Colors {
+    ring: Option<Rgb>,
+    body: Rgb,
+    mark: Rgb,
+}
+
 /// Draws all boats, leaders on top.
-pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View) {
+pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View, coloring: Coloring) {
     let hull = Hull::new(flock.parameters());
-    let (leaders, normal) = flock.hulls().split_at(flock.parameters().n_leaders);
-    let mut draw = |boat: &HullPose, body: Rgb, mark: Rgb| {
-        if view.shows(boat.center, hull.reach()) {
-            draw_boat(canvas, view, hull, boat, [body, mark]);
-        }
-    };
-    for boat in normal {
-        draw(boat, NORMAL, NORMAL_MARK);
-    }
     let target = &flock.parameters().target;
-    for (leader, boat) in leaders.iter().enumerate() {
-        draw(boat, body_of(target, leader), LEADER_MARK);
+    // In open water there is no center to circle around.
+    let is_tinted = coloring == Coloring::Direction && flock.parameters().pool.has_walls();
+    // Leaders come first, and are drawn last.
+    for (boat, (hull_pose, pose)) in flock.hulls().iter().zip(flock.poses()).enumerate().rev() {
+        let role = (boat < flock.parameters().n_leaders).then(|| color_of(target, boat));
+        let colors = match (is_tinted, role) {
+            (true, ring) => Colors {
+                ring,
+                body: tint(pose),
+                mark: MARK,
+            },
+            (false, Some(body)) => Colors {
+                ring: None,
+                body,
+                mark: if body == LEADER { LEADER_MARK } else { MARK },
+            },
+            (false, None) => Colors {
+                ring: None,
+                body: NORMAL,
+                mark: MARK,
+            },
+        };
+        if view.shows(hull_pose.center, hull.reach()) {
+            draw_boat(canvas, view, hull, hull_pose, &colors);
+        }
     }
 }
 
-/// The color of a leader's hull: one for all, unless they head against each other.
-fn body_of(targets: &Targets, leader: usize) -> Rgb {
+/// The color of a leader: one for all, unless they head against each other.
+fn color_of(targets: &Targets, leader: usize) -> Rgb {
     if targets.are_opposed() && targets.of(leader) == Target::CounterClockwise {
         OPPONENT
     } else {
@@ -41,19 +64,25 @@ fn body_of(targets: &Targets, leader: usize) -> Rgb {
     }
 }
 
-/// A hull as a thick line with round ends, in the colors of its body and its mark.
-fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colors: [Rgb; 2]) {
+/// A hull as thick lines with round ends, one within the other: outline, ring, body; and its mark.
+fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colors: &Colors) {
     let radius = view.length(hull.radius).max(LEAST_RADIUS);
-    let outline = (OUTLINE.0 * radius).max(OUTLINE.1).min(0.3 * radius);
-    let inner = radius - outline;
+    let outline = (EDGE.0 * radius).max(EDGE.1).min(0.3 * radius);
+    let ring = (RING.0 * radius).max(RING.1).min(radius - outline);
     let ends = [-1.0, 1.0].map(|side| view.pixel(boat.end(side, hull.half_length)));
-    for (half_width, color) in [(radius, INK), (inner, colors[0])] {
-        color.line(canvas, ends, 2.0 * half_width);
+    let mut inner = radius - outline;
+    OUTLINE.line(canvas, ends, 2.0 * radius);
+    if let Some(color) = colors.ring {
+        color.line(canvas, ends, 2.0 * inner);
+        inner -= ring;
+    }
+    if inner > 0.0 {
+        colors.body.line(canvas, ends, 2.0 * inner);
     }
     if radius >= LEAST_MARKED {
         let share = f64::from(inner / radius);
         let (along, across) = (hull.half_length + share * hull.radius, share * hull.radius);
-        colors[1].fill(canvas, mark(view, boat, along, across));
+        colors.mark.fill(canvas, mark(view, boat, along, across));
     }
 }
 

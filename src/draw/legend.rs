@@ -1,7 +1,7 @@
 //! The legend in the frame's four corners, which a round pool leaves free.
 
+use super::frame::{Look, target_of};
 use super::palette::{FAINT, INK, LEADER, OPPONENT, Rgb};
-use super::target_of;
 use super::text::Typeface;
 use crate::flock::Flock;
 use crate::parameters::Target;
@@ -40,7 +40,13 @@ impl Legend {
     }
 
     /// Writes it, for a frame with or without a grid.
-    pub(super) fn draw(&self, canvas: &mut Pixmap, flock: &Flock, grid_cm: Option<f64>) {
+    pub(super) fn draw(
+        &self,
+        canvas: &mut Pixmap,
+        flock: &Flock,
+        grid_cm: Option<f64>,
+        look: Look<'_>,
+    ) {
         let Some(typeface) = &self.typeface else {
             return;
         };
@@ -53,10 +59,17 @@ impl Legend {
         let mut left = |text: &str, baseline: f32, ink: Rgb| {
             typeface.write(canvas, text, edge, baseline, ink);
         };
-        left(&format!("{:.1} s", flock.time_s()), top(0), INK);
-        left(flock.phase().phase.name(), top(1), INK);
+        let mut lines = vec![];
+        if !look.caption.is_empty() {
+            lines.push((cut(typeface, look.caption, CORNER.0 * size), INK));
+        }
+        lines.push((format!("{:.1} s", flock.time_s()), INK));
+        lines.push((flock.phase().phase.name().to_owned(), INK));
         if let Some(spacing_cm) = grid_cm {
-            left(&format!("grid {spacing_cm} cm"), top(2), FAINT);
+            lines.push((format!("grid {spacing_cm} cm"), FAINT));
+        }
+        for (line, (text, ink)) in (0..).zip(lines) {
+            left(&text, top(line), ink);
         }
         let psi_o = order.map(|order| format!("{:.2}", order.psi_o));
         left(&labeled("order Ψₒ", psi_o), bottom, INK);
@@ -72,8 +85,8 @@ impl Legend {
             right(&text, top(line), color);
         }
         let (words, towards) = match target_of(flock) {
-            Some(target) => ("towards target", target),
-            None => ("clockwise", Target::Clockwise),
+            Some(target) => ("order towards target", target),
+            None => ("rotation", Target::Clockwise),
         };
         let signed = order.map(|order| signed_text(order.signed_order(towards)));
         right(&labeled(words, signed), bottom, None);
@@ -107,6 +120,17 @@ fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
         }
     };
     vec![(target.to_owned(), None), backward, (several, Some(LEADER))]
+}
+
+/// A text that is so many pixels wide at most.
+fn cut(typeface: &Typeface, text: &str, width: f32) -> String {
+    let mut shown = text.to_owned();
+    while typeface.width(&shown) > width {
+        shown.truncate(shown.trim_end_matches('…').len());
+        shown.pop();
+        shown.push('…');
+    }
+    shown
 }
 
 fn labeled(words: &str, number: Option<String>) -> String {

@@ -1,125 +1,21 @@
-//! Pictures of a flock, drawn without a display: pool, hulls with a direction mark, leaders in their own
-//! color and a legend. A frame depends on the flock and the frame's size alone.
+//! Pictures of a flock, drawn without a display, and the colors that pages take from the same palette.
 
+pub mod palette;
+
+#[cfg(feature = "draw")]
 mod boats;
+#[cfg(feature = "draw")]
+mod frame;
+#[cfg(feature = "draw")]
 mod legend;
-mod palette;
+#[cfg(feature = "draw")]
+mod paint;
+#[cfg(feature = "draw")]
 mod text;
+#[cfg(feature = "draw")]
 mod view;
+#[cfg(feature = "draw")]
 mod water;
 
-use crate::error::{FlockError, Result};
-use crate::flock::Flock;
-use crate::parameters::{FlockParameters, Target};
-use legend::Legend;
-use tiny_skia::Pixmap;
-use view::View;
-
-/// Draws frames of one size; what lies under the boats is drawn once and kept.
-#[derive(Debug, Clone)]
-pub struct FrameRenderer {
-    canvas: Pixmap,
-    legend: Legend,
-    background: Option<Background>,
-}
-
-/// Water, walls and obstacles of a pool, as they look with a target.
-#[derive(Debug, Clone)]
-struct Background {
-    parameters: FlockParameters,
-    target: Option<Target>,
-    image: Pixmap,
-}
-
-/// Where all leaders head; `None` without leaders and where they head against each other.
-fn target_of(flock: &Flock) -> Option<Target> {
-    let parameters = flock.parameters();
-    (parameters.n_leaders > 0 && !parameters.target.are_opposed())
-        .then(|| parameters.target.reference())
-}
-
-impl FrameRenderer {
-    /// The shortest side of a frame, in pixels.
-    pub const SHORTEST: u32 = 64;
-    /// The longest side of a frame, in pixels.
-    pub const LONGEST: u32 = 4096;
-
-    /// For frames of this size in pixels.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] for a side outside [`Self::SHORTEST`] to [`Self::LONGEST`].
-    pub fn new(width: u32, height: u32) -> Result<Self> {
-        for (field, side) in [("width", width), ("height", height)] {
-            let accepted = format!("{} to {} pixels", Self::SHORTEST, Self::LONGEST);
-            let is_accepted = (Self::SHORTEST..=Self::LONGEST).contains(&side);
-            FlockError::unless(is_accepted, field, side, accepted)?;
-        }
-        let canvas = Pixmap::new(width, height)
-            .ok_or_else(|| FlockError::parameter("width", width, "a size that fits memory"))?;
-        Ok(Self {
-            legend: Legend::new(width, height),
-            canvas,
-            background: None,
-        })
-    }
-
-    /// Width of a frame in pixels.
-    pub fn width(&self) -> u32 {
-        self.canvas.width()
-    }
-
-    /// Height of a frame in pixels.
-    pub fn height(&self) -> u32 {
-        self.canvas.height()
-    }
-
-    /// A flock as it is now: red, green and blue of each pixel, row by row from the top left.
-    pub fn draw(&mut self, flock: &Flock) -> Vec<u8> {
-        self.draw_canvas(flock);
-        let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);
-        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
-        for pixel in self.canvas.data().chunks_exact(4) {
-            frame.extend_from_slice(&pixel[..3]);
-        }
-        frame
-    }
-
-    /// A flock as it is now, as a PNG file.
-    ///
-    /// # Errors
-    /// [`FlockError::Parameter`] if the picture cannot be encoded.
-    pub fn png(&mut self, flock: &Flock) -> Result<Vec<u8>> {
-        self.draw_canvas(flock);
-        let refused = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
-        self.canvas.encode_png().map_err(refused)
-    }
-
-    fn draw_canvas(&mut self, flock: &Flock) {
-        let view = View::of(flock, self.width(), self.height());
-        self.draw_background(flock, &view);
-        boats::draw(&mut self.canvas, flock, &view);
-        let open = !flock.parameters().pool.has_outer_wall();
-        let grid_cm = open.then(|| water::grid_spacing(&view));
-        self.legend.draw(&mut self.canvas, flock, grid_cm);
-    }
-
-    fn draw_background(&mut self, flock: &Flock, view: &View) {
-        let (parameters, target) = (flock.parameters(), target_of(flock));
-        if !parameters.pool.has_outer_wall() {
-            water::draw(&mut self.canvas, parameters, target, view);
-            return;
-        }
-        let same =
-            |each: &Background| each.target == target && each.parameters.has_same_water(parameters);
-        if let Some(kept) = self.background.as_ref().filter(|kept| same(kept)) {
-            self.canvas.data_mut().copy_from_slice(kept.image.data());
-            return;
-        }
-        water::draw(&mut self.canvas, parameters, target, view);
-        self.background = Some(Background {
-            parameters: parameters.clone(),
-            target,
-            image: self.canvas.clone(),
-        });
-    }
-}
+#[cfg(feature = "draw")]
+pub use frame::{FrameRenderer, Look};

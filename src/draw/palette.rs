@@ -1,96 +1,230 @@
-//! Colors of a frame: Okabe and Ito's set, which color-blind eyes distinguish too, on pale water.
+//! The colors of frames and pages, declared once: Okabe and Ito's set, which color-blind eyes distinguish too, on
+//! pale water, and their counterparts on dark ground, which pages alone have.
 
-use tiny_skia::{
-    Color, FillRule, LineCap, Paint, PathBuilder, Pixmap, Point, Rect, Stroke, Transform,
-};
+use crate::geometry::{Pose, lap_frame};
+use crate::parameters::named_choice;
 
 /// An opaque color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Rgb(pub u8, pub u8, pub u8);
-
-/// What surrounds the pool, and the obstacle in its middle.
-pub(super) const GROUND: Rgb = Rgb(0xF7, 0xF5, 0xF0);
-/// The walls.
-pub(super) const WALL: Rgb = Rgb(0x7C, 0x86, 0x90);
-/// The water.
-pub(super) const WATER: Rgb = Rgb(0xDC, 0xEA, 0xF3);
-/// Grid lines of open water.
-pub(super) const GRID: Rgb = Rgb(0xC6, 0xD8, 0xE4);
-/// Text, and the outlines of hulls.
-pub(super) const INK: Rgb = Rgb(0x1F, 0x2A, 0x36);
-/// Text that stands back.
-pub(super) const FAINT: Rgb = Rgb(0x8A, 0x93, 0x9C);
-/// Normal boats.
-pub(super) const NORMAL: Rgb = Rgb(0x00, 0x72, 0xB2);
-/// Direction marks of normal boats.
-pub(super) const NORMAL_MARK: Rgb = Rgb(0xFF, 0xFF, 0xFF);
-/// Leaders.
-pub(super) const LEADER: Rgb = Rgb(0xF0, 0xA2, 0x02);
-/// Leaders with a counter-clockwise target, where others have a clockwise one.
-pub(super) const OPPONENT: Rgb = Rgb(0xCC, 0x79, 0xA7);
-/// Direction marks of leaders.
-pub(super) const LEADER_MARK: Rgb = INK;
-/// The arrow that shows the target.
-pub(super) const TARGET: Rgb = Rgb(0xC3, 0xC9, 0xCE);
+pub struct Rgb(pub u8, pub u8, pub u8);
 
 impl Rgb {
-    /// As tiny-skia's color.
-    pub(super) fn color(self) -> Color {
-        Color::from_rgba8(self.0, self.1, self.2, 0xFF)
+    const fn hex(code: u32) -> Self {
+        Self((code >> 16) as u8, (code >> 8) as u8, code as u8)
+    }
+}
+
+/// A color on light ground, and on dark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Swatch {
+    /// Its name in pages.
+    pub name: &'static str,
+    /// On light ground, and in frames.
+    pub light: Rgb,
+    /// On dark ground.
+    pub dark: Rgb,
+}
+
+macro_rules! declare_palette {
+    ($($(#[doc = $doc:literal])+ $constant:ident = $name:literal $light:literal $dark:literal,)+) => {
+        $($(#[doc = $doc])+ pub const $constant: Rgb = Rgb::hex($light);)+
+
+        /// Every color.
+        pub const PALETTE: &[Swatch] = &[
+            $(Swatch { name: $name, light: Rgb::hex($light), dark: Rgb::hex($dark) },)+
+        ];
+    };
+}
+
+declare_palette! {
+    /// What surrounds the pool, and the obstacle in its middle.
+    GROUND = "ground" 0xF7F5F0 0x14191F,
+    /// The walls.
+    WALL = "wall" 0x7C8690 0x6B7680,
+    /// The water.
+    WATER = "water" 0xDCEAF3 0x213544,
+    /// Grid lines of open water.
+    GRID = "grid" 0xC6D8E4 0x34495A,
+    /// Text.
+    INK = "ink" 0x1F2A36 0xE8EDF2,
+    /// Text that stands back.
+    FAINT = "faint" 0x667079 0x99A5AF,
+    /// The arrow that shows the target.
+    TARGET = "target" 0xC3C9CE 0x3A4651,
+    /// Boats that head clockwise.
+    CLOCKWISE = "clockwise" 0x0072B2 0x3D9BD6,
+    /// Boats that head counter-clockwise.
+    COUNTER_CLOCKWISE = "counter-clockwise" 0xD55E00 0xE8742A,
+    /// Boats that head along the radius: outward as in a jam, or inward.
+    RADIAL = "radial" 0x9AA4AE 0x8B98A5,
+    /// Normal boats whose color shows their role.
+    NORMAL = "normal" 0x0072B2 0x3D9BD6,
+    /// Direction marks of boats.
+    MARK = "mark" 0xFFFFFF 0xFFFFFF,
+    /// Leaders: their ring, or their hull where color shows the role.
+    LEADER = "leader" 0xF0A202 0xF0A202,
+    /// Leaders with a counter-clockwise target, where others have a clockwise one.
+    OPPONENT = "opponent" 0x5B1A63 0x5B1A63,
+    /// Direction marks of leaders in amber.
+    LEADER_MARK = "leader-mark" 0x1F2A36 0x14191F,
+    /// Outlines of hulls.
+    OUTLINE = "outline" 0x1F2A36 0x0C1116,
+    /// Bars of contact forces.
+    FORCE = "force" 0xC2185B 0xFF5C9A,
+    /// The ring around the boat that is chosen.
+    PIN = "pin" 0x1F2A36 0xFFFFFF,
+    /// The first run's lines.
+    RUN_1 = "run-1" 0x5E2CA5 0xD0B3FF,
+    /// The second run's lines.
+    RUN_2 = "run-2" 0x2E7D32 0x7BD88F,
+    /// Rails of gauges, and borders.
+    TRACK = "track" 0xDDDCD6 0x2C353E,
+    /// Faces of buttons and cards.
+    FACE = "face" 0xFFFFFF 0x1D242C,
+}
+
+named_choice! {
+    /// What the color of a boat shows.
+    pub enum Coloring ("colors") {
+        /// The direction in which it circles: clockwise, counter-clockwise, or neither. Leaders are ringed.
+        Direction = "direction",
+        /// Whether it leads.
+        Role = "role",
+    }
+}
+
+/// The least |sin φ| of a boat that circles: 30° off the radius.
+pub const CIRCLES_FROM: f64 = 0.5;
+
+/// The color of the direction that a boat heads in.
+pub fn tint(pose: &Pose) -> Rgb {
+    let along = libm::sin(lap_frame::orientation(pose));
+    if along >= CIRCLES_FROM {
+        CLOCKWISE
+    } else if along <= -CIRCLES_FROM {
+        COUNTER_CLOCKWISE
+    } else {
+        RADIAL
+    }
+}
+
+/// The palette as custom properties of a style sheet, for light ground and for dark.
+pub fn style_sheet() -> String {
+    let colors = |of: fn(&Swatch) -> Rgb| -> String {
+        let lines = PALETTE.iter().map(|each| (each.name, of(each)));
+        lines
+            .map(|(name, Rgb(r, g, b))| format!("--{name}:#{r:02x}{g:02x}{b:02x};"))
+            .collect()
+    };
+    format!(
+        ":root{{color-scheme:light dark;--circles-from:{CIRCLES_FROM};{}}}\n\
+         @media (prefers-color-scheme:dark){{:root{{{}}}}}\n",
+        colors(|each| each.light),
+        colors(|each| each.dark),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Machado, Oliveira and Fernandes (2009), full severity, on linear RGB: protanopia, deuteranopia, tritanopia.
+    const EYES: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+        [
+            [1.255_528, -0.076_749, -0.178_779],
+            [-0.078_411, 0.930_809, 0.147_602],
+            [0.004_733, 0.691_367, 0.303_900],
+        ],
+    ];
+
+    fn times(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+        matrix.map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum())
     }
 
-    /// A paint that fills with this color and smooth edges.
-    pub(super) fn paint(self) -> Paint<'static> {
-        let mut paint = Paint::default();
-        paint.set_color(self.color());
-        paint
-    }
-
-    /// Fills a path.
-    pub(super) fn fill(self, canvas: &mut Pixmap, path: PathBuilder) {
-        if let Some(path) = path.finish() {
-            let (paint, rule) = (self.paint(), FillRule::Winding);
-            canvas.fill_path(&path, &paint, rule, Transform::identity(), None);
-        }
-    }
-
-    /// Draws a path as a line with round ends.
-    pub(super) fn stroke(self, canvas: &mut Pixmap, path: PathBuilder, width: f32) {
-        let stroke = Stroke {
-            width,
-            line_cap: LineCap::Round,
-            ..Stroke::default()
+    /// CIE 1976 L*a*b* of a color as an eye sees it.
+    fn lab(Rgb(r, g, b): Rgb, eye: [[f64; 3]; 3]) -> [f64; 3] {
+        let linear = [r, g, b].map(|each| {
+            let share = f64::from(each) / 255.0;
+            if share <= 0.04045 {
+                share / 12.92
+            } else {
+                ((share + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        let seen = times(eye, linear).map(|each| each.clamp(0.0, 1.0));
+        let [x, y, z] = times(
+            [
+                [0.4124, 0.3576, 0.1805],
+                [0.2126, 0.7152, 0.0722],
+                [0.0193, 0.1192, 0.9505],
+            ],
+            seen,
+        );
+        let f = |t: f64| {
+            if t > 0.008_856 {
+                t.cbrt()
+            } else {
+                7.787 * t + 16.0 / 116.0
+            }
         };
-        if let Some(path) = path.finish() {
-            canvas.stroke_path(&path, &self.paint(), &stroke, Transform::identity(), None);
-        }
+        let [x, y, z] = [f(x / 0.9505), f(y), f(z / 1.089)];
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 
-    /// Draws a straight line with round ends.
-    pub(super) fn line(self, canvas: &mut Pixmap, [start, end]: [Point; 2], width: f32) {
-        let mut path = PathBuilder::new();
-        path.move_to(start.x, start.y);
-        path.line_to(end.x, end.y);
-        self.stroke(canvas, path, width);
+    fn named(name: &str) -> Swatch {
+        *PALETTE.iter().find(|each| each.name == name).unwrap()
     }
 
-    /// Covers a part of a pixel, if it is in the frame.
-    pub(super) fn blend(self, canvas: &mut Pixmap, (column, row): (i64, i64), coverage: f32) {
-        let (width, height) = (i64::from(canvas.width()), i64::from(canvas.height()));
-        if (0..width).contains(&column) && (0..height).contains(&row) {
-            let place = 4 * (row * width + column) as usize;
-            let pixel = canvas.data_mut()[place..].iter_mut();
-            for (under, over) in pixel.zip([self.0, self.1, self.2]) {
-                let (below, above) = (f32::from(*under), f32::from(over));
-                *under = (below + coverage.min(1.0) * (above - below)).round() as u8;
+    #[test]
+    fn every_eye_tells_directions_and_rings_apart() {
+        let names = [
+            "clockwise",
+            "counter-clockwise",
+            "radial",
+            "leader",
+            "opponent",
+        ]
+        .map(named);
+        for eye in EYES {
+            for of in [|each: Swatch| each.light, |each: Swatch| each.dark] {
+                let seen = names.map(|each| lab(of(each), eye));
+                for (k, one) in seen.iter().enumerate() {
+                    for other in &seen[..k] {
+                        let squares = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b));
+                        let distance = squares.sum::<f64>().sqrt();
+                        assert!(distance > 17.0, "{distance} with {eye:?}");
+                    }
+                }
             }
         }
     }
 
-    /// Fills a rectangle.
-    pub(super) fn bar(self, canvas: &mut Pixmap, x: f32, y: f32, width: f32, height: f32) {
-        if let Some(rect) = Rect::from_xywh(x, y, width, height) {
-            canvas.fill_rect(rect, &self.paint(), Transform::identity(), None);
+    #[test]
+    fn a_tint_is_that_of_the_heading_in_the_local_frame() {
+        // East of the center: south is clockwise, east outward.
+        let at = |degrees: f64| tint(&Pose::new(70.0, 0.0, degrees.to_radians()));
+        assert_eq!([-90.0, -31.0, -149.0].map(at), [CLOCKWISE; 3]);
+        assert_eq!([90.0, 31.0, 149.0].map(at), [COUNTER_CLOCKWISE; 3]);
+        assert_eq!([0.0, 29.0, -29.0, 180.0].map(at), [RADIAL; 4]);
+    }
+
+    #[test]
+    fn a_style_sheet_has_every_color_twice() {
+        let sheet = style_sheet();
+        for each in PALETTE {
+            assert_eq!(sheet.matches(&format!("--{}:#", each.name)).count(), 2);
         }
+        assert!(sheet.contains("--clockwise:#0072b2;") && sheet.contains("--clockwise:#3d9bd6;"));
     }
 }

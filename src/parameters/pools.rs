@@ -52,6 +52,11 @@ impl Pool {
         self.outer_radius_cm.is_finite()
     }
 
+    /// Whether there is any wall.
+    pub fn has_walls(&self) -> bool {
+        self.has_outer_wall() || self.has_inner_wall()
+    }
+
     /// Whether there is an obstacle in the middle.
     pub fn has_inner_wall(&self) -> bool {
         self.inner_radius_cm > 0.0

@@ -5,7 +5,7 @@ use super::exclusive::{Exclusive, interruptible};
 use super::value::{given, noise_seed_from, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
 use crate::contact::Partner;
-use crate::draw::FrameRenderer;
+use crate::draw::{FrameRenderer, Look};
 use crate::error::{FlockError, Result};
 use crate::flock::{ContactForce, Flock, State};
 use crate::geometry::{Pose, Vec2, Velocity};
@@ -299,12 +299,21 @@ impl PyFrameRenderer {
         Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))
     }
 
-    /// A flock as it is now: (height, width, 3), uint8.
-    fn draw<'py>(&self, py: Python<'py>, flock: &PyFlock) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    /// A flock as it is now: (height, width, 3), uint8. `colors` names what the color of a boat shows.
+    #[pyo3(signature = (flock, colors="direction", caption=""))]
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        flock: &PyFlock,
+        colors: &str,
+        caption: &str,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let coloring = colors.parse()?;
+        let look = Look { coloring, caption };
         let (shape, frame) = py.detach(|| -> Result<_> {
             let mut renderer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             let shape = [renderer.height() as usize, renderer.width() as usize, 3];
-            Ok((shape, renderer.draw(&*flock.0.read()?)))
+            Ok((shape, renderer.draw_with(&*flock.0.read()?, look)))
         })?;
         PyArray1::from_vec(py, frame).reshape(shape)
     }

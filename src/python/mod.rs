@@ -19,6 +19,7 @@ mod _core {
     use super::*;
     use crate::analysis::quantities::{QUANTITIES, Quantity};
     use crate::analysis::{CollectiveState, structure::JAM_ANGLE};
+    use crate::draw::palette::{Coloring, style_sheet};
     use crate::environment::observation::{
         LeanFeatures, OBSERVATION_VERSION, flock_feature_entries,
     };
@@ -57,6 +58,8 @@ mod _core {
         crate::parallel::note_process();
         error::add_exceptions(module)?;
         module.add("ACTION_MODES", ActionMode::names())?;
+        module.add("COLORINGS", Coloring::names())?;
+        module.add("STYLE_SHEET", style_sheet())?;
         module.add("COLLECTIVE_STATES", CollectiveState::names())?;
         let laws = LawName::ALL.iter().map(|law| law.named());
         module.add("LAWS", Value::List(laws.collect()))?;

@@ -36,6 +36,21 @@ def test_a_frame_of_a_recording_is_that_of_its_flock():
         frame("run.npz")
 
 
+def test_color_shows_what_it_is_told_to_show():
+    scene = flock()
+    direction = rendering.frame(scene, 160, 120)
+    assert np.array_equal(rendering.frame(scene, 160, 120, colors="direction"), direction)
+    role = rendering.frame(scene, 160, 120, colors="role")
+    assert not np.array_equal(role, direction)
+    with pytest.raises(flockenv.ParameterError, match='colors = "red" .* "direction", "role"'):
+        rendering.frame(scene, colors="red")
+    # In open water boats circle around nothing.
+    scene = flock(pool=(np.inf, 0))
+    assert np.array_equal(
+        rendering.frame(scene, 160, 120), rendering.frame(scene, 160, 120, colors="role")
+    )
+
+
 def test_frames_may_be_drawn_in_several_threads():
     scenes = [flock(n_boats=n, pool=pool) for n in (3, 8) for pool in ("wide", "narrow")]
     alone = [rendering.frame(scene, 160, 120) for scene in scenes]
