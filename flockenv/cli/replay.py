@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,11 +20,12 @@ class ReplayOptions(Printing):
     first: Path = argument("A recording (.npz), or tracks (.csv, .parquet).", metavar="RUN")
     second: Path | None = argument("Another one to play beside it.", None, metavar="OTHER")
     html: Path | None = option(None, "The page. [the first recording's name]")
-    gif: Path | None = option(None, "A moving picture of the first, in its place.")
-    mp4: Path | None = option(None, "A video of the first, in its place.")
+    gif: Path | None = option(None, "A moving picture, in its place.")
+    mp4: Path | None = option(None, "A video, in its place.")
+    colors: str = option("direction", "Of pictures, what color shows: direction or role.")
     speed: float = option(8.0, "Of pictures: how many times real time.", min=0.1, max=100.0)
     seconds: float = option(20.0, "Of pictures: how long they last at most.", min=0.1)
-    name: list[str] | None = option(None, "What a recording is called on the page; once for each.")
+    name: list[str] | None = option(None, "What a recording is called; once for each.")
     show: bool = option(False, "Open the page in a browser.", "--open")
 
 
@@ -36,8 +35,8 @@ def replay(options: ReplayOptions) -> None:
 
     Tracks of real flocks are described by a TOML file beside them, see `docs/tracks.md`.
     Play, scrub, change the speed; trails, contact forces, a boat's numbers under the pointer, and
-    order parameters in step with the picture. Two recordings play side by side. `--gif` and `--mp4`
-    write a moving picture instead (extras `render`, `video`).
+    order parameters in step with the picture. `--gif` and `--mp4` write a moving picture instead
+    (extras `render`, `video`). Two recordings play side by side in each.
 
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """
@@ -47,27 +46,32 @@ def replay(options: ReplayOptions) -> None:
     pictures = [path for path in (options.gif, options.mp4) if path is not None]
     if not pictures:
         _page(options)
-    elif options.second is not None or options.html is not None:
-        raise ParameterError("--gif and --mp4 show one recording, and are written without --html")
+    elif options.html is not None:
+        raise ParameterError("--gif and --mp4 are written without --html")
     else:
         _pictures(options, pictures)
 
 
-def _page(options: ReplayOptions) -> None:
-    # The page's code is not needed by any other command.
-    from flockenv.replay import write_replay
-
+def _named(options: ReplayOptions) -> dict[str, Path]:
+    """Return the recordings' files by the names that they have in pages and pictures."""
     paths = [path for path in (options.first, options.second) if path is not None]
     names = options.name or [path.stem for path in paths]
     if len(names) != len(paths):
         raise ParameterError(f"{len(names)} --name for {len(paths)} recordings: name all or none")
     if len(set(names)) < len(names):
         names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
+    return {printable(name): path for name, path in zip(names, paths, strict=True)}
+
+
+def _page(options: ReplayOptions) -> None:
+    # The page's code is not needed by any other command.
+    from flockenv.replay import write_replay
+
+    named = _named(options)
     page = options.html or options.first.with_suffix(".html")
     prepare(page)
     recordings = {
-        printable(name): load_recording(path, quiet=options.shows_nothing)
-        for name, path in zip(names, paths, strict=True)
+        name: load_recording(path, quiet=options.shows_nothing) for name, path in named.items()
     }
     written = write_replay(page, recordings)
     if options.as_json:
@@ -80,23 +84,32 @@ def _page(options: ReplayOptions) -> None:
 
 
 def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
-    """Write the first recording as a GIF, a video, or both."""
+    """Write one recording, or two side by side, as a GIF, a video, or both."""
     from flockenv.rendering import frame, save_animation
 
+    named = _named(options)
     prepare(*paths)
-    recording = load_recording(options.first, quiet=options.shows_nothing)
+    runs = [load_recording(path, quiet=options.shows_nothing) for path in named.values()]
+    # A lone recording needs no name, unless it is given one.
+    captions = list(named) if options.name or len(runs) > 1 else [""]
     for path in paths:
         fps = _FPS[path.suffix.lower()]
-        lasting_s = min(options.seconds, recording.duration_s / options.speed)
+        longest_s = max(run.duration_s for run in runs)
+        lasting_s = min(options.seconds, longest_s / options.speed)
         steps_s = np.arange(max(1, round(lasting_s * fps))) * options.speed / fps
-        times = recording.time_s[0] + np.minimum(steps_s, recording.duration_s)
-        with progress("drawing", len(times), options.shows_nothing) as advance:
+        with progress("drawing", len(steps_s), options.shows_nothing) as advance:
 
-            def drawn(time_s: Any) -> NDArray[np.uint8]:
+            def drawn(step_s: float) -> NDArray[np.uint8]:
                 advance()
-                return frame(recording, time_s)
+                # The shorter of two stays at its end.
+                times = (min(run.time_s[0] + step_s, run.time_s[-1]) for run in runs)
+                frames = (
+                    frame(run, float(time_s), colors=options.colors, caption=caption)
+                    for run, time_s, caption in zip(runs, times, captions, strict=True)
+                )
+                return np.concatenate(list(frames), axis=1)
 
-            save_animation(path, map(drawn, times.tolist()), fps)
+            save_animation(path, map(drawn, steps_s.tolist()), fps)
     if options.as_json:
         print_json({"files": list(map(printable, paths))})
     else:
