@@ -99,17 +99,17 @@ test-browser: $(STAMPS)/test $(STAMPS)/browser $(CORE)
 	@tests/browser/need_chromium.sh
 	$(PYTEST) -m browser tests/browser $(PYTEST_ARGS)
 
-test-live: live $(STAMPS)/test $(STAMPS)/browser
+test-live: live $(STAMPS)/test $(STAMPS)/browser $(CORE)
 	@tests/browser/need_chromium.sh
 	$(PYTEST) -m live tests/web tests/browser $(PYTEST_ARGS)
 
 test-js: $(JS_TESTS)/node_modules
 	cd $(JS_TESTS) && npm run lint && npm test
 
-# Without rustup, another toolchain's cargo and target will do.
-live: build ## the live page: the simulator compiled to WebAssembly, in one file, web/live.html
+# Without rustup, another toolchain's cargo and target will do. The package itself need not be built.
+live: ## the live page: the simulator compiled to WebAssembly, in one file that the package takes along
 	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
-	$(BIN)/python web/build.py
+	$(PYTHON) web/build.py
 
 # The wheel and the source distribution, into dist.
 wheel: $(STAMPS)/venv

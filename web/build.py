@@ -1,28 +1,41 @@
 """Build the live page: the crate compiled to WebAssembly, and all that shows it, in one HTML file.
 
-`make live` writes it to ``web/live.html``. It loads nothing and opens from anywhere.
+`make live` writes it to ``flockenv/replay/live.html``, where the package finds it. It loads nothing
+and opens from anywhere. This needs cargo, and of the package its sources alone.
 """
 
+import ast
 import base64
+import csv
 import gzip
 import json
+import runpy
 import subprocess
 import sys
+import tomllib
+from collections import defaultdict
 from pathlib import Path
 
-import flockenv
-from flockenv.recording.stored import FORMAT
-from flockenv.replay.template import as_script_content, digest, filled, joined
-
 WEB = Path(__file__).parent
-REPLAY = WEB.parent / "flockenv" / "replay"
+ROOT = WEB.parent
+REPLAY = ROOT / "flockenv" / "replay"
+PAGE = REPLAY / "live.html"
 MOST_BYTES = 500_000
 """Size that the page may not exceed."""
 
 _TARGET = "wasm32-unknown-unknown"
 _THREAD = ("core.mjs", "worker.mjs")
 # In the order in which one needs another.
-_SHARED = ("words", "run", "forces", "scene", "chart", "panel")
+_SHARED = (
+    "words.mjs",
+    "link.mjs",
+    "transport.mjs",
+    "run.mjs",
+    "forces.mjs",
+    "scene.mjs",
+    "chart.mjs",
+    "panel.mjs",
+)
 _OWN = (
     "core.mjs",
     "npz.mjs",
@@ -30,11 +43,17 @@ _OWN = (
     "order_map.mjs",
     "lap_frame.mjs",
     "growing_run.mjs",
+    "recording.mjs",
     "share.mjs",
     "lessons.mjs",
     "controls.mjs",
     "simulator.mjs",
+    "flocks.mjs",
+    "rudder.mjs",
+    "view.mjs",
+    "playback.mjs",
     "live.mjs",
+    "listen.mjs",
     "main.mjs",
 )
 
@@ -43,16 +62,47 @@ def wasm() -> bytes:
     """Compile the simulator, and return it."""
     command = ["cargo", "build", "--locked", "--release", "--target", _TARGET]
     subprocess.run(command, cwd=WEB, check=True)
-    return (WEB / "target" / _TARGET / "release" / "flockenv_web.wasm").read_bytes()
+    asked = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
+    said = subprocess.run(asked, cwd=WEB, check=True, capture_output=True, text=True).stdout
+    folder = Path(json.loads(said)["target_directory"], _TARGET, "release")
+    return (folder / "flockenv_web.wasm").read_bytes()
+
+
+def constant(path: Path, name: str) -> str:
+    """Return a constant of a module that is read, not imported."""
+    for each in ast.parse(path.read_text("utf-8")).body:
+        if isinstance(each, ast.Assign) and ast.unparse(each.targets[0]) == name:
+            return str(ast.literal_eval(each.value))
+    raise SystemExit(f"{path} has no {name}")
+
+
+def expected_orders() -> list[dict[str, object]]:
+    """Return mean order against the backward duration, of the paper's leaderless flocks."""
+    orders = defaultdict(list)
+    with (ROOT / "paper" / "results" / "section4.csv").open(encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["preset"] == "experiment" and row["n_leaders"] == "0":
+                orders[float(row["bw_s"])].append(float(row["psi_o"]))
+    points = [[bw_s, round(sum(each) / len(each), 3)] for bw_s, each in sorted(orders.items())]
+    return [{"preset": "experiment", "n_boats": 27, "n_leaders": 0, "points": points}]
 
 
 def page(compiled: bytes) -> str:
     """Return the page around a compiled simulator."""
-    shared = [(REPLAY / "shared" / f"{name}.mjs").read_text("utf-8") for name in _SHARED]
-    script = joined([*shared, *((WEB / name).read_text("utf-8") for name in _OWN)])
-    thread = joined([(WEB / name).read_text("utf-8") for name in _THREAD])
-    style = (REPLAY / "replay.css").read_text("utf-8") + (WEB / "live.css").read_text("utf-8")
-    about = {"version": flockenv.__version__, "format": FORMAT, "opening": None}
+    template = runpy.run_path(str(REPLAY / "template.py"))
+    shared = [(REPLAY / "shared" / name).read_text("utf-8") for name in _SHARED]
+    script = template["joined"]([*shared, *((WEB / name).read_text("utf-8") for name in _OWN)])
+    thread = template["joined"]((WEB / name).read_text("utf-8") for name in _THREAD)
+    style = (REPLAY / "shared" / "page.css").read_text("utf-8")
+    style += (WEB / "live.css").read_text("utf-8")
+    cargo = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))
+    about = {
+        "version": cargo["package"]["version"],
+        "format": constant(ROOT / "flockenv" / "recording" / "stored.py", "FORMAT"),
+        "orders": expected_orders(),
+        "opening": None,
+    }
+    digest = template["digest"]
     policy = [
         "default-src 'none'",
         f"style-src {digest(style)}",
@@ -65,13 +115,13 @@ def page(compiled: bytes) -> str:
     parts = {
         "policy": "; ".join(policy),
         "style": style,
-        "about": as_script_content(json.dumps(about)),
+        "about": template["as_script_content"](json.dumps(about)),
         "thread": thread,
         # The same bytes at every build: no time in the header.
         "wasm": base64.b64encode(gzip.compress(compiled, mtime=0)).decode("ascii"),
         "script": script,
     }
-    return filled((WEB / "page.html").read_text("utf-8"), parts)
+    return template["filled"]((WEB / "page.html").read_text("utf-8"), parts)
 
 
 def main() -> None:
@@ -79,8 +129,8 @@ def main() -> None:
     built = page(wasm())
     if len(built.encode()) > MOST_BYTES:
         raise SystemExit(f"the page has {len(built.encode())} bytes, more than {MOST_BYTES}")
-    (WEB / "live.html").write_text(built, "utf-8")
-    sys.stdout.write(f"web/live.html: {len(built.encode())} bytes\n")
+    PAGE.write_text(built, "utf-8")
+    sys.stdout.write(f"{PAGE.relative_to(ROOT)}: {len(built.encode())} bytes\n")
 
 
 if __name__ == "__main__":

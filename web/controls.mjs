@@ -3,14 +3,12 @@
 import { element, plain } from "../flockenv/replay/shared/words.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
-/** Parameter, words, least, most, step; those that everybody needs, and more. */
+/** Parameter, words, least, most, step: the one that everybody needs, and more. */
 const SLIDERS = {
+  noise: [["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05]],
   sliders: [
     ["n_boats", "boats", 2, 300, 1],
     ["n_leaders", "leaders", 0, 8, 1],
-    ["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05],
-  ],
-  "more-sliders": [
     ["c4", "angular noise", 0, 0.5, 0.01],
     ["boat_shape", "hull shape", 0, 2, 0.05],
   ],
@@ -22,7 +20,7 @@ const CHOICES = {
     ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
     ["target", "target", [["cw", "clockwise"], ["ccw", "counter-clockwise"], ["opposed", "opposed"]]],
   ],
-  "more-choices": [
+  "further-choices": [
     ["preset", "preset", [["simulation"], ["paper"], ["experiment"]]],
     ["scheme", "scheme", [["leapfrog"], ["moreau"], ["paper"]]],
     ["noise_scheme", "noise", [["white"], ["per-step"]]],
@@ -62,9 +60,11 @@ export function policiesOf(policy, leaders) {
 }
 
 export class Controls {
+  inputs = new Map();
+
   /** `meanings`: what the simulator says of each parameter; `change` gets a name and a value. */
   constructor(meanings, policies, change) {
-    Object.assign(this, { meanings, change, inputs: new Map() });
+    Object.assign(this, { meanings, change });
     const byId = (id) => document.getElementById(id);
     for (const [id, sliders] of Object.entries(SLIDERS)) {
       byId(id).append(...sliders.map(([name, words, low, high, step]) => this.#slider(name, words, { low, high, step })));

@@ -1,4 +1,4 @@
-// The compiled simulator behind functions: text to flocks, numbers back.
+// The compiled simulator behind functions: JSON to flocks, JSON and numbers back.
 
 /** Names of the columns that a flock fills, in their order. */
 export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
@@ -11,9 +11,7 @@ const LONGEST_SENTENCE = 250;
 
 /** A request that the simulator refuses: the parameter that is to blame, if one is, and a sentence. */
 export class Refusal extends Error {
-  constructor(text) {
-    const [field, ...sentence] = text.split("\t");
-    const words = sentence.join(" ");
+  constructor({ field, words }) {
     super(words.length > LONGEST_SENTENCE ? `${words.slice(0, LONGEST_SENTENCE)}…` : words);
     this.field = field;
   }
@@ -37,12 +35,17 @@ export class Core {
   /** What there is: presets, fields, quantities … */
   describe() {
     this.exports.describe();
-    return this.#text();
+    return this.#said();
   }
 
-  /** All parameters of a request. */
+  /** All parameters of a request, of which no flock starts. */
   check(request) {
     return this.#ask(request, () => this.exports.check());
+  }
+
+  /** The recorded quantities, null for none, of the flock that was last checked in a state: `pose` and `velocity`. */
+  recorded(state) {
+    return this.#ask(state, () => this.exports.recorded());
   }
 
   /** Starts a flock again; returns its parameters. */
@@ -91,31 +94,21 @@ export class Core {
   }
 
   #ask(request, call) {
-    const bytes = new TextEncoder().encode(request);
+    const bytes = new TextEncoder().encode(JSON.stringify(request));
     const place = this.exports.input(bytes.length);
     new Uint8Array(this.exports.memory.buffer, place, bytes.length).set(bytes);
     this.#done(call());
-    return this.#text();
+    return this.#said();
   }
 
   #done(isDone) {
     if (!isDone) {
-      throw new Refusal(this.#text());
+      throw new Refusal(this.#said());
     }
   }
 
-  #text() {
+  #said() {
     const [start, length] = [this.exports.text(), this.exports.text_length()];
-    return new TextDecoder().decode(new Uint8Array(this.exports.memory.buffer, start, length));
+    return JSON.parse(new TextDecoder().decode(new Uint8Array(this.exports.memory.buffer, start, length)));
   }
-}
-
-/** The lines of a text of the simulator, by their first word: the other words of each. */
-export function byKind(text) {
-  const lines = new Map();
-  for (const line of text.split("\n").filter(Boolean)) {
-    const [kind, ...words] = line.split("\t");
-    lines.set(kind, [...(lines.get(kind) ?? []), words]);
-  }
-  return lines;
 }

@@ -66,7 +66,7 @@ export class GrowingRun extends Run {
     raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, described.leaders), capacity);
     raw.series = new GrowingColumn(series.length, capacity);
     super(described, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
-    Object.assign(this, { raw, capacity, latestContacts: [], changedAt: 0, towardsTarget: [0, 0], cycleOrder: [0, 0] });
+    Object.assign(this, { raw, capacity, latestContacts: [], changedAt: 0, sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
   get hasForces() {
@@ -77,14 +77,20 @@ export class GrowingRun extends Run {
     return this.time.at(-1);
   }
 
-  /** Mean order towards the target in the analysis window since the run, or its last change, started. */
-  get score() {
-    return this.towardsTarget[0] / this.towardsTarget[1];
+  /** Mean of `psi_o` or `signed_order` in the analysis window since the run, or its last change, started. */
+  mean(key) {
+    return this.sums[key] / this.counted;
   }
 
   /** Other parameters from now on. */
   describe(described) {
-    Object.assign(this, described, { changedAt: this.end, towardsTarget: [0, 0], cycleOrder: [0, 0] });
+    Object.assign(this, described, { changedAt: this.end });
+    this.countAnew();
+  }
+
+  /** Means are those from now on. */
+  countAnew() {
+    Object.assign(this, { sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
   /** Appends what the simulator took; `onCycle` gets the mean order of each analysis window that ends. */
@@ -120,8 +126,9 @@ export class GrowingRun extends Run {
 
   #score(sample, onCycle) {
     if (this.inWindow(sample)) {
-      this.towardsTarget[0] += this.value("signed_order", sample);
-      this.towardsTarget[1] += 1;
+      this.sums.psi_o += this.value("psi_o", sample);
+      this.sums.signed_order += this.value("signed_order", sample);
+      this.counted += 1;
       this.cycleOrder[0] += this.value("psi_o", sample);
       this.cycleOrder[1] += 1;
     } else if (this.cycleOrder[1] > 0) {

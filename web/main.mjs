@@ -1,6 +1,8 @@
 // Starts the page, or says why it cannot.
 
-import { LivePage, OPENING } from "./live.mjs";
+import { OPENING } from "./lessons.mjs";
+import { listen } from "./listen.mjs";
+import { LivePage } from "./live.mjs";
 import { Simulator } from "./simulator.mjs";
 
 async function start() {
@@ -14,7 +16,12 @@ async function start() {
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const simulator = new Simulator(text("thread"), await new Response(stream).arrayBuffer());
   const about = JSON.parse(text("about"));
-  window.page = new LivePage(simulator, about, await simulator.start());
+  const described = await simulator.start();
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(described.colors);
+  document.adoptedStyleSheets = [sheet];
+  window.page = new LivePage(simulator, about, described);
+  listen(window.page);
   await window.page.follow(location.hash.length > 1 ? location.hash : about.opening ?? OPENING);
   document.body.dataset.ready = "true";
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {

@@ -1,6 +1,7 @@
 // Named arrays in an .npz file: a zip of .npy entries. What is read is data, whatever it says.
 
 const MOST_BYTES = 1 << 29;
+const PART = 4096;
 
 /** The bytes of a file of arrays: `{name: {shape, descr, bytes}}`, uncompressed. */
 export function writeNpz(arrays) {
@@ -66,21 +67,21 @@ export const array = {
   },
 };
 
-/** The arrays of a file: `{name: {shape, values}}`, values flat: numbers, booleans as numbers, or strings. */
+/** The arrays of a file: `{name: {shape, descr, values}}`, values flat: numbers, booleans as numbers, or strings. */
 export async function readNpz(buffer) {
   const bytes = new Uint8Array(buffer);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   const arrays = {};
   let held = 0;
-  for (const { name, start, packed, size, method } of entries(view)) {
+  for (const { name, start, packed, size, method, sum } of entries(view)) {
     held += size;
     if (held > MOST_BYTES) {
       throw new Error("it holds more than this page shows");
     }
     const content = bytes.subarray(start, start + packed);
     const entry = method === 0 ? content : await inflated(content, size);
-    if (entry.length !== size) {
-      throw new Error(`${name} is cut off`);
+    if (entry.length !== size || crc32(entry) !== sum) {
+      throw new Error(`Bad CRC-32 for file '${name}'`);
     }
     arrays[name.replace(/\.npy$/, "")] = readNpy(entry);
   }
@@ -95,19 +96,42 @@ function* entries(view) {
   if (end < 0 || view.getUint32(end, true) !== 0x06054b50) {
     throw new Error("it is no .npz file");
   }
-  let place = view.getUint32(end + 16, true);
-  for (let left = view.getUint16(end + 10, true); left > 0; left -= 1) {
-    const [method, packed, size] = [view.getUint16(place + 10, true), view.getUint32(place + 20, true), view.getUint32(place + 24, true)];
-    const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(place + at, true));
-    const name = new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + place + 46, length));
-    const local = view.getUint32(place + 42, true);
-    if (![0, 8].includes(method) || packed === 0xffffffff) {
-      throw new Error(`${name} is packed in an unknown way`);
-    }
-    const start = local + 30 + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
-    yield { name, start, packed, size, method };
-    place += 46 + length + extra + comment;
+  const [count, size, first, comment] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true), view.getUint16(end + 20, true)];
+  let place = first;
+  for (let left = count; left > 0; left -= 1) {
+    const entry = directoryEntry(view, place);
+    yield entry;
+    place = entry.next;
   }
+  if (place !== end || first + size !== end || end + 22 + comment !== view.byteLength) {
+    throw new Error("Bad magic number for central directory");
+  }
+}
+
+/** What its directory says of a file, if the file's own header says so too. */
+function directoryEntry(view, place) {
+  if (view.getUint32(place, true) !== 0x02014b50) {
+    throw new Error("Bad magic number for central directory");
+  }
+  const [version, flags, method] = [6, 8, 10].map((at) => view.getUint16(place + at, true));
+  const [sum, packed, size, local] = [16, 20, 24, 42].map((at) => view.getUint32(place + at, true));
+  const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(place + at, true));
+  const nameAt = (at, long) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, long));
+  const name = nameAt(place + 46, length);
+  // Of the bits only "lengths follow" and "names are UTF-8" are known.
+  const isKnown = [0, 8].includes(method) && version <= 63 && (flags & ~0x808) === 0 && packed !== 0xffffffff;
+  if (!isKnown || view.getUint16(place + 34, true) !== 0) {
+    throw new Error(`${name} is packed in an unknown way`);
+  }
+  const own = view.getUint16(local + 26, true);
+  if (view.getUint32(local, true) !== 0x04034b50) {
+    throw new Error("Bad magic number for file header");
+  }
+  if (nameAt(local + 30, own) !== name || view.getUint16(local + 8, true) !== method || (view.getUint16(local + 6, true) & ~0x808) !== 0) {
+    throw new Error(`File name in directory '${name}' and header '${nameAt(local + 30, own)}' differ.`);
+  }
+  const start = local + 30 + own + view.getUint16(local + 28, true);
+  return { name, start, packed, size, method, sum, next: place + 46 + length + extra + comment };
 }
 
 async function inflated(bytes, most) {
@@ -158,14 +182,21 @@ function readNpy(bytes) {
   if (values.length !== count) {
     throw new Error("an array has a shape that does not match its size");
   }
-  return { shape, values };
+  return { shape, descr, values };
 }
 
 function textsOf(content, width) {
   const letters = new Uint32Array(content);
   return Array.from({ length: width === 0 ? 0 : letters.length / width }, (_, k) => {
-    const points = letters.subarray(k * width, (k + 1) * width).filter((point) => point > 0 && point <= 0x10ffff);
-    return String.fromCodePoint(...points);
+    // NumPy leaves out zeros at the end alone.
+    const points = letters.subarray(k * width, (k + 1) * width);
+    const end = points.findLastIndex((point) => point > 0) + 1;
+    if (points.some((point) => point > 0x10ffff)) {
+      throw new Error("an array holds letters that there are not");
+    }
+    // A part at a time: a call takes so many arguments only.
+    const parts = Array.from({ length: Math.ceil(end / PART) }, (_, part) => String.fromCodePoint(...points.subarray(part * PART, Math.min((part + 1) * PART, end))));
+    return parts.join("");
   });
 }
 

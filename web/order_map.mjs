@@ -9,19 +9,39 @@ export const MOST_NOISE = 3;
 const CELLS = [60, 25];
 
 export class OrderMap {
-  constructor(canvas) {
+  counts = new Uint32Array(CELLS[0] * CELLS[1]);
+  dot = null;
+  #signature = "";
+  #expected = null;
+
+  /** `orders`: curves of [backward duration in s, mean order], each with the flock whose they are. */
+  constructor(canvas, orders) {
     this.canvas = canvas;
-    this.clear();
+    this.orders = orders;
   }
 
-  clear() {
-    this.counts = new Uint32Array(CELLS[0] * CELLS[1]);
-    this.dot = null;
+  /** Shows what is expected of a flock, and forgets another one's marks; null for none. */
+  expect(flock, signature) {
+    const { bw_s: _, seed: __, ...rest } = flock ?? {};
+    const isOf = ({ points: _, ...each }) => Object.entries({ n_leaders: "0", ...rest }).every(([name, value]) => String(each[name]) === value);
+    this.#expected = flock && "preset" in rest ? this.orders.find(isOf)?.points ?? null : null;
+    if (signature !== this.#signature) {
+      this.#signature = signature;
+      this.counts.fill(0);
+      this.dot = null;
+    }
+    this.#hide();
+  }
+
+  /** A map with nothing on it is not there. */
+  #hide() {
+    this.canvas.closest("figure").hidden = !this.#expected && !this.dot;
   }
 
   /** Notes the mean order of an analysis window at a backward duration in s. */
   note(noise, order) {
     this.dot = [noise, order];
+    this.#hide();
     const cell = (share, count) => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
     if (noise <= MOST_NOISE) {
       this.counts[cell(noise / MOST_NOISE, CELLS[0]) * CELLS[1] + cell(order, CELLS[1])] += 1;
@@ -40,6 +60,13 @@ export class OrderMap {
     context.clearRect(0, 0, width, height);
     context.fillStyle = palette.water;
     context.fillRect(EDGE_OF_MAP.left, EDGE_OF_MAP.top, across, up);
+    if (this.#expected) {
+      context.beginPath();
+      this.#expected.forEach(([noise, order]) => { context.lineTo(x(noise), y(order)); });
+      context.strokeStyle = palette.faint;
+      context.lineWidth = 2;
+      context.stroke();
+    }
     this.#cells(context, palette, across / CELLS[0], up / CELLS[1]);
     context.fillStyle = palette.faint;
     context.font = `11px ${getComputedStyle(document.body).fontFamily}`;

@@ -1,20 +1,23 @@
 // What the page shows, as its link has it: parameters by name, a seed, how leaders steer, and a second flock beside.
 
+import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
+
 /** What else than parameters of flocks a link may hold: accepted values, in words and as a test. */
 export const OTHER = {
   speed: ["one of 1, 2, 4, 8, 16, 32, 64 and max", (text) => SPEEDS.includes(text)],
   boat: ["the number of a boat", (text) => /^\d{1,3}$/.test(text)],
   forces: ["0 or 1", (text) => /^[01]$/.test(text)],
+  colors: ["direction or role", (text) => ["direction", "role"].includes(text)],
+  start: ["a whole number of seconds up to 600", (text) => /^\d{1,3}$/.test(text) && Number(text) <= 600],
   lesson: ["a word", (text) => /^[a-z-]{1,20}$/.test(text)],
 };
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
 /** What this page shows at most, of fields that may be larger elsewhere. */
 const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
+/** Fields of a request that are no parameters. */
+const STRINGS = ["preset", "seed", "leaders"];
 /** Of the second flock: what of it differs from the first. */
 const BESIDE = "beside.";
-const SHOWN = 40;
-
-const cut = (text) => (text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text);
 
 /**
  * What a fragment asks for: `flock` and `beside` (null: none) hold parameters by name, `other` the rest, and
@@ -22,7 +25,7 @@ const cut = (text) => (text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text
  */
 export function readLink(fragment, fields) {
   const wanted = { flock: {}, beside: null, other: {}, ignored: [] };
-  const refuse = (key, text, why) => wanted.ignored.push(`The link's ${cut(key)}=${cut(text)} is ignored: ${why}.`);
+  const refuse = (key, text, why) => wanted.ignored.push(ignoredPart(key, text, why));
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
     const isBeside = key.startsWith(BESIDE);
     const name = isBeside ? key.slice(BESIDE.length) : key;
@@ -33,7 +36,7 @@ export function readLink(fragment, fields) {
       } else {
         refuse(key, text, `${name} is ${words}`);
       }
-    } else if (!["preset", "seed", "leaders", ...fields].includes(name) || /[\n\r]/.test(text)) {
+    } else if (![...STRINGS, ...fields].includes(name) || /[\n\r]/.test(text)) {
       refuse(key, text, "this page knows no such parameter");
     } else if (Object.hasOwn(LIMITS, name) && !isWithin(LIMITS[name], text)) {
       refuse(key, text, `${name} is ${LIMITS[name].join(" to ")} on this page`);
@@ -58,13 +61,48 @@ export function linkTo({ flock, beside, other }) {
   return `#${new URLSearchParams(pairs).toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
 }
 
-/** The simulator's requests for the flocks that are shown, one or two. */
-export function requestsOf({ flock, beside }) {
-  const written = (fields) => Object.entries(fields).map(([name, value]) => `${name}=${value}`).join("\n");
-  return [written(flock), ...(beside ? [written({ ...flock, ...beside })] : [])];
+/** A field's value as JSON, from the text that links have: lists with commas, rows that semicolons end. */
+export function valueFrom(kind, text) {
+  // What is no number stays text, for the simulator to refuse.
+  const number = (each) => (each.trim() !== "" && Number.isFinite(Number(each)) ? Number(each) : each.trim());
+  const list = (each, read) => each.split(",").filter((item) => item.trim() !== "").map(read);
+  if (kind === "rows") {
+    return text.split(";").filter(Boolean).map((row) => list(row, number));
+  }
+  if (kind === "flag") {
+    return { true: true, false: false }[text] ?? text;
+  }
+  if (text.includes(",") && ["pool", "choices"].includes(kind)) {
+    return list(text, kind === "pool" ? number : (name) => name.trim());
+  }
+  return kind === "count" || kind === "real" ? number(text) : text;
 }
 
-const isOwn = (name) => !["preset", "seed", "leaders"].includes(name);
+/** The text that links have for a value. */
+export function textOf(value) {
+  const isRows = Array.isArray(value) && Array.isArray(value[0]);
+  return Array.isArray(value) ? value.map(textOf).join(isRows ? ";" : ",") : String(value);
+}
+
+/** The simulator's request for a flock. `kinds`: what kind of value each field has. */
+export function requestOf(flock, kinds) {
+  const request = { parameters: {} };
+  for (const [name, text] of Object.entries(flock)) {
+    if (STRINGS.includes(name)) {
+      request[name] = text;
+    } else {
+      request.parameters[name] = valueFrom(kinds[name], text);
+    }
+  }
+  return request;
+}
+
+/** The simulator's requests for the flocks that are shown, one or two. */
+export function requestsOf({ flock, beside }, kinds) {
+  return [flock, ...(beside ? [{ ...flock, ...beside }] : [])].map((each) => requestOf(each, kinds));
+}
+
+const isOwn = (name) => !STRINGS.includes(name);
 
 /** The command that simulates a flock, for so many seconds. */
 export function commandLine(flock, seconds) {
@@ -126,37 +164,22 @@ function pythonValue(text, kind) {
   return text.includes(",") ? `[${text.split(",").map((each) => `"${each}"`).join(", ")}]` : `"${text}"`;
 }
 
-/** The values of parameters as TOML, a line each. */
-export function tomlOf(values, kinds) {
-  const real = (text) => (/inf/i.test(text) ? "inf" : /[.e]/.test(text) ? text : `${text}.0`);
-  const line = (name, text) => {
-    const kind = kinds[name];
-    const isRadii = kind === "pool" && text.includes(",");
-    if (kind === "rows") {
-      return `[${text.split(";").filter(Boolean).map((row) => `[${row.split(",").map(real).join(", ")}]`).join(", ")}]`;
-    }
-    if (kind === "real" || isRadii) {
-      return isRadii ? `[${text.split(",").map(real).join(", ")}]` : real(text);
-    }
-    if (kind === "choices" && text.includes(",")) {
-      return `[${text.split(",").map((each) => `"${each}"`).join(", ")}]`;
-    }
-    return kind === "count" || kind === "flag" ? text : `"${text}"`;
-  };
-  return Object.entries(values).map(([name, text]) => `${name} = ${line(name, text)}\n`).join("");
+/** Parameters as TOML, a line each: what JSON and TOML write alike, and infinity. */
+export function tomlOf(values) {
+  const line = ([name, value]) => `${name} = ${JSON.stringify(value).replaceAll('"inf"', "inf")}\n`;
+  return Object.entries(values).map(line).join("");
 }
 
-/** A request from parameters as TOML, as recordings hold them: names with values, and lists over several lines. */
-export function requestOfToml(toml) {
+/** Parameters from TOML as recordings hold it: names with values, and lists over several lines. */
+export function valuesOfToml(toml) {
   const assignments = toml.matchAll(/^(\w+)[ \t]*=[ \t]*(\[(?:[^[\]]|\[[^[\]]*\])*\]|[^\n]*)/gm);
-  return Array.from(assignments, ([, name, value]) => `${name}=${plainValue(value.trim())}`).join("\n");
-}
-
-function plainValue(value) {
-  const each = (list) => list.split(",").map((item) => item.replace(/["'\s]/g, "")).filter(Boolean).join(",");
-  if (!value.startsWith("[")) {
-    return each(value);
-  }
-  const rows = Array.from(value.slice(1).matchAll(/\[([^[\]]*)\]/g), ([, row]) => each(row));
-  return rows.length > 0 ? rows.join(";") : each(value.slice(1, -1));
+  return Object.fromEntries(Array.from(assignments, ([, name, value]) => {
+    const json = value.replace(/,(\s*\])/g, "$1").replace(/\+?\binf\b/g, '"inf"').trim();
+    try {
+      return [name, JSON.parse(json)];
+    } catch {
+      // Not what it should be, for the simulator to refuse.
+      return [name, value.trim()];
+    }
+  }));
 }

@@ -2,17 +2,18 @@
 
 import { GrowingRun } from "./growing_run.mjs";
 import { array, readNpz, writeNpz } from "./npz.mjs";
-import { requestOfToml, tomlOf } from "./request.mjs";
+import { checkedArrays } from "./recording.mjs";
+import { commandLine, pythonText, tomlOf, valuesOfToml } from "./request.mjs";
 
-/** What every recording holds of a sample besides its quantities. */
-const SAMPLED = ["time_s", "phase", "in_analysis_window", "pose", "velocity"];
+/** How long the commands that show the same flock run, in s. */
+const SECONDS = 480;
 
 /**
  * The bytes of a recording of a run since it last changed, as flockenv.Recording.load reads them. `about`: the
- * format and the version of the package; `policy`: how leaders steered; `kinds`: those of the parameters;
- * `recorded`: the names of the quantities that recordings hold.
+ * format and the version of the package; `policy`: how leaders steered; `recorded`: the names of the quantities that
+ * recordings hold.
  */
-export function recordingOf(run, { format, version, policy, kinds, recorded }) {
+export function recordingOf(run, { format, version, policy, recorded }) {
   const first = run.sampleAt(run.changedAt);
   const { raw, length } = run;
   const [samples, boats, leaders] = [length - first, run.boats, run.leaders];
@@ -31,7 +32,7 @@ export function recordingOf(run, { format, version, policy, kinds, recorded }) {
     rudder: array.reals(raw.rudder.from(first, leaders), [samples, leaders]),
     format: array.texts([format], []),
     version: array.texts([version], []),
-    parameters: array.texts([tomlOf(run.parameters, kinds)], []),
+    parameters: array.texts([tomlOf(run.stored)], []),
     policy: array.texts([policy], []),
     seed: array.whole(run.seed),
     duration_s: array.reals([run.end], []),
@@ -48,38 +49,63 @@ export function download(bytes, name) {
 }
 
 /**
- * The run of a recording's file. `describe` turns a request and a name into what a run is described by, and `derive`
- * gives the rows of the quantities `series` from the recorded ones.
+ * The run of a recording's file. `check` gives the parameters and lengths of a request, `describe` what a run is
+ * described by, and `derive` the rows of the quantities.
  */
-export async function runOfFile(file, { describe, derive, series, phases }) {
-  const arrays = await readNpz(await file.arrayBuffer());
-  if (!String(arrays.format?.values[0] ?? "").startsWith("flockenv recording")) {
-    throw new Error("it is no recording of flockenv");
-  }
-  const missing = SAMPLED.find((name) => !Object.hasOwn(arrays, name));
-  if (missing || !arrays.parameters) {
-    throw new Error(`it holds no ${missing ?? "parameters"}`);
-  }
-  const described = await describe(requestOfToml(arrays.parameters.values[0]), {
-    name: file.name, seed: String(arrays.seed?.values[0] ?? ""), version: String(arrays.version?.values[0] ?? ""),
+export async function runOfFile(file, about, { check, describe, derive }) {
+  const because = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
+  const arrays = await readNpz(await file.arrayBuffer()).catch(because("is no whole, unharmed .npz file"));
+  const checked = await checkedArrays(arrays, about, async (toml) => check({ parameters: valuesOfToml(toml) }))
+    .catch(because("is no recording of flockenv"));
+  const described = describe(checked, {
+    name: file.name, seed: String(arrays.seed.values[0]), version: arrays.version.values[0],
   });
   const samples = arrays.time_s.values.length;
-  const isWhole = (name, width) => arrays[name].values.length === samples * width;
-  if (samples === 0 || !["pose", "velocity"].every((name) => isWhole(name, 3 * described.boats)) ||
-      !["phase", "in_analysis_window"].every((name) => isWhole(name, 1))) {
-    throw new Error("it holds no poses, or parts of it do not belong together");
+  if (samples === 0 || arrays.pose.shape[1] === 0) {
+    throw new Error("is a recording without samples or poses, and cannot be shown");
   }
-  const run = new GrowingRun({ ...described, isRecorded: true }, series, samples);
-  const rudder = arrays.rudder?.values ?? new Float64Array(samples * described.leaders);
+  if (arrays.ids) {
+    throw new Error("holds tracks, which `flockenv replay` shows");
+  }
+  const run = new GrowingRun({ ...described, isRecorded: true }, about.series, samples);
   run.append({
     time_s: arrays.time_s.values,
-    phase: arrays.phase.values.map((name) => Math.max(phases.indexOf(name), 0)),
+    phase: arrays.phase.values.map((name) => about.phases.indexOf(name)),
     in_analysis_window: arrays.in_analysis_window.values,
     pose: arrays.pose.values,
     velocity: arrays.velocity.values,
-    rudder: rudder.length === samples * described.leaders ? Float64Array.from(rudder) : new Float64Array(samples * described.leaders),
+    rudder: Float64Array.from(arrays.rudder?.values ?? new Float64Array(samples * described.leaders)),
     series: await derive(arrays, described),
     contacts: new Float64Array(0),
   });
   return run;
+}
+
+/** The quantities of a recording, from what it holds: the question that the simulator answers. */
+export function derivedOf(arrays, { target, boats }, names) {
+  const recorded = Object.fromEntries(names.filter((name) => arrays[`order_${name}`]).map((name) => [name, arrays[`order_${name}`].values]));
+  const samples = arrays.time_s.values.length;
+  const rows = (values, k) => Array.from({ length: boats }, (_, boat) => Array.from(values.subarray(3 * (k * boats + boat), 3 * (k * boats + boat + 1))));
+  const isWhole = ["psi_o", "phi_o"].every((name) => recorded[name]);
+  const states = isWhole ? null : Array.from({ length: samples }, (_, k) =>
+    ({ pose: rows(arrays.pose.values, k), velocity: rows(arrays.velocity.values, k) }));
+  return { names, recorded, states, samples, sign: target === "ccw" ? -1 : 1 };
+}
+
+/** Writes the same flocks as commands and in Python. */
+export function showTexts({ shown, kinds }) {
+  const isYours = shown.flock.leaders === "you";
+  const { leaders: _, ...lawful } = shown.flock;
+  const flocks = [isYours ? lawful : shown.flock];
+  if (shown.beside && !isYours) {
+    flocks.push({ ...shown.flock, ...shown.beside });
+  }
+  const commands = flocks.map((each) => commandLine(each, SECONDS));
+  const byId = (id) => document.getElementById(id);
+  byId("command").value = commands.join("\n").trim();
+  byId("python").value = pythonText(flocks, SECONDS, kinds);
+  byId("same").textContent = [
+    isYours ? "Your own rudders are in the recording alone: these run the law in your place." : "",
+    commands.includes("") ? "No command gives each leader a policy of its own, as Python does." : "",
+  ].join("");
 }

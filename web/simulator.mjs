@@ -12,9 +12,30 @@ export class Unanswered extends Error {
 }
 
 export class Simulator {
+  worker = null;
+  next = 0;
+  open = new Map();
+
   /** `script`: the thread's own; `bytes`: the compiled simulator. */
   constructor(script, bytes) {
-    Object.assign(this, { script, bytes, next: 0, open: new Map() });
+    this.script = script;
+    this.bytes = bytes;
+  }
+
+  /** For how many ms the oldest question has been open; 0 if none is. */
+  get waiting() {
+    const [oldest] = this.open.values();
+    return oldest ? performance.now() - oldest.asked : 0;
+  }
+
+  /** Ends the thread, in the middle of whatever it does: its questions get these words. */
+  stop(words) {
+    this.worker?.terminate();
+    for (const { reject, waited } of this.open.values()) {
+      clearTimeout(waited);
+      reject(new Unanswered({ words }));
+    }
+    this.open.clear();
   }
 
   /** Starts a thread, in place of the one there is; returns what the simulator says of itself. */
@@ -23,10 +44,10 @@ export class Simulator {
     const address = URL.createObjectURL(new Blob([this.script], { type: "text/javascript" }));
     this.worker = new Worker(address);
     this.worker.addEventListener("message", ({ data }) => this.#answered(data));
-    this.worker.addEventListener("error", (event) => this.#fail(event.message || "the simulator's thread does not start"));
-    const { text } = await this.ask("start", { bytes: this.bytes });
+    this.worker.addEventListener("error", (event) => this.stop(event.message || "the simulator's thread does not start"));
+    const { described } = await this.ask("start", { bytes: this.bytes });
     URL.revokeObjectURL(address);
-    return text;
+    return described;
   }
 
   /** Asks; the answer, or an `Unanswered`. */
@@ -34,8 +55,8 @@ export class Simulator {
     return new Promise((resolve, reject) => {
       this.next += 1;
       const id = this.next;
-      const waited = setTimeout(() => this.#fail("the simulator took too long"), PATIENCE);
-      this.open.set(id, { resolve, reject, waited });
+      const waited = setTimeout(() => this.stop("it took too long"), PATIENCE);
+      this.open.set(id, { resolve, reject, waited, asked: performance.now() });
       this.worker.postMessage({ id, kind, ...message });
     });
   }
@@ -52,13 +73,5 @@ export class Simulator {
     } else {
       question.resolve(said);
     }
-  }
-
-  #fail(words) {
-    for (const { reject, waited } of this.open.values()) {
-      clearTimeout(waited);
-      reject(new Unanswered({ words }));
-    }
-    this.open.clear();
   }
 }

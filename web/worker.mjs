@@ -10,32 +10,48 @@ const TURN = 4;
 let core = null;
 let shown = [];
 
-const ANSWERS = {
+/** What the thread answers, by the kind of question. */
+export const ANSWERS = {
   async start({ bytes }) {
     core = await Core.load(bytes);
-    return { text: core.describe() };
+    return { described: core.describe() };
   },
 
   check: ({ request }) => ({ values: core.check(request) }),
 
-  /** The rows of all quantities, in the order of their names, from the recorded ones of so many samples. */
-  derive({ names, recorded, samples, sign }) {
-    const { psi_o: order, phi_o: angle } = recorded;
-    const rows = Array.from({ length: samples }, (_, k) =>
-      names.map((name, place) => recorded[name]?.[k] ?? core.derived(place, order[k], angle[k], sign)));
+  /**
+   * The rows of all quantities, in the order of their `names`, of so many samples: recorded ones as they are or from
+   * the `states`, the rest from those. The flock is the one that was checked last.
+   */
+  derive({ names, recorded, states, samples, sign }) {
+    const rows = Array.from({ length: samples }, (_, k) => {
+      const known = states ? core.recorded(states[k]) : null;
+      const value = (name, place) => recorded[name]?.[k] ?? known?.[place] ?? NaN;
+      const [order, angle] = ["psi_o", "phi_o"].map((name) => value(name, names.indexOf(name)));
+      return names.map((name, place) => {
+        const derived = core.derived(place, order, angle, sign);
+        return Number.isNaN(derived) ? value(name, place) : derived;
+      });
+    });
     return { series: Float64Array.from(rows.flat()) };
   },
 
-  /** Starts all flocks again. */
-  open: ({ requests }) => ({ continues: false, values: opened(requests), taken: taken(requests.length) }),
+  /** Starts all flocks again, and lets them run for so many samples. */
+  open({ requests, ahead = 0 }) {
+    const values = opened(requests);
+    for (const flock of shown.keys()) {
+      advanced(flock, ahead);
+    }
+    return { continues: false, values, taken: taken(requests.length) };
+  },
 
   /** Changes all flocks; they start again together where one of them has to. */
   change({ requests }) {
     try {
       const said = requests.map((request, flock) => core.change(flock, request));
       shown = requests;
-      const continues = said.every((text) => text.startsWith("continued"));
-      const values = continues ? said.map((text) => text.slice(text.indexOf("\n") + 1)) : opened(requests);
+      const continues = said.every(({ continued }) => continued);
+      const values = continues ? said : opened(requests);
       return { continues, values, taken: taken(requests.length) };
     } catch (refusal) {
       opened(shown);
@@ -49,9 +65,7 @@ const ANSWERS = {
     core.steer(0, rudder);
     for (let left = samples; left > 0 && performance.now() - start < milliseconds; left -= TURN) {
       for (const flock of shown.keys()) {
-        for (let missing = Math.min(TURN, left); missing > 0;) {
-          missing -= core.advance(flock, missing, WORK);
-        }
+        advanced(flock, Math.min(TURN, left));
       }
     }
     return { ...ANSWERS.look({ boat }), milliseconds: performance.now() - start, memory: core.memory };
@@ -65,6 +79,12 @@ const ANSWERS = {
     return { taken: taken(shown.length) };
   },
 };
+
+function advanced(flock, samples) {
+  for (let missing = samples; missing > 0;) {
+    missing -= core.advance(flock, missing, WORK);
+  }
+}
 
 function opened(requests) {
   const values = requests.map((request, flock) => core.open(flock, request));

@@ -2,7 +2,8 @@
 
 import json
 from collections.abc import Callable
-from pathlib import Path
+from importlib import resources
+from importlib.resources.abc import Traversable
 from typing import Final
 
 from flockenv.parameters import FlockParameters
@@ -35,13 +36,13 @@ def demo_runs(
     }
 
 
-def live_page() -> Path | None:
-    """Return the live page of this checkout; None where `make live` has not built it."""
-    page = Path(__file__).parents[2] / "web" / "live.html"
+def live_page() -> Traversable | None:
+    """Return the live page, which `make live` builds into the package; None where it has not."""
+    page = resources.files("flockenv.replay").joinpath("live.html")
     return page if page.is_file() else None
 
 
-def live_demo(page: Path, seed: int) -> str:
+def live_demo(page: Traversable, seed: int) -> str:
     """Return a live page that opens with the two flocks of the demo, of this seed."""
     p = DEMO_PARAMETERS
     flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"

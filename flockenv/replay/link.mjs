@@ -1,5 +1,7 @@
 // The part of the page's address that selects what is shown: `#t=240&speed=8`.
 
+import { ignoredPart } from "./shared/link.mjs";
+
 /**
  * What a fragment requests: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence
  * for each part that cannot be followed.
@@ -24,8 +26,7 @@ function refusal(key, text, { start, end, speeds }) {
     t: `t is a time from ${start} to ${end} s`,
     speed: `speed is one of ${speeds.join(", ")}`,
   };
-  const shown = text.length > 40 ? `${text.slice(0, 40)}…` : text;
-  return `The link's ${key}=${shown} is ignored: ${accepted[key] ?? "a link may hold t and speed"}.`;
+  return ignoredPart(key, text, accepted[key] ?? "a link may hold t and speed");
 }
 
 /** The fragment for a time in s and a speed. */

@@ -30,12 +30,14 @@ MOST_BYTES = 10_000_000
 _SCRIPTS = (
     "packing.mjs",
     "shared/words.mjs",
-    "link.mjs",
+    "shared/link.mjs",
+    "shared/transport.mjs",
     "shared/run.mjs",
     "shared/forces.mjs",
     "shared/scene.mjs",
     "shared/chart.mjs",
     "shared/panel.mjs",
+    "link.mjs",
     "player.mjs",
     "main.mjs",
 )
@@ -140,7 +142,7 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
         "quantities": quantities,
         "moment": {"time_s": time_s, "words": words},
     }
-    style, script = _read("replay.css"), joined(map(_read, _SCRIPTS))
+    style, script = _core.STYLE_SHEET + _read("shared/page.css"), joined(map(_read, _SCRIPTS))
     policy = (
         "default-src 'none'",
         f"style-src {digest(style)}",

@@ -3,43 +3,48 @@
 import { Chart, legendOf } from "./shared/chart.mjs";
 import { forceScale } from "./shared/forces.mjs";
 import { linkTo, readLink } from "./link.mjs";
-import { Panel, parameterTable, runSwitch } from "./shared/panel.mjs";
+import { LinkWriter } from "./shared/link.mjs";
+import { colorKey, Panel, parameterTable, runSwitch } from "./shared/panel.mjs";
 import { span } from "./shared/run.mjs";
 import { colors } from "./shared/scene.mjs";
+import { Transport } from "./shared/transport.mjs";
 import { caption, fixed } from "./shared/words.mjs";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const FIRST_SPEED = 8;
 const FAR = 10;
 const MINUTE = 60;
-/** How often, in ms, the link follows while the page plays: browsers refuse more than some 100 in half a minute. */
-const LINK_EVERY = 1000;
 
 /** What to watch. */
 function watchWords(runs) {
   const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
   if (runs.some(({ target }) => target !== null)) {
-    return "Watch whether the blue boats come to circle with the amber leaders: the order towards the target is 1 if all do, and " +
+    return "Watch whether the boats come to circle with the leaders, which have a ring: the order towards the target is 1 if all do, and " +
       "−1 if all circle the other way.";
   }
-  return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the blue boats follow" : "whether the boats come to circle together"}: ${towards}.`;
+  return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the boats follow" : "whether the boats come to circle together"}: ${towards}.`;
 }
 
 export class Player {
+  time = 0;
+  pinned = null;
+  hovered = null;
+  palette = colors();
+  requested = undefined;
+  #transport = new Transport(document.getElementById("play"), (passed) => this.#tick(passed));
+  #link = new LinkWriter(() => linkTo(this.time, this.speed));
+
   /** `moment` in s is where the page opens unless its link says otherwise. */
   constructor(runs, quantities, moment) {
     this.runs = runs;
     this.quantities = quantities;
     this.controls = Object.fromEntries(
-      ["play", "back", "forward", "scrub", "clock", "speed", "trails", "boat", "forces", "quantity", "legend",
+      ["play", "back", "forward", "scrub", "clock", "speed", "trails", "boat", "colors", "forces", "quantity", "legend",
         "help", "keys", "letters", "status"]
         .map((id) => [id, document.getElementById(id)]),
     );
     [this.start, this.end] = span(runs);
     this.time = this.start;
-    this.playing = false;
-    this.hovered = this.pinned = null;
-    this.palette = colors();
     this.forceScale = forceScale(runs);
     this.panels = runs.map((run, place) => new Panel(run, place, runs.length > 1));
     document.body.classList.toggle("pair", runs.length > 1);
@@ -56,6 +61,10 @@ export class Player {
     this.seek(moment);
     this.#followLink();
     this.show();
+  }
+
+  get playing() {
+    return this.#transport.playing;
   }
 
   get speed() {
@@ -83,6 +92,7 @@ export class Player {
       label.append(" (not recorded)");
       label.title = "Runs recorded with contacts=True show them";
     }
+    document.getElementById("color-key").append(...colorKey());
     document.getElementById("parameters").append(parameterTable(this.runs));
   }
 
@@ -91,16 +101,16 @@ export class Player {
   }
 
   #listen() {
-    const { play, back, forward, scrub, speed, trails, boat, forces, quantity, help, keys } = this.controls;
+    const { play, back, forward, scrub, speed, trails, boat, colors: coloring, forces, quantity, help, keys } = this.controls;
     play.addEventListener("click", () => this.toggle());
     back.addEventListener("click", () => this.step(-1));
     forward.addEventListener("click", () => this.step(1));
     scrub.addEventListener("input", () => this.seek(Number(scrub.value)));
     help.addEventListener("click", () => keys.showModal());
-    for (const each of [trails, forces, quantity]) {
+    for (const each of [trails, coloring, forces, quantity]) {
       each.addEventListener("change", () => this.show());
     }
-    speed.addEventListener("change", () => { this.#writeLink(); this.show(); });
+    speed.addEventListener("change", () => { this.#link.write(); this.show(); });
     boat.addEventListener("change", () => this.pin(boat.value === "" ? null : Number(boat.value)));
     for (const panel of this.panels) {
       panel.onBoat((boat) => this.hover(boat), (boat) => this.pin(boat === this.pinned ? null : boat));
@@ -136,6 +146,7 @@ export class Player {
       "+": () => this.#choose("speed", 1),
       "-": () => this.#choose("speed", -1),
       t: () => this.#choose("trails", 1, true),
+      c: () => this.#choose("colors", 1, true),
       f: () => forces.click(),
       "]": () => this.#pinNext(1),
       "[": () => this.#pinNext(-1),
@@ -177,16 +188,15 @@ export class Player {
   }
 
   toggle() {
-    this.playing = !this.playing;
     if (this.playing) {
+      this.#transport.pause();
+      this.time = this.#sampled(this.time);
+      this.#link.write();
+    } else {
       if (this.time >= this.end) {
         this.time = this.start;
       }
-      this.before = performance.now();
-      requestAnimationFrame((now) => this.#tick(now));
-    } else {
-      this.time = this.#sampled(this.time);
-      this.#writeLink();
+      this.#transport.play();
     }
     this.show();
   }
@@ -198,7 +208,7 @@ export class Player {
 
   /** One sample back or on, of whichever run has the next one. */
   step(by) {
-    this.playing = false;
+    this.#transport.pause();
     const next = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
     const later = this.runs.map(next).filter((time) => time > this.time + 1e-9);
     this.seek(by < 0 ? this.time - 1e-6 : Math.min(this.end, ...later));
@@ -207,8 +217,8 @@ export class Player {
   /** Goes to the last sample up to a time, so that picture and numbers belong together. */
   seek(time) {
     this.time = this.#sampled(Math.min(Math.max(time, this.start), this.end));
-    this.before = performance.now();
-    this.#writeLink();
+    this.#transport.rest();
+    this.#link.write();
     this.request();
   }
 
@@ -217,18 +227,13 @@ export class Player {
     this.requested ??= requestAnimationFrame(() => this.show());
   }
 
-  #tick(now) {
-    if (!this.playing) {
-      return;
-    }
-    // A page in the background gets no frames; it continues where it was.
-    const passed = Math.min(Math.max(now - this.before, 0), 250) / 1000;
-    this.before = now;
+  #tick(passed) {
     this.time = Math.min(this.time + passed * this.speed, this.end);
-    this.playing = this.time < this.end;
-    this.#writeLink();
+    if (this.time >= this.end) {
+      this.#transport.pause();
+    }
+    this.#link.write();
     this.show();
-    requestAnimationFrame((next) => this.#tick(next));
   }
 
   /** Does what the page's link says, and reports what of it cannot be done. */
@@ -243,26 +248,16 @@ export class Player {
     }
   }
 
-  /** Brings the page's link up to date, soon: not more often than browsers allow. */
-  #writeLink() {
-    // A page inside another one, such as a notebook, has no address of its own.
-    if (location.protocol === "about:") {
-      return;
-    }
-    this.linkDue ??= setTimeout(() => {
-      this.linkDue = undefined;
-      history.replaceState(null, "", linkTo(this.time, this.speed));
-    }, LINK_EVERY);
-  }
-
   show() {
     cancelAnimationFrame(this.requested);
     this.requested = undefined;
-    const { play, scrub, clock, trails, forces, quantity } = this.controls;
+    const { scrub, clock, trails, forces, quantity } = this.controls;
+    document.body.dataset.colors = this.controls.colors.value;
     const options = {
       trailSeconds: Number(trails.value),
       forceScale: forces.checked ? this.forceScale : null,
       boat: this.boat,
+      coloring: this.controls.colors.value,
       palette: this.palette,
     };
     for (const panel of this.panels) {
@@ -272,8 +267,6 @@ export class Player {
     for (const chart of this.charts) {
       chart.draw(this.time, chosen, this.palette);
     }
-    play.classList.toggle("playing", this.playing);
-    play.setAttribute("aria-label", this.playing ? "Pause" : "Play");
     scrub.value = this.time;
     scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
     clock.textContent = `${fixed(this.#sampled(this.time), 1)} s of ${fixed(this.end, 1)} s`;

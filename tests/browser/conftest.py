@@ -325,7 +325,9 @@ class LivePage(Page):
 
     def wait(self) -> None:
         """Wait until the simulator has answered all its questions."""
-        self.until("return !page.changing && !page.advancing && page.simulator.open.size === 0")
+        self.until(
+            "return !page.changing && !page.playback.advancing && page.simulator.open.size === 0"
+        )
 
     def run_to(self, seconds: float) -> None:
         """Let the flock run fast until this time at least, and pause."""
@@ -352,7 +354,7 @@ class LivePage(Page):
 
 @pytest.fixture(scope="session")
 def file(pytestconfig) -> Path:
-    return pytestconfig.rootpath / "web" / "live.html"
+    return pytestconfig.rootpath / "flockenv" / "replay" / "live.html"
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
     names = live.script(
         "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
     )
-    assert names == ["noise", "leaders", "learned", "forces", "opposed"]
+    assert names == ["steer", "noise", "leaders", "learned", "forces", "opposed"]
     for name in names:
         live.click(f"#lessons a[data-lesson='{name}']")
         live.until(
@@ -20,7 +20,8 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
         assert (
             live.find(f"#lessons a[data-lesson='{name}']").get_attribute("aria-current") == "true"
         )
-        assert len(live.text("#story")) > 100
+        assert 60 < len(live.text("#story")) < 140
+        assert 40 < len(live.text("#after")) < 110
         live.run_to(live.script("return page.runs[0].end") + 3.0)
         for link in live.driver.find_elements("css selector", "#story a"):
             link.click()

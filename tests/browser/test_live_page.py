@@ -167,8 +167,8 @@ def test_a_second_flock_runs_beside(live):
         "the paper's law",
         "the tuned law",
     ]
-    assert "the paper's law" in live.text("#score")
-    assert "the tuned law" in live.text("#score")
+    assert "the paper's law" in live.text(".so-far")
+    assert "the tuned law" in live.text(".so-far")
     live.choose("#beside", "")
     assert live.script("return page.runs.length") == 1
     assert live.complaints() == []
@@ -196,8 +196,8 @@ def test_the_arrow_keys_steer_one_leader(live):
     assert set(rudders[:, 0]) == {-1.0, 0.0, 1.0}
     assert (rudders[1:, 1] != rudders[1:, 0]).any()
     assert rudders[-1, 0] == 0.0
-    assert "you" in live.text("#score")
-    assert "the paper's law" in live.text("#score")
+    assert "you" in live.text(".so-far")
+    assert "the paper's law" in live.text(".so-far")
     assert live.complaints() == []
 
 
@@ -216,12 +216,12 @@ def test_a_thumb_steers_on_a_phone(open_live):
     width = thumb.size["width"]
     held = live.actions().move_to_element(thumb).click_and_hold()
     held.move_by_offset(round(-0.25 * width), 0).perform()
-    assert live.script("return page.rudder") == pytest.approx(0.5, abs=0.15)
+    assert live.script("return page.hand.value") == pytest.approx(0.5, abs=0.15)
     now = live.script("return page.runs[0].end")
     live.until("return page.runs[0].end > arguments[0] + 1", now)
     assert live.script("return page.runs[0].rudder(0, page.runs[0].length - 1)") > 0.3
     live.actions().release().perform()
-    assert live.script("return page.rudder") == 0
+    assert live.script("return page.hand.value") == 0
     assert thumb.get_attribute("value") == "0"
 
 
@@ -250,8 +250,8 @@ def test_a_boats_numbers_frame_and_observation(live):
         live.wait()
         source = "return page.runs[0].posesAt(page.runs[0].end)[1]"
         x, y, heading = live.script(source)
-        names = live.script("return page.entries.map(([, , name]) => name)")
-        seen = dict(zip(names, live.script("return Array.from(page.observed)"), strict=True))
+        names = live.script("return page.entries.map(({name}) => name)")
+        seen = dict(zip(names, live.script("return Array.from(page.view.observed)"), strict=True))
         phi = np.arctan2(y, x) - heading
         assert seen["cos_orientation"] == pytest.approx(np.cos(phi), abs=1e-6)
         rudder = live.script("return page.runs[0].rudder(1, page.runs[0].length - 1)")
@@ -263,7 +263,7 @@ def test_a_boats_numbers_frame_and_observation(live):
     live.press("ESCAPE")
     live.script("document.activeElement.blur()")
     live.press("ESCAPE")
-    assert live.script("return page.pinned") is None
+    assert live.script("return page.view.pinned") is None
 
 
 def test_texts_of_the_flock_are_shown_and_copied(live, chromium):

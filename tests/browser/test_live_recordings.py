@@ -69,7 +69,7 @@ def test_a_file_is_dropped_onto_the_page(live, tmp_path):
         live.until(
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )
-        assert ("cannot be shown" in live.status()) == (name != "dropped.npz")
+        assert ("is no whole, unharmed .npz file" in live.status()) == (name != "dropped.npz")
     # What was shown before stays.
     assert np.array_equal(live.rows("pose").reshape(-1, 5, 3), recording.pose)
     # Words that are no file are dropped in vain.
@@ -96,7 +96,7 @@ def test_what_is_no_recording_is_refused_in_words(live, tmp_path):
         live.until(
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )
-        assert f"{name} cannot be shown: " in live.status()
+        assert live.status().startswith(f"{name} is no ")
         assert not live.script("return page.recorded")
     live.run_to(2.0)
     assert live.complaints() == []

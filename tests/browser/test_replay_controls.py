@@ -115,6 +115,7 @@ def test_everything_can_be_reached_and_has_a_name(page):
         "speed",
         "trails",
         "boat",
+        "colors",
         "forces",
         "quantity",
         "help",

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv import rendering
 from flockenv.replay import write_replay
 
 pytestmark = pytest.mark.browser
@@ -13,14 +14,37 @@ NORMAL, LEADER, FORCE = (0x00, 0x72, 0xB2), (0xF0, 0xA2, 0x02), (0xC2, 0x18, 0x5
 
 def test_boats_are_drawn_where_they_are(page, law):
     page.choose("#trails", "0")
+    seen = set()
     for share in (0.2, 0.6):
         page.click_at("#scrub", share)
         page.press("ARROW_LEFT")
-        for boat, (x, y, heading) in enumerate(law.pose[page.sample(law)]):
-            # Towards the stern there is no direction mark.
-            stern = (x - 4 * np.cos(heading), y - 4 * np.sin(heading))
-            color = page.color(0, *page.pixels(0, *stern))
-            assert color == (LEADER if boat < 2 else NORMAL)
+        k = page.sample(law)
+        frame = rendering.frame(law, float(law.time_s[k]), 900, 900)
+        for colors in ("direction", "role"):
+            page.choose("#colors", colors)
+            for boat, (x, y, heading) in enumerate(law.pose[k]):
+                # Towards the stern there is no direction mark.
+                stern = (x - 4 * np.cos(heading), y - 4 * np.sin(heading))
+                color = page.color(0, *page.pixels(0, *stern))
+                if colors == "role":
+                    assert color == (LEADER if boat < 2 else NORMAL)
+                else:
+                    # As in frames, where 47 % of the side are the pool's radius.
+                    column, row = (450 + 0.47 * 900 / 90 * np.array([1, -1]) * stern).astype(int)
+                    assert color == tuple(frame[row, column])
+                    seen.add(color)
+    assert len(seen) == 3
+
+
+def test_a_switch_of_colors_has_a_key_and_a_legend(page):
+    assert page.text("#color-key") == "clockwise\ncounter-clockwise\nneither, as in a jam"
+    before = page.picture(".run canvas")
+    page.press("c")
+    assert page.find("#colors").get_attribute("value") == "role"
+    assert page.picture(".run canvas") != before
+    assert not page.find("#color-key").is_displayed()
+    page.press("c")
+    assert page.picture(".run canvas") == before
 
 
 def test_a_forces_drawn_length_reports_its_size(page, law):
@@ -94,19 +118,29 @@ def test_no_words_are_cut(open_page, law, pages, tmp_path, name, size):
 
 @pytest.mark.parametrize("size", [(1440, 900), (768, 1024), (390, 844)])
 @pytest.mark.parametrize("name", ["one", "two"])
-def test_a_boats_card_covers_no_words(open_page, pages, name, size):
+def test_a_boats_card_covers_no_words_and_no_water(open_page, pages, name, size):
     page = open_page(pages / f"{name}.html", size=size)
-    for time_s in (20, 50, 80):
-        for boat in range(12):
+    for time_s in (20, 80):
+        for boat in (0, 5):
             page.script("player.seek(arguments[0]); player.pin(arguments[1])", time_s, boat)
             page.wait_until_drawn()
-            covered = page.script("""
+            covered, farthest, hole, is_below = page.script("""
                 const [card, ...corners] = [".card", ...["top", "bottom"].flatMap((side) =>
                     ["left", "right"].map((end) => `.corner.${side}.${end}`))]
                     .map((name) => document.querySelector(name).getBoundingClientRect());
-                return corners.filter((each) => each.right > card.left && each.left < card.right
-                    && each.bottom > card.top && each.top < card.bottom).length""")
+                const [panel] = player.panels;
+                const canvas = panel.canvas.getBoundingClientRect();
+                const [x, y] = panel.scene.pixel(0, 0);
+                const away = (left, top) => Math.hypot(left - canvas.left - x, top - canvas.top - y);
+                return [corners.filter((each) => each.right > card.left && each.left < card.right
+                    && each.bottom > card.top && each.top < card.bottom).length,
+                    Math.max(away(card.left, card.top), away(card.right, card.bottom)),
+                    panel.run.lengths.inner_radius_cm * panel.scene.scale,
+                    card.top >= canvas.bottom]""")
             assert covered == 0, f"boat {boat} at {time_s} s"
+            assert is_below or farthest <= hole + 1
+    # Large pictures have room in the hole.
+    assert not is_below or size != (1440, 900) or name == "two"
 
 
 def test_two_runs_have_their_charts_above_the_fold(open_page, pages):
@@ -140,7 +174,7 @@ def test_nothing_is_aimed_at_without_leaders(open_page, parameters, tmp_path):
     assert page.find("#quantity").get_attribute("value") == "rotation"
     page.press("END")
     assert page.number(".signed", 0) == pytest.approx(run.order.rotation()[-1], abs=0.0056)
-    assert "clockwise" in page.text(".bottom.right", 0)
+    assert "rotation" in page.text(".bottom.right", 0)
     arrow = page.script("return player.palette.target")
     target = tuple(int(arrow[k : k + 2], 16) for k in (1, 3, 5))
     assert target not in ring(page)

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { opposedTargets, policiesOf } from "../../web/controls.mjs";
 import { readLink } from "../../web/request.mjs";
-import { LESSONS } from "../../web/lessons.mjs";
+import { LESSONS, OPENING, wordsOf } from "../../web/lessons.mjs";
 
 const FIELDS = ["n_boats", "n_leaders", "pool", "bw_s", "target"];
 
@@ -21,10 +21,23 @@ test("each leader has a policy, the last one's if no other is known", () => {
   assert.equal(policiesOf("you", 2), "paper's law,paper's law");
 });
 
+test("a lesson has a short sentence or two before and after, and so has the opening", () => {
+  for (const each of [...LESSONS, wordsOf("")]) {
+    const { before, after } = wordsOf(each.name ?? "");
+    for (const words of [before, after].map((text) => text.replace(/\]\([^)]*\)/g, ""))) {
+      assert.ok(words.split(" ").length <= 27, words);
+      assert.match(words, /\.$/);
+    }
+    assert.deepEqual(wordsOf(each.name ?? ""), each);
+  }
+});
+
 test("every link of a lesson is followed whole, and stays in its lesson", () => {
-  assert.equal(LESSONS.length, 5);
-  for (const { name, link, words } of LESSONS) {
-    const links = [link, ...Array.from(words.matchAll(/\]\((#[^)]*)\)/g), (found) => found[1])];
+  assert.equal(LESSONS.length, 6);
+  assert.equal(LESSONS[0].name, "steer");
+  assert.deepEqual(readLink(OPENING, FIELDS).ignored, []);
+  for (const { name, link, before, after } of LESSONS) {
+    const links = [link, ...Array.from(`${before} ${after}`.matchAll(/\]\((#[^)]*)\)/g), (found) => found[1])];
     for (const each of links) {
       const { ignored, other, flock } = readLink(each, FIELDS);
       assert.deepEqual(ignored, []);

@@ -57,13 +57,14 @@ test("when it is full, the older half is forgotten", () => {
 test("the score is the mean in the analysis window, and starts again with a change", () => {
   const [run, cycles] = [grown(), []];
   run.append(samples([0, 1, 2, 3], [1, 0.2, 0.4, 1], [false, true, true, false]), (order) => cycles.push(order));
-  assert.ok(Math.abs(run.score - 0.15) < 1e-12);
+  assert.ok(Math.abs(run.mean("signed_order") - 0.15) < 1e-12);
   assert.equal(cycles.length, 1);
   assert.ok(Math.abs(cycles[0] - 0.3) < 1e-12);
   run.describe({ bw_s: 1 });
-  assert.ok(Number.isNaN(run.score));
+  assert.ok(Number.isNaN(run.mean("signed_order")));
   run.append(samples([4], [0.8], [true]));
-  assert.equal(run.score, 0.4);
+  assert.equal(run.mean("signed_order"), 0.4);
+  assert.equal(run.mean("psi_o"), 0.8);
   assert.equal(run.changedAt, 3);
 });
 

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { commandLine, linkTo, pythonText, readLink, requestOfToml, requestsOf, tomlOf } from "../../web/request.mjs";
+import { commandLine, linkTo, pythonText, readLink, requestsOf, textOf, tomlOf, valueFrom, valuesOfToml } from "../../web/request.mjs";
 
 const FIELDS = ["n_boats", "n_leaders", "pool", "bw_s", "target", "dt_s", "discs"];
 
@@ -49,10 +49,30 @@ test("what is shown makes a link that asks for it", () => {
   assert.deepEqual(ignored, []);
 });
 
-test("requests are a line for each parameter, those of the second flock with its own", () => {
-  assert.deepEqual(requestsOf({ flock: { n_boats: "27" }, beside: null }), ["n_boats=27"]);
-  assert.deepEqual(requestsOf({ flock: { n_boats: "27", leaders: "paper's law at every substep" }, beside: { leaders: "you" } }),
-    ["n_boats=27\nleaders=paper's law at every substep", "n_boats=27\nleaders=you"]);
+const KINDS = { n_boats: "count", n_leaders: "count", pool: "pool", bw_s: "real", leaders_reverse: "flag", target: "choices", scheme: "choice", discs: "rows" };
+
+test("a request has the values of its parameters, that of the second flock with its own", () => {
+  assert.deepEqual(requestsOf({ flock: { n_boats: "27" }, beside: null }, KINDS), [{ parameters: { n_boats: 27 } }]);
+  assert.deepEqual(requestsOf({ flock: { n_boats: "27", seed: "18446744073709551615", leaders: "learned" }, beside: { leaders: "you" } }, KINDS),
+    ["learned", "you"].map((leaders) => ({ parameters: { n_boats: 27 }, seed: "18446744073709551615", leaders })));
+});
+
+test("a link's text is a value of its kind, and the value is the text again", () => {
+  for (const [name, text, value] of [
+    ["n_boats", "27", 27], ["bw_s", "0.3", 0.3], ["bw_s", "-1e-7", -1e-7], ["pool", "wide", "wide"], ["pool", "180,0", [180, 0]],
+    ["leaders_reverse", "true", true], ["leaders_reverse", "false", false], ["target", "cw", "cw"], ["target", "cw,ccw", ["cw", "ccw"]],
+    ["scheme", "moreau", "moreau"], ["discs", "1,2,3;4,5,6.5", [[1, 2, 3], [4, 5, 6.5]]], ["discs", "", []],
+  ]) {
+    assert.deepEqual(valueFrom(KINDS[name], text), value, `${name}=${text}`);
+    assert.equal(textOf(value), text === "-1e-7" ? String(-1e-7) : text);
+  }
+});
+
+test("what is no value of its kind stays text, for the simulator to refuse", () => {
+  for (const [kind, text] of [["real", "NaN"], ["real", "Infinity"], ["real", ""], ["count", "many"], ["flag", "1"], ["real", "1,2"]]) {
+    assert.equal(valueFrom(kind, text), text);
+  }
+  assert.deepEqual(valueFrom("pool", "inf,0"), ["inf", 0]);
 });
 
 test("the same flock as a command", () => {
@@ -77,16 +97,16 @@ test("leaders with policies of their own are no command, and a dictionary in Pyt
   assert.match(pythonText([flock], 60, { n_leaders: "count" }), /policy=\{"leader_0": "learned", "leader_1": "paper's law"\}\)\n$/);
 });
 
-test("parameters as TOML are read back as the request that they came from", () => {
-  const kinds = { n_boats: "count", pool: "pool", bw_s: "real", leaders_reverse: "flag", target: "choices", discs: "rows" };
-  const values = { n_boats: "27", pool: "inf,0", bw_s: "1e-7", leaders_reverse: "true", target: "cw,ccw", discs: "1,2,3;4,5,6.5" };
-  const toml = tomlOf(values, kinds);
-  assert.match(toml, /^pool = \[inf, 0\.0\]$/m);
-  assert.match(toml, /^discs = \[\[1\.0, 2\.0, 3\.0\], \[4\.0, 5\.0, 6\.5\]\]$/m);
-  assert.equal(requestOfToml(toml), "n_boats=27\npool=inf,0.0\nbw_s=1e-7\nleaders_reverse=true\ntarget=cw,ccw\ndiscs=1.0,2.0,3.0;4.0,5.0,6.5");
+test("parameters as TOML are read back as they were", () => {
+  const values = { n_boats: 27, pool: ["inf", 0], bw_s: 1e-7, leaders_reverse: true, target: ["cw", "ccw"], discs: [[1, 2, 3], [4, 5, 6.5]], walls: [] };
+  const toml = tomlOf(values);
+  assert.match(toml, /^pool = \[inf,0\]$/m);
+  assert.match(toml, /^target = \["cw","ccw"\]$/m);
+  assert.deepEqual(valuesOfToml(toml), values);
 });
 
 test("lists over several lines, as Python writes them", () => {
-  assert.equal(requestOfToml('pool = [\n    180.0,\n    0.0,\n]\nscheme = "leapfrog"\n'), "pool=180.0,0.0\nscheme=leapfrog");
-  assert.equal(requestOfToml("discs = [\n    [\n        1.0,\n        2.0,\n        3.0,\n    ],\n]\nwalls = []\n"), "discs=1.0,2.0,3.0\nwalls=");
+  assert.deepEqual(valuesOfToml('pool = [\n    180.0,\n    inf,\n]\nscheme = "leapfrog"\n'), { pool: [180, "inf"], scheme: "leapfrog" });
+  assert.deepEqual(valuesOfToml("discs = [\n    [\n        1.0,\n        2.0,\n        3.0,\n    ],\n]\nwalls = []\n"), { discs: [[1, 2, 3]], walls: [] });
+  assert.deepEqual(valuesOfToml("bw_s = nan\n"), { bw_s: "nan" });
 });

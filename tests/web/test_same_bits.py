@@ -12,15 +12,14 @@ import flockenv
 
 pytestmark = pytest.mark.live
 
-WASM = "web/target/wasm32-unknown-unknown/release/flockenv_web.wasm"
 MINUTE_S = 60.0
 
 
-def ends_in_node(root: Path, requests: list[str], duration_s: float) -> list[dict]:
+def ends_in_node(root: Path, wasm: Path, requests: list[dict], duration_s: float) -> list[dict]:
     runs = [{"request": each, "samples": round(10 * duration_s)} for each in requests]
     done = subprocess.run(
         ["node", root / "tests/web/run_core.mjs"],
-        input=json.dumps({"wasm": str(root / WASM), "runs": runs}),
+        input=json.dumps({"wasm": str(wasm), "runs": runs}),
         capture_output=True,
         text=True,
         check=True,
@@ -47,14 +46,13 @@ def numbers(text: str) -> np.ndarray:
         ),
     ],
 )
-def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig):
+def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig, wasm):
     fields = {"n_boats": 27, "n_leaders": 3, "bw_s": 0.3, **changes}
     parameters = flockenv.FlockParameters(**fields)
     each = {f"leader_{k}": name for k, name in enumerate(policy.split(","))}
     native = flockenv.simulate(parameters, 7, MINUTE_S, policy=each if len(each) > 1 else policy)
-    lines = [f"{name}={value}" for name, value in fields.items()]
-    request = "\n".join([*lines, "seed=7", f"leaders={policy}"])
-    (end,) = ends_in_node(pytestconfig.rootpath, [request], MINUTE_S)
+    request = {"parameters": fields, "seed": "7", "leaders": policy}
+    (end,) = ends_in_node(pytestconfig.rootpath, wasm, [request], MINUTE_S)
     assert end["samples"] == len(native)
     assert np.array_equal(numbers(end["pose"]), native.pose[-1])
     assert np.array_equal(numbers(end["velocity"]), native.velocity[-1])

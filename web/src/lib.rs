@@ -1,18 +1,21 @@
 //! The simulator as the live page calls it: a plain C interface to a few flocks.
 //!
-//! Text goes in through [`input`] and comes out through [`text`], as lines of fields that tabs separate; numbers come
-//! out as columns of `f64`. A call that fails returns 0 (or −1 where it counts) and leaves the name of a parameter,
-//! if one is to blame, and a sentence as the text. The flocks are numbered, and each fails alone.
+//! JSON goes in through [`input`] and comes out through [`text`]; numbers come out as columns of `f64`. A call that
+//! fails returns 0 (or −1 where it counts) and leaves the name of a parameter, if one is to blame, and a sentence as
+//! the text. The flocks are numbered, and each fails alone.
 
 mod describe;
+mod json;
 mod leaders;
 mod live;
 mod request;
 
 use flockenv::analysis::quantities::Formula;
 use flockenv::parameters::Target;
-use flockenv::{FlockError, OrderParameters};
+use flockenv::geometry::{Pose, Velocity};
+use flockenv::{Flock, FlockError, OrderParameters};
 use live::{Columns, Live};
+use serde_json::{Value as Json, json};
 use std::cell::RefCell;
 
 /// How many flocks the page runs side by side.
@@ -23,6 +26,8 @@ struct Page {
     input: Vec<u8>,
     text: String,
     flocks: [Option<Live>; FLOCKS],
+    /// The flock that was last checked: it takes the states of a recording.
+    checked: Option<Flock>,
 }
 
 thread_local! {
@@ -40,16 +45,17 @@ impl Page {
     }
 
     /// Keeps what a call says, and returns whether it did what it should.
-    fn say(&mut self, said: Result<String, FlockError>) -> u32 {
+    fn say(&mut self, said: Result<Json, FlockError>) -> u32 {
         let is_done = said.is_ok();
-        self.text = said.unwrap_or_else(|error| {
+        let said = said.unwrap_or_else(|error| {
             let field = match &error {
                 FlockError::Parameter { field, .. } => field,
                 FlockError::Placement { .. } => "n_boats",
                 _ => "",
             };
-            format!("{field}\t{error}")
+            json!({ "field": field, "words": error.to_string() })
         });
+        self.text = said.to_string();
         u32::from(is_done)
     }
 
@@ -81,19 +87,57 @@ pub extern "C" fn text_length() -> usize {
     with(|page| page.text.len())
 }
 
-/// Says what there is: presets, parameters, policies, quantities and what leaders observe.
+/// Says what there is: presets, parameters, policies, quantities, what leaders observe, and colors.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> u32 {
     with(|page| page.say(Ok(describe::all())))
 }
 
-/// Says all parameters of a request, without a flock.
+/// Says all parameters of a request, without starting it.
 #[unsafe(no_mangle)]
 pub extern "C" fn check() -> u32 {
     with(|page| {
         let said = page.request().and_then(request::Request::read);
-        page.say(said.map(|request| describe::values(&request.parameters)))
+        let said = said.and_then(|request| {
+            let values = describe::values(&request.parameters);
+            page.checked = Flock::new(request.parameters, request.seed).ok();
+            Ok(values)
+        });
+        page.say(said)
     })
+}
+
+/// Says the recorded quantities of the flock that was last checked in a state: JSON with the lists `pose` and
+/// `velocity`, three numbers a boat; null for a quantity that is undefined.
+#[unsafe(no_mangle)]
+pub extern "C" fn recorded() -> u32 {
+    with(|page| {
+        let said = page.state();
+        page.say(said)
+    })
+}
+
+/// A state of a recording.
+#[derive(serde::Deserialize)]
+struct State {
+    pose: Vec<[f64; 3]>,
+    velocity: Vec<[f64; 3]>,
+}
+
+impl Page {
+    fn state(&mut self) -> Result<Json, FlockError> {
+        let State { pose, velocity } = serde_json::from_str(self.request()?)
+            .map_err(|error| FlockError::parameter("state", error, "JSON"))?;
+        let flock = self.checked.as_mut();
+        let flock = flock.ok_or_else(|| FlockError::parameter("flock", "none", "a checked flock"))?;
+        let poses: Vec<_> = pose.iter().map(|&[x, y, heading]| Pose::new(x, y, heading)).collect();
+        let velocities: Vec<_> = velocity
+            .iter()
+            .map(|&[x, y, angular]| Velocity { linear: [x, y].into(), angular })
+            .collect();
+        flock.set_state(&poses, &velocities, 0.0, true)?;
+        Ok(flock.recorded(false).map_or(Json::Null, |values| values.to_vec().into()))
+    }
 }
 
 /// Starts a flock again from a request.
@@ -102,16 +146,16 @@ pub extern "C" fn open(flock: usize) -> u32 {
     with(|page| {
         let opened = page.request().and_then(request::Request::read);
         let said = opened.and_then(Live::new).and_then(|live| {
-            let text = describe::values(live.parameters());
+            let values = describe::values(live.parameters());
             let place = page.flocks.get_mut(flock);
             *place.ok_or_else(|| FlockError::parameter("flock", flock, "0 or 1"))? = Some(live);
-            Ok(text)
+            Ok(values)
         });
         page.say(said)
     })
 }
 
-/// Changes a flock to a request. The first line says whether it continued from where it was, or started again.
+/// Changes a flock to a request. `continued` says whether it does so from where it was, or starts again.
 #[unsafe(no_mangle)]
 pub extern "C" fn change(flock: usize) -> u32 {
     with(|page| {
@@ -119,12 +163,9 @@ pub extern "C" fn change(flock: usize) -> u32 {
         let said = wanted.and_then(|request| {
             let live = page.flock(flock)?;
             let continues = live.change(request)?;
-            let how = if continues {
-                "continued"
-            } else {
-                "started again"
-            };
-            Ok(format!("{how}\n{}", describe::values(live.parameters())))
+            let mut values = describe::values(live.parameters());
+            values["continued"] = continues.into();
+            Ok(values)
         });
         page.say(said)
     })
@@ -168,7 +209,7 @@ pub extern "C" fn derived(place: usize, psi_o: f64, phi_o: f64, sign: f64) -> f6
 pub extern "C" fn steer(flock: usize, rudder: f64) -> u32 {
     with(|page| {
         let said = page.flock(flock).and_then(|live| live.steer(rudder));
-        page.say(said.map(|()| String::new()))
+        page.say(said.map(|()| Json::Null))
     })
 }
 
@@ -193,7 +234,7 @@ pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32
 pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
     with(|page| {
         let said = page.flock(flock).and_then(|live| live.look(boat));
-        page.say(said.map(|()| String::new()))
+        page.say(said.map(|()| Json::Null))
     })
 }
 

@@ -1,12 +1,25 @@
 //! What the page asks for: parameters by name, a seed, and how leaders steer.
 
+use crate::json::read;
 use crate::leaders::EVERY_SUBSTEP;
 use flockenv::geometry::resized_gyration_radius_cm;
-use flockenv::parameters::{Field, FlockParameters, Kind, Preset, Value};
+use flockenv::parameters::{FlockParameters, Preset};
 use flockenv::{FlockError, Result};
+use serde_json::{Map, Value as Json};
 
 /// Letters of a value that a message shows.
 const SHOWN: usize = 40;
+
+/// A request as it is written. The seed is text: JavaScript has no whole numbers of 64 bits.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    preset: Option<String>,
+    seed: Option<String>,
+    leaders: Option<String>,
+    #[serde(default)]
+    parameters: Map<String, Json>,
+}
 
 /// A flock that is wanted.
 pub(crate) struct Request {
@@ -19,40 +32,33 @@ pub(crate) struct Request {
 }
 
 impl Request {
-    /// A request from lines `name=value`: `preset`, `seed`, `leaders`, and fields of the parameters.
+    /// A request from JSON: `preset`, `seed`, `leaders`, and fields of the parameters.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for what is unknown, unreadable or out of range.
     pub fn read(text: &str) -> Result<Self> {
-        let given: Vec<_> = text
-            .lines()
-            .filter_map(|line| line.split_once('='))
-            .collect();
-        let find = |name: &str| {
-            given
-                .iter()
-                .find(|(each, _)| *each == name)
-                .map(|(_, value)| *value)
-        };
-        let preset: Preset = find("preset").unwrap_or("simulation").parse()?;
-        let seed = find("seed").unwrap_or("0");
+        let written: Written = serde_json::from_str(text)
+            .map_err(|error| FlockError::parameter("request", error, "JSON"))?;
+        let preset: Preset = written.preset.as_deref().unwrap_or("simulation").parse()?;
+        let seed = written.seed.as_deref().unwrap_or("0");
         let seed = seed.parse().map_err(|_| {
             FlockError::parameter("seed", shown(seed), "a whole number from 0 to 2^64 - 1")
         })?;
         let defaults = FlockParameters::preset(preset);
         let mut parameters = defaults.clone();
         for field in FlockParameters::FIELDS {
-            if let Some(text) = find(field.name) {
-                let outcome = (field.set)(&mut parameters, &value_of(field.kind, text));
+            if let Some(json) = written.parameters.get(field.name) {
+                let outcome = (field.set)(&mut parameters, &read(field.kind, json));
                 outcome.map_err(|error| match error {
                     FlockError::Kind { .. } => {
-                        FlockError::parameter(field.name, shown(text), accepted(field))
+                        let given = json.as_str().map_or_else(|| json.to_string(), str::to_owned);
+                        FlockError::parameter(field.name, shown(&given), field.accepted())
                     }
                     other => other,
                 })?;
             }
         }
-        if find("gyration_radius_cm").is_none() {
+        if !written.parameters.contains_key("gyration_radius_cm") {
             parameters.gyration_radius_cm = resized_gyration_radius_cm(
                 &defaults,
                 parameters.boat_radius_cm,
@@ -63,7 +69,7 @@ impl Request {
         Ok(Self {
             parameters,
             seed,
-            leaders: find("leaders").unwrap_or(EVERY_SUBSTEP).to_owned(),
+            leaders: written.leaders.unwrap_or(EVERY_SUBSTEP.to_owned()),
         })
     }
 }
@@ -75,51 +81,5 @@ fn shown(text: &str) -> String {
         format!("{start}…")
     } else {
         start
-    }
-}
-
-fn value_of(kind: Kind, text: &str) -> Value {
-    let number = |text: &str| text.trim().parse().map_or(Value::Other, Value::Real);
-    let numbers = |text: &str| Value::List(text.split(',').map(number).collect());
-    let name = |text: &str| Value::Name(shown(text));
-    match kind {
-        Kind::Count => text.parse().map_or(Value::Other, Value::Count),
-        Kind::Real => number(text),
-        Kind::Flag => text.parse().map_or(Value::Other, Value::Flag),
-        Kind::Pool if text.contains(',') => numbers(text),
-        Kind::Choices(_) if text.contains(',') => Value::List(text.split(',').map(name).collect()),
-        Kind::Choice(_) | Kind::Choices(_) | Kind::Pool | Kind::Map(_) => name(text),
-        Kind::Rows(_) => {
-            let rows = text.split(';').filter(|row| !row.is_empty());
-            Value::List(rows.map(numbers).collect())
-        }
-    }
-}
-
-/// Which values a field accepts, in words.
-pub(crate) fn accepted(field: &Field<FlockParameters>) -> String {
-    match field.kind {
-        Kind::Choice(names) => names().join(", "),
-        Kind::Choices(names) => format!(
-            "{}, or a list of them, one per leader",
-            names().join(" or ")
-        ),
-        Kind::Flag => "true or false".to_owned(),
-        Kind::Count | Kind::Real | Kind::Pool | Kind::Rows(_) | Kind::Map(_) => {
-            field.range.accepted().to_owned()
-        }
-    }
-}
-
-/// A value as requests and links have it.
-pub(crate) fn written(value: &Value) -> String {
-    match value {
-        Value::Name(name) => name.clone(),
-        Value::List(values) => {
-            let are_rows = matches!(values.first(), Some(Value::List(_)));
-            let each: Vec<_> = values.iter().map(written).collect();
-            each.join(if are_rows { ";" } else { "," })
-        }
-        other => other.to_string(),
     }
 }

@@ -27,6 +27,15 @@ function leaderKey(run) {
   });
 }
 
+/** What the colors of directions stand for. */
+export function colorKey() {
+  return [["clockwise", "clockwise"], ["counter-clockwise", "counter-clockwise"], ["radial", "neither, as in a jam"]].map(([name, words]) => {
+    const part = element("span");
+    part.append(element("span", `swatch ${name}`), words);
+    return part;
+  });
+}
+
 /** Chooses which of two runs a narrow window shows; `show` draws it. */
 export function runSwitch(runs, show) {
   const group = element("div", "switch");
@@ -138,7 +147,7 @@ export class Panel {
     return corner;
   }
 
-  /** Order towards the target; without leaders there is none, and the sense of rotation stands in its place. */
+  /** Order towards the target; without leaders there is none, and rotation stands in its place. */
   #sense() {
     const hasTarget = this.run.target !== null;
     this.signedKey = hasTarget ? "signed_order" : "rotation";
@@ -146,7 +155,7 @@ export class Panel {
     this.signed = element("span", "signed");
     this.signedBar = element("div", "bar");
     const [line, gauge] = [element("div"), element("div", "gauge middle")];
-    line.append(hasTarget ? "towards target " : "clockwise ", this.signed);
+    line.append(hasTarget ? "order towards target " : "rotation ", this.signed);
     gauge.append(this.signedBar);
     corner.append(line, gauge);
     return corner;
@@ -201,15 +210,20 @@ export class Panel {
       list.append(term, answer, element("dd", "faint", unit));
     }
     this.card.replaceChildren(head, list);
-    const [x, y] = this.scene.place(boat);
-    const beside = x > this.canvas.clientWidth / 2 ? x - this.card.offsetWidth - 18 : x + 18;
-    this.card.style.left = `${Math.max(Math.min(beside, this.canvas.clientWidth - this.card.offsetWidth - 2), 2)}px`;
-    // Between the words in the corners, where they lie on the picture.
-    const above = this.canvas.offsetTop;
-    const [top, bottom] = ["top", "bottom"].map((side) =>
-      (above > 0 ? 2 : 2 + Math.max(...[...this.picture.querySelectorAll(`.corner.${side}`)].map((each) => each.offsetHeight))));
-    const lowest = this.canvas.clientHeight - this.card.offsetHeight - bottom;
-    this.card.style.top = `${above + Math.max(2, Math.min(Math.max(y - 30, top), lowest))}px`;
+    this.#placeCard();
+  }
+
+  /** In the hole of the pool if it has room there, otherwise below the picture: never over the flock. */
+  #placeCard() {
+    const { card, canvas, scene } = this;
+    card.classList.add("inside");
+    const [width, height] = [card.offsetWidth, card.offsetHeight];
+    const hole = (this.run.lengths.inner_radius_cm ?? 0) * scene.scale;
+    const isInside = Math.hypot(width, height) / 2 < hole;
+    card.classList.toggle("inside", isInside);
+    const [x, y] = isInside ? scene.pixel(0, 0) : [0, 0];
+    card.style.left = isInside ? `${canvas.offsetLeft + x - width / 2}px` : "";
+    card.style.top = isInside ? `${canvas.offsetTop + y - height / 2}px` : "";
   }
 }
 

@@ -8,9 +8,10 @@ const TRAIL_PIECES = 6;
 /** Colors of the style sheet, by name. */
 export function colors() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "normal", "mark",
-    "leader", "opponent", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "window", "track"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "clockwise", "counter-clockwise", "radial", "normal",
+    "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "track", "circles-from"];
+  const palette = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  return { ...palette, window: `${palette.ink}12` };
 }
 
 /** Fits a canvas' pixels to its place on the page; returns its context in CSS pixels. */
@@ -26,21 +27,44 @@ export function fitted(canvas) {
   return context;
 }
 
+/** The name of the color of a pose: of the direction in which a boat heads around the middle. */
+export function tintOf([x, y, heading], circlesFrom) {
+  // The sine of its angle in the local frame, clockwise from the outward direction.
+  const along = Math.sin(Math.atan2(y, x) - heading);
+  if (Math.abs(along) < circlesFrom) {
+    return "radial";
+  }
+  return along > 0 ? "clockwise" : "counter-clockwise";
+}
+
 export class Scene {
+  poses = [];
+  palette = null;
+  context = null;
+  middle = [0, 0];
+  center = [0, 0];
+  scale = 1;
+  isTinted = false;
+
   constructor(canvas, run) {
     this.canvas = canvas;
     this.run = run;
-    this.poses = [];
   }
 
-  /** `forceScale` is the force drawn as long as a hull is wide; null draws none. */
-  draw(time, { trailSeconds, forceScale, boat, palette }) {
+  /**
+   * `forceScale` is the force drawn as long as a hull is wide; null draws none. `coloring`: whether color shows
+   * the "direction" in which boats circle, or their "role".
+   */
+  draw(time, { trailSeconds, forceScale, boat, coloring, palette }) {
     this.poses = this.run.posesAt(time);
     if (this.canvas.clientWidth === 0) {
       return;
     }
     this.context = fitted(this.canvas);
     this.palette = palette;
+    const { outer_radius_cm: outer, inner_radius_cm: inner } = this.run.lengths;
+    // In open water there is no center to circle around.
+    this.isTinted = coloring === "direction" && (outer !== null || inner > 0);
     this.#look();
     this.#water();
     if (trailSeconds > 0) {
@@ -227,7 +251,7 @@ export class Scene {
     context.lineJoin = context.lineCap = "round";
     for (let boat = 0; boat < run.boats; boat += 1) {
       const isBold = boat === chosen;
-      context.strokeStyle = palette[run.roleOf(boat)];
+      context.strokeStyle = palette[this.isTinted && boat >= run.leaders ? "faint" : run.roleOf(boat)];
       context.lineWidth = isBold ? 3 : 1.4;
       for (let piece = 0; piece < TRAIL_PIECES; piece += 1) {
         const from = first + Math.floor(((last - first) * piece) / TRAIL_PIECES);
@@ -246,27 +270,42 @@ export class Scene {
     context.globalAlpha = 1;
   }
 
+  /** Ring, if there is one, body and mark of a boat. */
+  #colorsOf(boat) {
+    const { palette, run } = this;
+    const role = run.roleOf(boat);
+    if (!this.isTinted) {
+      return [null, palette[role], role === "leader" ? palette["leader-mark"] : palette.mark];
+    }
+    return [role === "normal" ? null : palette[role], palette[tintOf(this.poses[boat], Number(palette["circles-from"]))], palette.mark];
+  }
+
   #boat(boat) {
     const { context, palette, run } = this;
     const radius = Math.max(run.lengths.hull_radius_cm * this.scale, 1);
     const half = run.lengths.hull_half_length_cm * this.scale;
-    const isLeader = boat < run.leaders;
     const line = Math.min(Math.max(0.14 * radius, 1), 0.3 * radius);
+    const [ring, body, mark] = this.#colorsOf(boat);
+    const fill = (reach, color) => {
+      context.beginPath();
+      context.arc(half, 0, Math.max(reach, 0), -Math.PI / 2, Math.PI / 2);
+      context.arc(-half, 0, Math.max(reach, 0), Math.PI / 2, 1.5 * Math.PI);
+      context.closePath();
+      context.fillStyle = color;
+      context.fill();
+    };
     context.save();
     context.translate(...this.place(boat));
     context.rotate(-this.poses[boat][2]);
-    context.beginPath();
-    context.arc(half, 0, radius - line / 2, -Math.PI / 2, Math.PI / 2);
-    context.arc(-half, 0, radius - line / 2, Math.PI / 2, 1.5 * Math.PI);
-    context.closePath();
-    context.fillStyle = palette[run.roleOf(boat)];
-    context.fill();
-    context.lineWidth = line;
-    context.strokeStyle = palette.outline;
-    context.stroke();
+    fill(radius, palette.outline);
+    if (ring) {
+      fill(radius - line, ring);
+    }
+    const inner = radius - line - (ring ? Math.min(Math.max(0.34 * radius, 1.8), radius - line) : 0);
+    fill(inner, body);
     if (radius >= 2.5) {
-      const [reach, inner] = [half + radius - line, radius - line];
-      context.fillStyle = isLeader ? palette["leader-mark"] : palette.mark;
+      const reach = half + inner;
+      context.fillStyle = mark;
       context.beginPath();
       context.moveTo(0.84 * reach, 0);
       context.lineTo(-0.12 * reach, -0.68 * inner);

@@ -1,5 +1,7 @@
 // Numbers, angles and times as the page writes them, and elements that hold them.
 
+export const byId = (id) => document.getElementById(id);
+
 /** An element with a class and text. */
 export function element(kind, className = "", text = "") {
   const node = document.createElement(kind);

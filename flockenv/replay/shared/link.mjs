@@ -1,0 +1,38 @@
+// What the links of both pages have in common: sentences for what cannot be followed, and an address that follows.
+
+/** How often, in ms, an address may change: browsers refuse more than some 100 in half a minute. */
+const EVERY = 1000;
+const SHOWN = 40;
+
+/** A part of a link, cut to what a sentence may hold. */
+export const cut = (text) => (text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text);
+
+/** Says that a part of a link is ignored, and why. */
+export const ignoredPart = (key, text, why) => `The link's ${cut(key)}=${cut(text)} is ignored: ${why}.`;
+
+/** Brings the page's address up to date, soon after it is asked to. */
+export class LinkWriter {
+  #link;
+  #due = null;
+
+  /** `link`: returns the fragment as it should be then, or null for no change. */
+  constructor(link) {
+    this.#link = link;
+  }
+
+  write() {
+    this.#due ??= setTimeout(() => {
+      this.#due = null;
+      const link = this.#link();
+      // A page inside another one, such as a notebook, has no address of its own.
+      if (link === null || location.protocol === "about:") {
+        return;
+      }
+      try {
+        history.replaceState(null, "", link);
+      } catch {
+        // In a frame without an origin the address stays as it is.
+      }
+    }, EVERY);
+  }
+}

@@ -1,0 +1,128 @@
+// What the page's buttons, keys, files and links do.
+
+import { colors } from "../flockenv/replay/shared/scene.mjs";
+import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
+
+/** Has a page do what a visitor asks for. */
+export function listen(page) {
+  buttons(page);
+  keys(page);
+  files(page);
+  document.addEventListener("click", (event) => {
+    // A link to what is shown already shows it again.
+    const link = event.target.closest?.("a[href^='#']");
+    if (link && link.getAttribute("href") === location.hash) {
+      page.follow(location.hash);
+    }
+  });
+  // Not the address now: the link of what is shown may have been written since.
+  window.addEventListener("hashchange", ({ newURL }) => page.follow(new URL(newURL).hash));
+  new ResizeObserver(() => page.show()).observe(byId("runs"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    page.view.palette = colors();
+    page.show();
+  });
+}
+
+function buttons(page) {
+  byId("play").addEventListener("click", () => page.toggle());
+  byId("again").addEventListener("click", () => page.again());
+  byId("another").addEventListener("click", () => page.restart(String(Math.floor(Math.random() * 1e6))));
+  byId("help").addEventListener("click", () => byId("keys").showModal());
+  byId("speed").addEventListener("change", () => page.remember("speed", byId("speed").value));
+  byId("forces").addEventListener("change", () => page.remember("forces", byId("forces").checked ? "1" : "0"));
+  byId("colors").addEventListener("change", () => page.remember("colors", byId("colors").value));
+  byId("boat").addEventListener("change", () => page.pin(byId("boat").value === "" ? null : Number(byId("boat").value)));
+  byId("scrub").addEventListener("input", () => page.seek(Number(byId("scrub").value)));
+  // Plots that were folded in have had no size.
+  byId("more").addEventListener("toggle", () => page.show());
+  for (const button of document.querySelectorAll("[data-copies]")) {
+    button.addEventListener("click", () => copy(page, button));
+  }
+}
+
+function keys(page) {
+  const next = (by) => {
+    const { boats } = page.runs[0];
+    const { pinned } = page.view;
+    page.pin(pinned === null ? (by > 0 ? 0 : boats - 1) : (pinned + by + boats) % boats);
+  };
+  const switched = (id, value) => {
+    byId(id).value = value;
+    byId(id).dispatchEvent(new Event("change"));
+  };
+  const actions = {
+    c: () => switched("colors", byId("colors").value === "role" ? "direction" : "role"),
+    f: () => byId("forces").click(),
+    "]": () => next(1),
+    "[": () => next(-1),
+    "?": () => byId("keys").showModal(),
+    Escape: () => page.pin(null),
+  };
+  document.addEventListener("keydown", (event) => {
+    const isTyped = event.target.closest?.("select, textarea, dialog, input[type='file']");
+    if (event.ctrlKey || event.metaKey || event.altKey || isTyped) {
+      return;
+    }
+    if (event.key === " " && !event.target.closest?.("button, a, summary, input[type='checkbox']")) {
+      event.preventDefault();
+      page.toggle();
+    } else if (Object.hasOwn(actions, event.key)) {
+      event.preventDefault();
+      actions[event.key]();
+    }
+  });
+}
+
+function files(page) {
+  byId("save").addEventListener("click", () => save(page));
+  byId("open").addEventListener("change", () => open(page, byId("open").files[0]));
+  document.addEventListener("dragover", (event) => event.preventDefault());
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    open(page, event.dataTransfer?.files[0]);
+  });
+}
+
+async function copy(page, button) {
+  const text = button.dataset.copies === "address" ? location.href : byId(button.dataset.copies).value;
+  try {
+    await navigator.clipboard.writeText(text);
+    page.say("Copied.");
+  } catch {
+    page.say(`The browser does not let this page copy; here it is: ${text}`);
+  }
+}
+
+/** Has the browser keep the recording. */
+function save(page) {
+  const [run] = page.runs;
+  const recorded = page.quantities.filter(({ kind }) => kind === "recorded").map(({ key }) => key);
+  const bytes = recordingOf(run, { ...page.about, recorded, policy: page.flocks.policy });
+  download(bytes, "flock.npz");
+  page.say(`The recording holds ${fixed(run.time[run.sampleAt(run.changedAt)], 1)} to ${fixed(run.end, 1)} s; flockenv.Recording.load reads it.`);
+}
+
+/** Plays a recording's file. */
+async function open(page, file) {
+  if (!file) {
+    return;
+  }
+  const { flocks, quantities, simulator } = page;
+  const about = { format: page.about.format, phases: flocks.phases, series: flocks.series, quantities };
+  try {
+    const run = await runOfFile(file, about, {
+      check: async (request) => (await simulator.ask("check", { request })).values,
+      describe: (answer, named) => flocks.described(answer, named),
+      derive: async (arrays, described) => (await simulator.ask("derive", derivedOf(arrays, described, flocks.series))).series,
+    });
+    flocks.show(run);
+    page.playback.restart();
+    page.playback.seek(run.time[0]);
+    page.showRuns();
+    page.say(`${file.name} plays; “again” returns to the flock.`);
+  } catch (error) {
+    page.say(`${file.name.slice(0, 60)} ${error.message}.`);
+  }
+}

@@ -1,0 +1,166 @@
+// What a recording's arrays must be: what flockenv.Recording.load refuses is refused here, in the same sentences
+// (flockenv/recording/checks.py and stored.py; tests/web/test_damaged_recordings.py compares the two).
+
+const TIMES = ["time_s", "phase", "in_analysis_window"];
+const TEXTS = ["format", "version", "parameters", "policy"];
+const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
+const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
+/** NumPy's names of kinds of numbers; those of texts are what files have. */
+const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
+
+const kindOf = (descr) => KINDS[descr] ?? descr;
+const tuple = (shape) => (shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`);
+const isSame = (shape, other) => shape.length === other.length && shape.every((each, k) => each === other[k]);
+const quoted = (text) => `'${text}'`;
+
+function refuse(sentence) {
+  throw new Error(sentence);
+}
+
+function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps = false } = {}) {
+  if (!descrs.includes(array.descr)) {
+    refuse(`${name} is of ${kindOf(array.descr)}, expected an array of ${kindOf(descrs[0])}`);
+  }
+  if (!isSame(array.shape, shape)) {
+    refuse(`${name} has shape ${tuple(array.shape)}, expected ${tuple(shape)}`);
+  }
+  if (!array.descr.startsWith("<f")) {
+    return;
+  }
+  if (hasGaps) {
+    const width = shape.length === 3 ? shape[2] : 1;
+    const isWhole = array.values.every((each, k) => Number.isNaN(each) === Number.isNaN(array.values[k - (k % width)]));
+    if (!isWhole || array.values.some((each) => Math.abs(each) === Infinity)) {
+      refuse(`${name} must be finite, but for boats that are not there`);
+    }
+  } else if (!array.values.every(isUndefined ? Number.isNaN : Number.isFinite)) {
+    refuse(`${name} must be ${isUndefined ? "undefined (NaN)" : "finite"}`);
+  }
+}
+
+function checkTimes({ time_s: time, duration_s: duration }) {
+  const [times, [end]] = [time.values, duration.values];
+  const isRising = times.every((each, k) => k === 0 || each > times[k - 1]);
+  const [first, last] = [times[0] ?? 0, times.at(-1) ?? 0];
+  // Times are rounded to a nanosecond, and may lie beyond the end by that.
+  if (!isRising || first < 0 || last > end + 1e-9 || !(end + 1e-9 >= 0)) {
+    refuse("time_s must increase from 0 on, not beyond duration_s, and hold at least one time if that is not given");
+  }
+}
+
+function checkIds(ids, boats) {
+  if (!ids.descr.startsWith("<U") || !isSame(ids.shape, [boats])) {
+    refuse(`ids must be an array of str of shape (${boats},)`);
+  }
+  if (new Set(ids.values).size !== boats) {
+    refuse("ids must differ from each other");
+  }
+}
+
+function checkOwn(arrays, samples, quantities) {
+  const taken = new Set([...quantities.map(({ key }) => key), ...TIMES, "boat", "id", "is_leader"]);
+  for (const [stored, array] of Object.entries(arrays).filter(([name]) => name.startsWith("quantity_"))) {
+    const name = stored.slice("quantity_".length);
+    if (!/^[\p{ID_Start}_]\p{ID_Continue}*$/u.test(name) || taken.has(name)) {
+      refuse(`quantity ${quoted(name)} is not accepted: an identifier that no quantity or column of recordings has`);
+    }
+    if (array.descr !== "<f8") {
+      refuse(`quantity ${quoted(name)} must be an array of float64`);
+    }
+    if (!isSame(array.shape, [samples])) {
+      refuse(`quantity ${quoted(name)} has shape ${tuple(array.shape)}, expected ${tuple([samples])}`);
+    }
+  }
+}
+
+function checkContacts(contacts, samples, { n_boats: boats, discs, walls }) {
+  const c = contacts.i.shape[0] ?? 0;
+  const shapes = { count: [samples], normal: [c, 2], point_cm: [c, 2] };
+  const descrs = { count: "<i8", i: "<i4", j: "<i4" };
+  for (const name of CONTACTS) {
+    const [shape, descr] = [shapes[name] ?? [c], descrs[name] ?? "<f4"];
+    if (contacts[name].descr !== descr || !isSame(contacts[name].shape, shape)) {
+      refuse(`contacts.${name} must be an array of ${kindOf(descr)}, shape ${tuple(shape)}`);
+    }
+    if (!contacts[name].values.every(Number.isFinite)) {
+      refuse(`contacts.${name} must be finite`);
+    }
+  }
+  const count = contacts.count.values;
+  if (count.some((each) => each < 0 || each > c) || count.reduce((sum, each) => sum + each, 0) !== c) {
+    refuse(`contacts.count must add up to the ${c} contacts there are`);
+  }
+  const [first, second] = [contacts.i.values, contacts.j.values];
+  const isBoat = (each) => each >= -2 - discs.length - walls.length && each < boats;
+  if (!first.every((each) => each >= 0 && isBoat(each)) || !second.every(isBoat)) {
+    refuse(`contacts.i and contacts.j must be among ${boats} boats`);
+  }
+  if (!contacts.force.values.every((each) => each > 0)) {
+    refuse("contacts.force must be positive");
+  }
+}
+
+function checkStored(arrays, format) {
+  const form = arrays.format?.values[0];
+  if (form !== undefined && form !== format) {
+    refuse(`format = ${quoted(form)} is not accepted: ${quoted(format)}`);
+  }
+  const contacts = CONTACTS.map((name) => `contacts_${name}`);
+  const hasContacts = contacts.some((name) => Object.hasOwn(arrays, name));
+  const needed = [...TIMES, "pose", "velocity", ...TEXTS, "seed", "duration_s", ...(hasContacts ? contacts : [])];
+  const missing = needed.filter((name) => !Object.hasOwn(arrays, name));
+  if (missing.length > 0) {
+    refuse(`these arrays are missing: ${missing.join(", ")}`);
+  }
+  if (TEXTS.some((name) => arrays[name].shape.length > 0 || !arrays[name].descr.startsWith("<U"))) {
+    refuse(`${TEXTS.join(", ")} must each be one string`);
+  }
+  checkArray("seed", arrays.seed, [], ["<u8"]);
+  checkArray("duration_s", arrays.duration_s, [], DOUBLES);
+  return hasContacts;
+}
+
+/**
+ * What `read` makes of the recording's parameters as TOML, if the arrays are those of a recording. `format` is what
+ * it must say that it is; `phases` are the names of phases, and `quantities` those that there are.
+ */
+export async function checkedArrays(arrays, { format, phases, quantities }, read) {
+  const hasContacts = checkStored(arrays, format);
+  const answer = await read(arrays.parameters.values[0]);
+  const { parameters } = answer;
+  const { n_boats: boats, n_leaders: leaders } = parameters;
+  const [samples] = arrays.time_s.shape;
+  const times = samples === undefined ? [] : [samples];
+  const isTracked = Object.hasOwn(arrays, "ids");
+  const state = [...times, arrays.pose.shape[1] === 0 ? 0 : boats, 3];
+  checkArray("time_s", arrays.time_s, times, DOUBLES);
+  checkArray("phase", arrays.phase, times, [`<U${Math.max(...phases.map((name) => name.length))}`]);
+  checkArray("in_analysis_window", arrays.in_analysis_window, times, ["|b1"]);
+  checkArray("pose", arrays.pose, state, REALS, { hasGaps: isTracked });
+  checkArray("velocity", arrays.velocity, state, [arrays.pose.descr], { hasGaps: isTracked });
+  if (isTracked) {
+    checkIds(arrays.ids, boats);
+  }
+  if (!arrays.phase.values.every((name) => phases.includes(name) || (isTracked && name === ""))) {
+    refuse(`phase holds other names than ${phases.join(", ")}`);
+  }
+  checkTimes(arrays);
+  for (const { key, least_boats: least } of quantities.filter(({ kind }) => kind === "recorded")) {
+    const values = arrays[`order_${key}`];
+    if (values) {
+      const isUndefined = boats - leaders < least || (state[1] === 0 && values.values.every?.(Number.isNaN));
+      checkArray(`order.${key}`, values, times, DOUBLES, isTracked ? { hasGaps: true } : { isUndefined });
+    }
+  }
+  checkOwn(arrays, samples, quantities);
+  if (arrays.rudder) {
+    checkArray("rudder", arrays.rudder, [...times, leaders], DOUBLES);
+    if (arrays.rudder.values.some((each) => Math.abs(each) > 1)) {
+      refuse("rudder must be within [-1, 1]");
+    }
+  }
+  if (hasContacts) {
+    checkContacts(Object.fromEntries(CONTACTS.map((name) => [name, arrays[`contacts_${name}`]])), samples, parameters);
+  }
+  return answer;
+}

@@ -1,0 +1,39 @@
+//! Values of the core as JSON, in which the page asks and is answered.
+
+use flockenv::parameters::{Kind, Value};
+use serde_json::{Value as Json, json};
+
+/// A value as JSON; what JSON has no number for is text.
+pub(crate) fn written(value: &Value) -> Json {
+    match value {
+        Value::None | Value::Other => Json::Null,
+        Value::Flag(flag) => json!(flag),
+        Value::Count(count) => json!(count),
+        Value::Real(real) if !real.is_finite() => json!(real.to_string()),
+        Value::Real(real) => json!(real),
+        Value::Name(name) => json!(name),
+        Value::List(values) => values.iter().map(written).collect(),
+        Value::Map(values) => values
+            .iter()
+            .map(|(name, value)| (name.clone(), written(value)))
+            .collect(),
+    }
+}
+
+/// The value of a field of this kind. Text stands for a number where a number is wanted.
+pub(crate) fn read(kind: Kind, json: &Json) -> Value {
+    let wants_number = matches!(kind, Kind::Real | Kind::Pool | Kind::Rows(_));
+    match json {
+        Json::Bool(flag) => Value::Flag(*flag),
+        Json::Number(number) => match number.as_u64().and_then(|count| count.try_into().ok()) {
+            Some(count) => Value::Count(count),
+            None => number.as_f64().map_or(Value::Other, Value::Real),
+        },
+        Json::String(text) => match text.parse() {
+            Ok(real) if wants_number => Value::Real(real),
+            _ => Value::Name(text.clone()),
+        },
+        Json::Array(values) => Value::List(values.iter().map(|each| read(kind, each)).collect()),
+        Json::Null | Json::Object(_) => Value::Other,
+    }
+}
