@@ -19,7 +19,7 @@ from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-WEB = Path(__file__).parents[1] / "web"
+WEB = Path(__file__).parents[1] / "flockenv" / "replay"
 LOADS = 9
 SECONDS = 15.0
 DONE = ("simulating", "drawing")
@@ -109,9 +109,9 @@ def frames(driver: webdriver.Chrome, address: str, boats: int) -> dict[str, floa
     driver.get("about:blank")
     driver.get(f"{address}{FLOCK}&n_boats={boats}&speed=8")
     until(driver, "return document.body.dataset.ready && page.time > 4")
-    note = "return [performance.now(), page.time, page.costs]"
+    note = "return [performance.now(), page.time, page.playback.costs]"
     before, time_before, _ = driver.execute_script(
-        f"page.costs = {{frames: 0, drawing: 0, simulating: 0}}; {note}"
+        f"page.playback.costs = {{frames: 0, drawing: 0, simulating: 0, memory: 0}}; {note}"
     )
     spent = processor_ms(driver)
     time.sleep(SECONDS)
@@ -133,7 +133,7 @@ def memory(driver: webdriver.Chrome) -> tuple[float, float]:
     driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
     metrics = driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
     used = next(each["value"] for each in metrics if each["name"] == "JSHeapUsedSize")
-    return used / 1e6, driver.execute_script("return page.costs.memory") / 1e6
+    return used / 1e6, driver.execute_script("return page.playback.costs.memory") / 1e6
 
 
 def soak(driver: webdriver.Chrome, address: str, minutes: int) -> None:
@@ -149,7 +149,7 @@ def soak(driver: webdriver.Chrome, address: str, minutes: int) -> None:
         follow = "location.hash = arguments[0]"
         driver.execute_script(click if scene in LESSONS else follow, scene)
         end = time.monotonic() + 60.0
-        driver.execute_script("page.rudder = 0.5; page.set('bw_s', '0.5')")
+        driver.execute_script("page.hand.value = 0.5; page.set('bw_s', '0.5')")
         if not driver.execute_script("return page.playing"):
             driver.execute_script("page.toggle()")
         time.sleep(max(end - time.monotonic(), 0.0))

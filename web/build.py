@@ -9,6 +9,7 @@ import base64
 import csv
 import gzip
 import json
+import re
 import runpy
 import subprocess
 import sys
@@ -87,12 +88,18 @@ def expected_orders() -> list[dict[str, object]]:
     return [{"preset": "experiment", "n_boats": 27, "n_leaders": 0, "points": points}]
 
 
+def bare(script: str) -> str:
+    """Return a script without the lines that are comments: a fifth of it."""
+    return re.sub(r"^[ \t]*(?://.*|/\*\*(?:.|\n)*?\*/)\n", "", script, flags=re.MULTILINE)
+
+
 def page(compiled: bytes) -> str:
     """Return the page around a compiled simulator."""
     template = runpy.run_path(str(REPLAY / "template.py"))
     shared = [(REPLAY / "shared" / name).read_text("utf-8") for name in _SHARED]
-    script = template["joined"]([*shared, *((WEB / name).read_text("utf-8") for name in _OWN)])
-    thread = template["joined"]((WEB / name).read_text("utf-8") for name in _THREAD)
+    own, threads = ([(WEB / name).read_text("utf-8") for name in each] for each in (_OWN, _THREAD))
+    script = bare(template["joined"]([*shared, *own]))
+    thread = bare(template["joined"](threads))
     style = (REPLAY / "shared" / "page.css").read_text("utf-8")
     style += (WEB / "live.css").read_text("utf-8")
     cargo = tomllib.loads((ROOT / "Cargo.toml").read_text("utf-8"))

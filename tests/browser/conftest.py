@@ -307,6 +307,7 @@ class LivePage(Page):
         return self
 
     def click(self, selector: str) -> None:
+        self.unfold(selector)
         source = "document.querySelector(arguments[0]).scrollIntoView({block: 'center'})"
         self.script(source, selector)
         self.find(selector).click()
@@ -319,8 +320,9 @@ class LivePage(Page):
     def unfold(self, selector: str) -> None:
         """Open what an element is folded in."""
         source = """
-            const folded = document.querySelector(arguments[0]).closest("details");
-            if (folded) folded.open = true;"""
+            const element = document.querySelector(arguments[0]);
+            const folded = element.closest("details");
+            if (folded && !element.matches("summary")) folded.open = true;"""
         self.script(source, selector)
 
     def wait(self) -> None:

@@ -131,7 +131,8 @@ def test_a_boats_card_covers_no_words_and_no_water(open_page, pages, name, size)
                 const [panel] = player.panels;
                 const canvas = panel.canvas.getBoundingClientRect();
                 const [x, y] = panel.scene.pixel(0, 0);
-                const away = (left, top) => Math.hypot(left - canvas.left - x, top - canvas.top - y);
+                const [left, top] = [canvas.left + x, canvas.top + y];
+                const away = (right, down) => Math.hypot(right - left, down - top);
                 return [corners.filter((each) => each.right > card.left && each.left < card.right
                     && each.bottom > card.top && each.top < card.bottom).length,
                     Math.max(away(card.left, card.top), away(card.right, card.bottom)),

@@ -5,10 +5,12 @@ import shlex
 from pathlib import Path
 
 import imageio_ffmpeg
+import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 
 import flockenv
+from flockenv.rendering import frame
 
 SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=narrow", "--minutes", "0.2"]
 PARAMETERS = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow")
@@ -86,10 +88,33 @@ def test_replay_draws_a_moving_picture(cli, run, tmp_path):
     assert done.stderr == ""
     assert json.loads(done.stdout) == {"files": list(map(str, files))}
     with Image.open(files[0]) as picture:
-        lasting = sum(frame.info["duration"] for frame in ImageSequence.Iterator(picture))
+        lasting = sum(each.info["duration"] for each in ImageSequence.Iterator(picture))
     assert lasting == pytest.approx(1520, abs=20)
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(files[1]))
     assert (frames, seconds) == (38, pytest.approx(1.52, abs=0.05))
+
+
+def test_replay_draws_two_side_by_side(cli, run, tmp_path):
+    shorter, both = tmp_path / "shorter.npz", tmp_path / "both.gif"
+    done = cli("run", *SMALL, "--minutes", "0.1", "--seed", "4", "--out", shorter)
+    assert done.returncode == 0, done.stderr
+    draw = ("replay", run, shorter, "--gif", both, "--speed", "16")
+    for colors in ("direction", "role"):
+        done = cli(*draw, "--name", "long", "--name", "short", "--colors", colors)
+        assert done.returncode == 0, done.stderr
+        with Image.open(both) as picture:
+            frames = [np.array(each.convert("RGB")) for each in ImageSequence.Iterator(picture)]
+        assert {each.shape for each in frames} == {(600, 1200, 3)}
+        recordings = [flockenv.Recording.load(path) for path in (run, shorter)]
+        for recording, caption, half in zip(recordings, ("long", "short"), (0, 600), strict=True):
+            for number in (0, len(frames) - 1):
+                # The shorter one rests at its end.
+                time_s = min(number * 16 / 12.5, float(recording.time_s[-1]))
+                expected = frame(recording, time_s, colors=colors, caption=caption)
+                found = frames[number][:, half : half + 600].astype(int)
+                # A GIF has 256 colors.
+                assert np.abs(found - expected).mean() < 2.0
+    assert cli(*draw, "--colors", "red").returncode == 2
 
 
 def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_path):

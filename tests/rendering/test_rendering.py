@@ -42,7 +42,7 @@ def test_color_shows_what_it_is_told_to_show():
     assert np.array_equal(rendering.frame(scene, 160, 120, colors="direction"), direction)
     role = rendering.frame(scene, 160, 120, colors="role")
     assert not np.array_equal(role, direction)
-    with pytest.raises(flockenv.ParameterError, match='colors = "red" .* "direction", "role"'):
+    with pytest.raises(flockenv.ParameterError, match=r'colors = "red" .* "direction", "role"'):
         rendering.frame(scene, colors="red")
     # In open water boats circle around nothing.
     scene = flock(pool=(np.inf, 0))

@@ -13,7 +13,7 @@ SMALL = {"n_boats": 8, "n_leaders": 2, "episode_s": 3.0, "render_size": (160, 12
 
 def test_human_mode_without_the_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "pygame", None)
-    with pytest.raises(MissingExtraError, match=r"flockenv\[render\]"):
+    with pytest.raises(MissingExtraError, match=r"\[render\]"):
         flockenv.LeadersEnv(render_mode="human", **SMALL)
 
 

@@ -1,0 +1,249 @@
+"""Law: the live page shows first, and does at once what its sentences say, by hand and by key."""
+
+import numpy as np
+import pytest
+
+from .conftest import FLOCK, LAPTOP, PHONE, LivePage
+
+pytestmark = pytest.mark.live
+
+STEERED = f"{FLOCK}&leaders=you&beside.leaders=paper's law at every substep"
+LOW = (1280, 720)
+
+
+def boxes(live: LivePage, *selectors: str) -> list[dict]:
+    source = """
+        const box = (each) => document.querySelector(each).getBoundingClientRect().toJSON();
+        return Array.from(arguments, box)"""
+    return live.script(source, *selectors)
+
+
+def test_it_opens_on_a_flock_that_circles_and_moves(open_live):
+    live = open_live().go("", plays=True)
+    rotation = live.script("return page.runs[0].value('rotation', page.runs[0].length - 1)")
+    assert abs(rotation) > 0.8
+    start = live.script("return page.time")
+    live.until("return page.time > arguments[0] + 2", start)
+    first, last = live.rows("pose")[-21], live.rows("pose")[-1]
+    moved = np.hypot(*(last - first).reshape(-1, 3)[:, :2].T)
+    assert np.median(moved) > 5.0
+    # One sentence or two, and one control.
+    shown = live.script("""
+        return [...document.querySelectorAll("main input, main select, main textarea")]
+            .filter((each) => each.checkVisibility() && each.type === "range")
+            .map((each) => each.id)""")
+    assert shown == ["bw_s"]
+    assert not live.find("#more").get_attribute("open")
+
+
+@pytest.mark.parametrize("size", [LOW, LAPTOP, PHONE])
+@pytest.mark.parametrize(
+    "fragment", ["", "#n_boats=27&n_leaders=1&beside.n_leaders=4&seed=7", STEERED]
+)
+def test_the_pool_is_whole_with_its_mean_under_it(open_live, size, fragment):
+    live = open_live(size).go(fragment)
+    canvas, mean, story = boxes(live, ".run canvas", ".so-far", "#story")
+    assert canvas["top"] >= story["bottom"] - 1
+    assert canvas["top"] < 0.25 * size[1]
+    assert canvas["bottom"] <= mean["top"] + 60
+    assert mean["bottom"] <= size[1]
+    assert canvas["width"] >= (340 if size == PHONE else 400)
+    assert live.script("return document.documentElement.scrollWidth <= innerWidth")
+    if size == PHONE:
+        controls = live.find("#controls").size["height"]
+        assert controls <= 64
+
+
+def test_two_flocks_take_the_whole_width(open_live):
+    live = open_live(LOW).go("#n_boats=27&n_leaders=1&beside.n_leaders=4&seed=7")
+    first, second = (live.find(".run", run).rect for run in (0, 1))
+    assert first["y"] == second["y"]
+    assert second["x"] > 0.5 * LOW[0]
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+def test_nothing_jumps_between_lessons(open_live, size):
+    live = open_live(size).go()
+    tops = []
+    for name in live.script(
+        "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
+    ):
+        live.script("document.querySelector(arguments[0]).click()", f"a[data-lesson='{name}']")
+        live.until("return page.other.lesson === arguments[0]", name)
+        live.wait()
+        run, story = boxes(live, "#runs" if size == PHONE else "#controls", "#story")
+        tops.append((run["top"], story["top"], story["height"]))
+    assert len(set(tops)) == 1
+
+
+CONTROLS = (
+    "#play",
+    "#again",
+    "#bw_s",
+    "#speed",
+    "#colors",
+    "#forces",
+    "#help",
+    "#n_boats",
+    "#n_leaders",
+    "#leaders",
+    "#beside",
+    "#pool",
+    "#target",
+    "#preset",
+    "#boat",
+    "#thumb",
+    "#lessons a",
+    "#more summary",
+)
+
+
+@pytest.mark.parametrize("selector", CONTROLS)
+def test_arrow_keys_steer_whatever_had_the_focus(live, selector):
+    from selenium.webdriver.common.keys import Keys
+
+    live.choose("#leaders", "you")
+    live.script("document.getElementById('more').open = true")
+    live.click("#play")
+    shown, values = live.script("return [page.shown, page.flocks.values]")
+    for key, rudder in ((Keys.ARROW_LEFT, 1), (Keys.ARROW_RIGHT, -1)):
+        live.script("document.querySelector(arguments[0]).focus()", selector)
+        live.actions().key_down(key).perform()
+        assert live.script("return document.activeElement.id") == "thumb"
+        assert live.script("return page.hand.value") == rudder
+        now = live.script("return page.runs[0].length")
+        live.until(
+            "return page.runs[0].rudder(0, page.runs[0].length - 1) === arguments[0]", rudder
+        )
+        assert live.script("return page.runs[0].length") > now
+        live.actions().key_up(key).perform()
+        assert live.script("return page.hand.value") == 0
+    # Nothing else was changed by them.
+    assert live.script("return [page.shown, page.flocks.values]") == [shown, values]
+    assert live.complaints() == []
+
+
+def test_arrow_keys_move_in_text_and_do_nothing_in_a_dialog(live):
+    live.choose("#leaders", "you")
+    live.script("document.getElementById('take').open = true")
+    live.script("document.getElementById('command').focus()")
+    live.press("ARROW_RIGHT")
+    assert live.script("return document.activeElement.selectionStart") == 1
+    live.script("document.activeElement.blur()")
+    live.press("?")
+    assert live.find("#keys").is_displayed()
+    assert "your rudder" in live.text("#keys")
+    live.press("ARROW_RIGHT")
+    assert live.script("return document.activeElement.id") != "thumb"
+    live.press("ESCAPE")
+    assert not live.find("#keys").is_displayed()
+
+
+def test_without_leaders_you_are_one(open_live):
+    live = open_live().go("#n_boats=12&seed=7")
+    live.choose("#leaders", "you")
+    assert live.parameters()["n_leaders"] == "1"
+    assert live.find("#thumb").is_displayed()
+    assert live.find("#leaders").get_attribute("value") == "you"
+
+
+def test_the_game_ends_with_a_score_against_the_law(open_live):
+    live = open_live().go()
+    live.script("document.querySelector(\"a[data-lesson='steer']\").click()")
+    live.until("return page.other.lesson === 'steer'")
+    live.wait()
+    assert "Goal" in live.text("#story")
+    live.choose("#speed", "64")
+    live.click("#play")
+    live.until("return page.runs[0].end > 20")
+    live.script("document.activeElement.blur()")
+    live.until("return !page.playing")
+    assert live.script("return page.time") >= 120.0
+    means = live.script("return page.runs.map((run) => run.mean('signed_order'))")
+    words = live.text(".so-far").replace("−", "-")
+    assert words.startswith("you ")
+    for mean, said in zip(means, words.removeprefix("you ").split(" · the law "), strict=True):
+        assert float(said) == pytest.approx(mean, abs=0.006)
+    assert ("win" in live.status()) or ("draw" in live.status())
+    assert ("You win" in live.status()) == (round(means[0], 2) > round(means[1], 2))
+    # It may go on, and another round ends again.
+    live.click("#again")
+    live.wait()
+    assert live.script("return page.runs[0].end") == 0
+
+
+def test_keys_switch_colors_forces_and_boats(live):
+    live.script("document.activeElement.blur()")
+    live.press("c")
+    assert live.find("#colors").get_attribute("value") == "role"
+    assert live.script("return document.body.dataset.colors") == "role"
+    live.until("return location.hash.includes('colors=role')")
+    live.press("f")
+    assert live.find("#forces").is_selected()
+    for key, boat in (("]", 0), ("]", 1), ("[", 0), ("[", 11)):
+        live.press(key)
+        assert live.script("return page.view.pinned") == boat
+    live.press("ESCAPE")
+    assert live.script("return page.view.pinned") is None
+
+
+def test_contacts_are_there_at_once(open_live):
+    live = open_live().go()
+    live.script("document.querySelector(\"a[data-lesson='forces']\").click()")
+    live.until("return page.other.lesson === 'forces'")
+    live.wait()
+    run = "page.runs[0]"
+    assert live.script(f"return {run}.contacts({run}.length - 1).length") > 5
+    assert live.find(".force-key").is_displayed()
+
+
+def test_plots_without_data_are_not_there_and_the_expected_order_is(open_live):
+    live = open_live().go(FLOCK.replace("n_leaders=2", "n_leaders=0"))
+    live.script("document.getElementById('more').open = true")
+    shown = {
+        each: live.find(f"#{each}").is_displayed()
+        for each in ("psi_o", "rotation", "signed_order", "map")
+    }
+    assert shown == {"psi_o": True, "rotation": True, "signed_order": False, "map": False}
+    # The opening's flock is one of the paper's, whose order is known.
+    live.go("")
+    live.script("document.getElementById('more').open = true")
+    assert live.find("#map").is_displayed()
+    before = live.script("return document.getElementById('map').toDataURL()")
+    live.run_to(live.script("return page.runs[0].end") + 10.0)
+    assert live.script("return page.view.map.dot")[1] == pytest.approx(1.0, abs=0.4)
+    assert live.script("return document.getElementById('map').toDataURL()") != before
+
+
+def test_a_simulator_that_does_not_answer_can_be_stopped(live):
+    live.click("#play")
+    # A step without end, as far as the page can tell.
+    live.script("page.simulator.worker.postMessage = () => undefined")
+    live.until("return page.simulator.waiting > 1000")
+    live.until("return document.getElementById('status').textContent.includes('pause stops it')")
+    live.click("#play")
+    live.until("return page.broken")
+    assert "you stopped it in the middle of a step" in live.status()
+    assert not live.script("return page.playing")
+    live.click("#again")
+    live.until("return !page.broken && page.simulator.open.size === 0")
+    live.run_to(2.0)
+    assert live.complaints() == []
+
+
+def test_it_runs_in_a_frame_that_has_no_origin(open_live, file, tmp_path):
+    outside = tmp_path / "outside.html"
+    outside.write_text(
+        f'<iframe id="inside" sandbox="allow-scripts" width="900" height="700"'
+        f' src="{file.as_uri()}"></iframe>'
+    )
+    live = open_live()
+    live.open(outside.as_uri())
+    live.driver.switch_to.frame("inside")
+    live.until("return document.body?.dataset.ready")
+    assert live.state() == "true"
+    live.until("return page.time > 181")
+    live.script("page.set('bw_s', '0.5')")
+    live.wait()
+    assert live.parameters()["bw_s"] == "0.5"
+    live.driver.switch_to.default_content()
