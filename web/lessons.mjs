@@ -46,7 +46,7 @@ export const LESSONS = [
   {
     name: "forces",
     title: "Contacts",
-    link: "#lesson=forces&preset=experiment&n_boats=27&n_leaders=3&bw_s=0.4&seed=1&start=90&speed=1&forces=1",
+    link: "#lesson=forces&preset=experiment&n_boats=27&n_leaders=3&bw_s=0.4&seed=1&start=89&speed=1&forces=1",
     before: "Each bar is a push, where a boat touches another or a wall. Nothing else aligns the flock.",
     after: "Touch a boat for its numbers, and a ringed one for all that a leader observes.",
   },

@@ -65,10 +65,9 @@ export class Playback {
       if (this.time >= end) {
         this.transport.pause();
       }
-    } else {
+    } else if (!this.#judge()) {
       const ahead = speed === Infinity ? Infinity : this.time + 0.1 + 0.05 * speed - end;
       this.#advance(Math.ceil(Math.min(10 * ahead, 1e6)));
-      this.#judge();
     }
     this.show(now);
   }
@@ -95,21 +94,27 @@ export class Playback {
         });
         view.observed = taken[0].observation;
       }
+      if (!this.transport.playing) {
+        this.show();
+      }
     });
     this.advancing = false;
   }
 
-  /** Ends the lesson that is a game. */
+  /** Whether the lesson that is a game ends, between two answers of the simulator. */
   #judge() {
     const { flocks, other } = this.#page;
     const [yours, law] = flocks.runs;
-    const isGame = other.lesson === "steer" && flocks.areYours && !this.#isOver;
-    const words = isGame ? verdict(yours.mean("signed_order"), law.mean("signed_order"), this.time, GAME_SECONDS) : null;
+    if (other.lesson !== "steer" || !flocks.areYours || this.#isOver || this.advancing) {
+      return false;
+    }
+    const words = verdict(yours.mean("signed_order"), law.mean("signed_order"), this.time, GAME_SECONDS);
     if (words) {
       this.#isOver = true;
       this.transport.pause();
       this.#page.say(`${words} “Again” starts another round.`);
     }
+    return words !== null;
   }
 
   /** Counts frames, and what of time passed in them. */

@@ -7,6 +7,9 @@ const WORK = 20_000;
 /** Samples of one flock before the next flock's turn. */
 const TURN = 4;
 
+/** The number of no boat. */
+const NO_BOAT = 1e6;
+
 let core = null;
 let shown = [];
 
@@ -41,6 +44,7 @@ export const ANSWERS = {
     const values = opened(requests);
     for (const flock of shown.keys()) {
       advanced(flock, ahead);
+      core.look(flock, NO_BOAT);
     }
     return { continues: false, values, taken: taken(requests.length) };
   },
