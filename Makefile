@@ -100,8 +100,7 @@ test-browser: $(STAMPS)/test $(STAMPS)/browser $(CORE)
 	$(PYTEST) -m browser tests/browser $(PYTEST_ARGS)
 
 test-live: live $(STAMPS)/test $(STAMPS)/browser $(CORE)
-	@tests/need.sh firefox-esr firefox-esr
-	@tests/browser/need_chromium.sh
+	@tests/need.sh firefox-esr firefox-esr && tests/browser/need_chromium.sh
 	$(PYTEST) -m live tests/web tests/browser $(PYTEST_ARGS)
 
 test-js: $(JS_TESTS)/node_modules

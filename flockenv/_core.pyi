@@ -21,6 +21,7 @@ __all__ = [
     "PRESETS",
     "QUANTITIES",
     "REWARD_TERMS",
+    "STYLE_SHEET",
     "TOWARDS_TARGET",
     "USES_AVX2",
     "EnvBatch",

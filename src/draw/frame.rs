@@ -2,31 +2,13 @@
 //! depends on the flock, its look and its size alone.
 
 use super::legend::Legend;
-use super::palette::Coloring;
+use super::look::{Look, target_of};
 use super::view::View;
 use super::{boats, water};
 use crate::error::{FlockError, Result};
 use crate::flock::Flock;
 use crate::parameters::{FlockParameters, Target};
 use tiny_skia::Pixmap;
-
-/// How a frame shows a flock.
-#[derive(Debug, Clone, Copy)]
-pub struct Look<'a> {
-    /// What the color of a boat shows.
-    pub coloring: Coloring,
-    /// What stands above the time, cut where it does not fit its corner; nothing if it is empty.
-    pub caption: &'a str,
-}
-
-impl Default for Look<'_> {
-    fn default() -> Self {
-        Self {
-            coloring: Coloring::Direction,
-            caption: "",
-        }
-    }
-}
 
 /// Draws frames of one size; what lies under the boats is drawn once and kept.
 #[derive(Debug, Clone)]
@@ -42,13 +24,6 @@ struct Background {
     parameters: FlockParameters,
     target: Option<Target>,
     image: Pixmap,
-}
-
-/// Where all leaders head; `None` without leaders and where they head against each other.
-pub(super) fn target_of(flock: &Flock) -> Option<Target> {
-    let parameters = flock.parameters();
-    (parameters.n_leaders > 0 && !parameters.target.are_opposed())
-        .then(|| parameters.target.reference())
 }
 
 impl FrameRenderer {

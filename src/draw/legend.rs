@@ -1,6 +1,6 @@
 //! The legend in the frame's four corners, which a round pool leaves free.
 
-use super::frame::{Look, target_of};
+use super::look::{Look, target_of};
 use super::palette::{FAINT, INK, LEADER, OPPONENT, Rgb};
 use super::text::Typeface;
 use crate::flock::Flock;

@@ -9,6 +9,8 @@ mod frame;
 #[cfg(feature = "draw")]
 mod legend;
 #[cfg(feature = "draw")]
+mod look;
+#[cfg(feature = "draw")]
 mod paint;
 #[cfg(feature = "draw")]
 mod text;
@@ -18,4 +20,6 @@ mod view;
 mod water;
 
 #[cfg(feature = "draw")]
-pub use frame::{FrameRenderer, Look};
+pub use frame::FrameRenderer;
+#[cfg(feature = "draw")]
+pub use look::Look;
