@@ -159,7 +159,7 @@ mod tests {
             if share <= 0.04045 {
                 share / 12.92
             } else {
-                ((share + 0.055) / 1.055).powf(2.4)
+                libm::pow((share + 0.055) / 1.055, 2.4)
             }
         });
         let seen = times(eye, linear).map(|each| each.clamp(0.0, 1.0));
@@ -173,7 +173,7 @@ mod tests {
         );
         let f = |t: f64| {
             if t > 0.008_856 {
-                t.cbrt()
+                libm::cbrt(t)
             } else {
                 7.787 * t + 16.0 / 116.0
             }
