@@ -24,7 +24,7 @@ def advance_to(flock: Flock, time_s: float, rudder=None) -> None:
 
 
 def test_targets_change_after_the_sample_at_their_time():
-    changes = [(4.0, {"target": "cw"}), (2.0, {"target": "ccw"}), (50.0, {"target": "ccw"})]
+    changes = [(4.0, {"target": "cw"}), (2.0, {"target": "ccw"})]
     run = simulate(PARAMETERS, 3, 8.0, 5.0, schedule=changes)
     flock = Flock(PARAMETERS, 3)
     for place in range(41):

@@ -193,7 +193,8 @@ def test_a_start_that_the_flock_cannot_have_is_refused():
         ({"pose": pose[:-1]}, "pose"),
         ({"pose": pose, "speed": 1.0}, "speed"),
         ({"velocity": np.zeros_like(pose)}, "without pose"),
-        ({"pose": pose * 0.0}, "overlap"),
+        ({"pose": pose * 0.0 + [60.0, 0.0, 0.0]}, "overlap"),
+        ({"pose": pose * 0.0}, "center in the water"),
         ({"pose": pose, "time_s": -1.0}, "time_s"),
     ):
         with pytest.raises(flockenv.FlockError, match=match):
