@@ -106,7 +106,6 @@ test-live: live $(STAMPS)/test $(STAMPS)/browser $(CORE)
 test-js: $(JS_TESTS)/node_modules
 	cd $(JS_TESTS) && npm run lint && npm test
 
-# Without rustup, another toolchain's cargo and target will do. The package itself need not be built.
 live: ## the live page: the simulator compiled to WebAssembly, in one file that the package takes along
 	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
 	$(PYTHON) web/build.py
@@ -124,7 +123,6 @@ test-wheel: $(STAMPS)/test wheel ## wheel, source distribution and `pip install 
 env-benchmarl env-rllib test-benchmarl test-rllib test-ray test-oldest: $(STAMPS)/venv
 	PYTHON="$(PYTHON)" CODEGEN="$(CODEGEN)" tests/other.sh $@ $(PYTEST_ARGS)
 
-# A real Slurm of one node, started here (Linux, root).
 test-slurm: $(STAMPS)/test $(CORE)
 	@tests/need.sh "munged slurmctld slurmd sbatch" "slurm-wlm munge"
 	$(PYTEST) -m slurm tests/cluster $(PYTEST_ARGS)
@@ -135,11 +133,9 @@ docs: $(STAMPS)/test $(STAMPS)/docs $(CORE) ## build the pages, warnings are err
 	rm -rf docs/_build/leader
 	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --nitpicky --builder html docs docs/_build/html
 
-# The pages of docs/extend as the patches that they are; `make extend PAGE=policy` follows one.
-extend: $(STAMPS)/venv
+extend: $(STAMPS)/venv ## follow the pages of docs/extend, or PAGE=policy alone, in a copy of the tree
 	$(BIN)/python docs/extend/follow.py $(PAGE)
 
-# It installs cross compilers and emulators of Debian where it may, and says what is missing where not.
 test-processors: ## the tests of the same bits on aarch64 and riscv64, emulated
 	tests/processors.sh
 

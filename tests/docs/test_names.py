@@ -34,6 +34,7 @@ OTHERS = {
     "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
     "docs/tracks.md": {
         "individuals",
+        "mouse1.nose_x",
         "movement",
         "nose_x",
         "nose_y",
