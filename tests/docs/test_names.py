@@ -229,7 +229,12 @@ def wrong_name(name: str) -> str | None:
     if name.startswith("flockenv/") and name in gymnasium.registry:
         return None
     if re.fullmatch(rf"(?:{'|'.join(FOLDERS)})/[\w./-]+", name):
-        made = ("web/live.html", "docs/_build/", "benches/target/", "docs/environments/tables.md")
+        made = (
+            "flockenv/replay/live.html",
+            "docs/_build/",
+            "benches/target/",
+            "docs/environments/tables.md",
+        )
         return None if (REPOSITORY / name).exists() or name.startswith(made) else name
     if re.fullmatch(r"[\w./-]+\.(?:py|rs|md|mjs|csv|toml|json|yml|npz|png|html|sh|slurm)", name):
         there = (REPOSITORY / name).exists() or f"/{name}" in _listing() or name in _code()
