@@ -96,11 +96,17 @@ def test_one_row_that_is_in_no_list_is_refused_with_what_rows_have(arena, name, 
         arena.replace(**{name: flat})
 
 
-@pytest.mark.parametrize("value", [None, 3.0, "(1, 2, 3)", {}, True])
+@pytest.mark.parametrize("value", [None, 3.0, "(1, 2, 3)", {}, {(1, 2, 3)}, True])
 @pytest.mark.parametrize("name", ["discs", "walls"])
 def test_what_are_no_rows_is_a_type_error(arena, name, value):
     with pytest.raises(TypeError, match=name):
         arena.replace(**{name: value})
+
+
+def test_rows_may_be_gone_through_once(arena):
+    rows = [(30.0, 0.0, 8.0), (-30.0, 0.0, 8.0)]
+    for discs in (iter(rows), (map(float, row) for row in rows), dict(enumerate(rows)).values()):
+        assert arena.replace(discs=discs).discs == tuple(rows)
 
 
 def test_no_room_is_an_error_before_anything_changes(arena):
