@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ticks, timeStep } from "../../../flockenv/replay/shared/chart.mjs";
+import { Chart, ticks, timeStep } from "../../../flockenv/replay/shared/chart.mjs";
 
 test("round numbers between two", () => {
   assert.deepEqual(ticks(-1, 1, 4), [-1, -0.5, 0, 0.5, 1]);
@@ -11,4 +11,13 @@ test("round numbers between two", () => {
 
 test("steps of time are those of a clock", () => {
   assert.deepEqual([0.3, 1, 3, 12, 40, 400, 3000, 9000].map(timeStep), [0.5, 1, 5, 15, 60, 600, 3600, 18000]);
+});
+
+test("large values are up, late times to the right, and a place is a time again", () => {
+  const chart = new Chart({ addEventListener: () => undefined }, [], null, () => undefined);
+  Object.assign(chart, { width: 150, height: 128, range: [-1, 1], from: 0, to: 10 });
+  // 40 pixels are left of the plot, 8 above it.
+  assert.deepEqual([1, 0, -1].map((value) => chart.yOf(value)), [8, 58, 108]);
+  assert.deepEqual([0, 5, 10].map((time) => chart.xOf(time)), [40, 90, 140]);
+  assert.equal(chart.timeAt(chart.xOf(2.5)), 2.5);
 });

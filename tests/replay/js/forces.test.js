@@ -34,18 +34,18 @@ test("there is a scale without contacts", () => {
 
 /** A canvas that records the rectangles that are drawn on it. */
 function written() {
-  const rectangles = [];
+  const [rectangles, starts, turns] = [[], [], []];
   const ignore = () => undefined;
   const context = {
-    save: ignore, restore: ignore, translate: ignore, rotate: ignore,
+    save: ignore, restore: ignore, translate: (x, y) => starts.push([x, y]), rotate: (angle) => turns.push(angle),
     beginPath: ignore, moveTo: ignore, lineTo: ignore, fill: ignore,
     fillRect: (x, _y, width) => rectangles.push([context.fillStyle, x, width]),
   };
-  return { context, rectangles };
+  return { context, rectangles, starts, turns };
 }
 
 test("what is drawn has the length of the force from the point where it presses, on each boat", () => {
-  const { context, rectangles } = written();
+  const { context, rectangles, starts, turns } = written();
   const run = runOf([6, 12, 24]);
   const scene = {
     context, run, scale: 2, poses: run.posesAt(0.5), pixel: (x, y) => [x, y],
@@ -55,4 +55,7 @@ test("what is drawn has the length of the force from the point where it presses,
   const bars = rectangles.filter(([color]) => color === "red");
   // A hull of radius 5 cm at 2 pixels a cm is 20 pixels wide; two boats are pushed, then one by a wall.
   assert.deepEqual(bars, [["red", 0, 20], ["red", 0, 20], ["red", 0, 40]]);
+  // Boats at (10, 4) and (30, 0) are pushed eastward, each where its hull ends in the west.
+  assert.deepEqual(starts, [[5, 4], [5, 4], [25, 0]]);
+  assert.deepEqual(turns.map(Math.abs), [0, Math.PI, 0]);
 });
