@@ -26,8 +26,7 @@ C4 = tuple(round(0.4 * 2.0 ** (-place / 2.0), 4) for place in range(11))
 """From 0.4 to 0.0125 rad/s^1.5, in equal ratios."""
 BOATS, LEVEL_MIN, SLOW = (100, 200, 400, 800), 20.0, 4
 SEEDS = 8
-FIRST = 400
-"""Seeds that no other study of this folder has."""
+FIRST = 400  # Seeds that no other study of this folder has.
 
 
 def design() -> list[Row]:
@@ -112,16 +111,18 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw |m| and the share in jams on both ways, a panel for each size."""
     fast = table[table["minutes"] == table["minutes"].min()]
     with picture(options, "hysteresis", height_cm=8.0) as figure:
-        panels = figure.subplots(2, len(BOATS), sharex=True, sharey=True)
-        for column, n in zip(panels.T, BOATS, strict=True):
+        sizes = sorted(fast["n_boats"].unique())
+        panels = figure.subplots(2, len(sizes), sharex=True, sharey=True, squeeze=False)
+        for column, n in zip(panels.T, sizes, strict=True):
             runs = fast[fast["n_boats"] == n]
-            column[0].set_title(f"n = {n} ({len(runs)} runs)")
+            column[0].set_title(f"n = {n:g} ({len(runs)} runs)")
             for axes, name in zip(column, ("m", "jams"), strict=True):
                 for color, way in zip(COLORS, ("down", "up"), strict=False):
                     levels = C4 if way == "down" else C4[:-1]
                     found = [mean(runs[f"{name}_{way}_{c4:g}"]) for c4 in levels]
                     curve(axes, levels, found, color=color, label=f"noise goes {way}")
-                axes.set(xscale="log", ylim=(-0.03, 1.03))
+                axes.set(xscale="log", ylim=(-0.03, 1.03), xticks=C4[::4], xticklabels=C4[::4])
+                axes.minorticks_off()
             column[1].set_xlabel("c4 (rad/s^1.5)")
         panels[0, 0].set_ylabel("|m|")
         panels[1, 0].set_ylabel("share in jams")

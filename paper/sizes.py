@@ -27,8 +27,7 @@ import flockenv
 BOATS = (27, 50, 100, 200, 400)
 NOISES_S = (0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.8)
 FREE_RUNS, RUNS = 16, 64
-FIRST = 300
-"""Seeds that no other study of this folder has."""
+FIRST = 300  # Seeds that no other study of this folder has.
 LED = POLICIES[:3]
 
 
