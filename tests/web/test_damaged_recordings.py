@@ -80,7 +80,7 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "no parameters": {"parameters": None},
         "no poses": {"pose": None, "velocity": None},
         "half of the contacts": {"contacts_force": None},
-        "a format that is a number": {"format": np.array(1.0)},
+        "a format that is a number": {"format": np.array(2)},
         "a list of policies": {"policy": np.array(["a", "b"])},
         "a signed seed": {"seed": np.array(3, np.int64)},
         "a duration in single precision": {"duration_s": np.array(6.0, np.float32)},
