@@ -1,0 +1,27 @@
+// Law: a recording that is saved holds the samples since the last change.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { GrowingRun } from "../../web/growing_run.mjs";
+import { readNpz } from "../../web/npz.mjs";
+import { recordingOf } from "../../web/share.mjs";
+
+const samples = (times) => ({
+  time_s: Float64Array.from(times), phase: new Float64Array(times.length), in_analysis_window: new Float64Array(times.length),
+  pose: new Float64Array(6 * times.length), velocity: new Float64Array(6 * times.length), rudder: Float64Array.from(times),
+  series: Float64Array.from(times, (time) => time / 10), contacts: new Float64Array(0),
+});
+
+test("samples before the change are left out", async () => {
+  const run = new GrowingRun({ boats: 2, leaders: 1, phases: ["fw", "nop1"], seed: "7", stored: { n_boats: 2 } }, ["psi_o"], 10);
+  run.append(samples([0, 1, 2]));
+  run.describe({});
+  run.append(samples([3, 4]));
+  const about = { format: "a format", version: "1", policy: "learned", recorded: ["psi_o"] };
+  const arrays = await readNpz(recordingOf(run, about).buffer);
+  assert.deepEqual([...arrays.time_s.values], [2, 3, 4]);
+  assert.deepEqual([...arrays.order_psi_o.values], [0.2, 0.3, 0.4]);
+  assert.deepEqual(arrays.rudder.shape, [3, 1]);
+  assert.equal(arrays.duration_s.values[0], 4);
+  assert.equal(arrays.parameters.values[0], "n_boats = 2\n");
+});
