@@ -68,7 +68,8 @@ def measure(row: Row) -> Row:
         pool="wide" if row["n_boats"] == DENSITY_BOATS else (180.0 * scale, 97.0 * scale),
     )
     policy = None if row["policy"] == LAW or not sides else _policy(row["policy"])
-    if policy is not None and row["against"]:
+    # The learned leaders refuse other pools than their own, also those of its shape.
+    if policy is not None and (row["against"] or row["n_boats"] != DENSITY_BOATS):
         policy = _Against(policy, row["leaders"])
     run = flockenv.simulate(
         parameters,
