@@ -22,8 +22,7 @@ import flockenv
 from flockenv.statistics.structure import jam_sizes
 
 COVERAGE = 0.35
-C4 = tuple(round(0.4 * 2.0 ** (-place / 2.0), 4) for place in range(11))
-"""From 0.4 to 0.0125 rad/s^1.5, in equal ratios."""
+C4 = tuple(round(0.4 * 2.0 ** (-place / 2.0), 4) for place in range(11))  # rad/s^1.5
 BOATS, LEVEL_MIN, SLOW = (100, 200, 400, 800), 20.0, 4
 SEEDS = 8
 FIRST = 400  # Seeds that no other study of this folder has.

@@ -18,8 +18,7 @@ from starts import RADII_CM
 from study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, order_row, picture
 from study import simulated as run_of
 
-FIRST = 100
-"""Seeds that no other study of this folder has."""
+FIRST = 100  # Seeds that no other study of this folder has.
 LEAST_RISE, HULL_CM2 = 0.3, 128.5
 NOISES_S = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
 SETS: dict[str, Row] = {

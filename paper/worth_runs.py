@@ -68,8 +68,9 @@ def measure(row: Row) -> Row:
         pool="wide" if row["n_boats"] == DENSITY_BOATS else (180.0 * scale, 97.0 * scale),
     )
     policy = None if row["policy"] == LAW or not sides else _policy(row["policy"])
-    # The learned leaders refuse other pools than their own, also those of its shape.
-    if policy is not None and (row["against"] or row["n_boats"] != DENSITY_BOATS):
+    if isinstance(policy, flockenv.policies.LeaningLaw) and row["n_boats"] != DENSITY_BOATS:
+        policy.pool = None  # It refuses other pools than its own, also those of the same shape.
+    if policy is not None and row["against"]:
         policy = _Against(policy, row["leaders"])
     run = flockenv.simulate(
         parameters,
