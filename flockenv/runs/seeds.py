@@ -57,6 +57,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         _search("law tuning", 1),
         _search("evolution strategy", 2),
         _search("easy environment", 5),
+        _search("paired branches", 6),
     )
 }
 """Seeds of what makes and judges policies, by use; no two ranges meet."""
