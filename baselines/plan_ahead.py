@@ -36,7 +36,8 @@ BLOCK = 16
 
 def flocks(count: int, episode_s: float) -> flockenv.LeadersVectorEnv:
     """Return flocks whose leaders lean, and whose reward is the order alone."""
-    task = {**lean("wide", episode_s), "target": "random", "mirror_to_target": True}
+    task = {**lean("wide", episode_s), "reward_horizon_s": 1.0, "mirror_to_target": True}
+    task["target"] = "random"
     return flockenv.LeadersVectorEnv(count, autoreset_mode="disabled", **task)
 
 
