@@ -233,18 +233,20 @@ impl ContactResolver {
             } = &*self;
             trial.is_end() && !trial.overlaps(detector, parting, allowed)
         };
-        if !self.is_exhausted
-            && !self.parting.is_empty()
-            && !self.allowed_overlap.is_some_and(is_apart)
-        {
-            statistics.contacts += self.parting.len() as u64;
-            self.contacts.append(&mut self.parting);
-            self.warm_start(poses.len());
+        let is_short = !self.is_exhausted && !self.parting.is_empty();
+        if is_short && !self.allowed_overlap.is_some_and(is_apart) {
+            self.take_parting_back(poses.len(), statistics);
             self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
         }
         if !self.is_exhausted && self.stop_driving(free, inertia, bias) {
             if shorter_possible {
                 return ContactOutcome::TooLong;
+            }
+            // Other biases lead to other poses, at which nobody looks for what was left out.
+            if !self.parting.is_empty() {
+                self.take_parting_back(poses.len(), statistics);
+                self.solve_and_relinearize(poses, free, inertia, bias, false, statistics);
+                self.stop_driving(free, inertia, bias);
             }
             self.solve(None, free, inertia, statistics);
         }
@@ -259,6 +261,13 @@ impl ContactResolver {
         self.warm_start_cache
             .replace(self.contacts.iter().map(Contact::key).zip(impulses));
         ContactOutcome::Solved
+    }
+
+    /// Has the contacts that were left out solved for as well.
+    fn take_parting_back(&mut self, boats: usize, statistics: &mut Statistics) {
+        statistics.contacts += self.parting.len() as u64;
+        self.contacts.append(&mut self.parting);
+        self.warm_start(boats);
     }
 
     /// Solves the contacts at hand, and relinearizes them if that was asked for.
