@@ -28,9 +28,8 @@ from evolution_strategy import lean
 from provenance import provenance_of
 
 import flockenv
-from flockenv._core import LARGEST_LEAN
 from flockenv.policies import LeaningLaw
-from flockenv.policies.laws import LEAN_FEATURES
+from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import POLICY_SEEDS
 
 DECAY_1, DECAY_2 = 0.9, 0.99

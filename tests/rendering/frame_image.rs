@@ -91,7 +91,7 @@ fn color_shows_the_direction_or_the_role() {
             .set_state(&poses, &[Velocity::default(); 4], 12.5, false)
             .unwrap();
         let frame = drawn(&flock, 300, 300);
-        let stern = (-4.0 * heading.cos(), -70.0 - 4.0 * heading.sin());
+        let stern = (-4.0 * libm::cos(heading), -70.0 - 4.0 * libm::sin(heading));
         assert_eq!(color_at(&frame, stern.0, stern.1), expected);
         let look = Look {
             coloring: Coloring::Role,
