@@ -123,11 +123,11 @@ def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarra
         candidates = weights + settings.sigma * np.concatenate([changes, -changes])
         orders = pairs.branch(candidates)
         differences = orders[: settings.pairs] - orders[settings.pairs :]
-        gradient = differences @ changes / (settings.pairs * differences.std())
+        gradient = differences @ changes / (settings.pairs * differences.std() + 1e-12)
         moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient
         moment_2 = DECAY_2 * moment_2 + (1 - DECAY_2) * gradient**2
         step = moment_1 / (1 - DECAY_1 ** (number + 1))
-        step /= np.sqrt(moment_2 / (1 - DECAY_2 ** (number + 1)))
+        step /= np.sqrt(moment_2 / (1 - DECAY_2 ** (number + 1))) + 1e-8
         weights = weights + settings.learning_rate * (1 - number / generations) * step
         if number >= generations // 2:
             total += weights

@@ -104,13 +104,13 @@ def episodes(seeds: list[int], plan: str | None) -> np.ndarray:
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--noise", choices=("fresh", "known"), default="fresh")
-    parser.add_argument("--episodes", type=int, default=64)
+    parser.add_argument("--episodes", type=int, choices=range(2, 65), default=64, metavar="2-64")
     parser.add_argument("--out", type=Path, default=Path("results/plan_ahead"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / f"{options.noise}.csv"
     rows = pd.read_csv(path).to_dict("records") if path.exists() else []
-    seeds = release_seeds("plan ahead", options.episodes)
+    seeds = release_seeds("plan ahead", 64)[: options.episodes]
     for first in range(len(rows), len(seeds), BLOCK):
         block = list(seeds[first : first + BLOCK])
         plain, planned = episodes(block, None), episodes(block, options.noise)
