@@ -30,7 +30,7 @@ from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
 
 EPISODE_S, EVERY_S, HELD_S, HORIZON_S, JUDGED_S = 480, 8, 16, 32, 8
-CANDIDATES, CONTINUATIONS, OFFSET_RAD = 16, 4, 0.3
+CANDIDATES, OFFSET_RAD = 16, 0.3
 BLOCK = 16
 
 
@@ -55,23 +55,26 @@ def learned() -> Any:
 
 
 def ahead(
-    branches: Any, snapshots: list[bytes], targets: list[str], number: int, known: bool, seed: int
+    branches: Any, snapshots: list[bytes], targets: list[str], number: int, fresh: int, seed: int
 ) -> np.ndarray:
-    """Return the offsets (flocks, leaders) of the best candidate of each flock."""
+    """Return the offsets (flocks, leaders) of the best candidate of each flock.
+
+    `fresh` is the number of continuations by other noise, and 0 for the flock's own noise.
+    """
     random = np.random.default_rng([seed, number])
     leaders, leans = branches.num_leaders, learned()
     offsets = random.normal(0.0, OFFSET_RAD / LARGEST_LEAN, (len(snapshots), CANDIDATES, leaders))
     offsets[:, 0] = 0.0
-    continuations = 1 if known else CONTINUATIONS
+    continuations = max(1, fresh)
     each = CANDIDATES * continuations
     start: dict[str, Any] = {
         "snapshot": [blob for blob in snapshots for _ in range(each)],
         "target": [target for target in targets for _ in range(each)],
     }
-    if not known:
+    if fresh:
         # One more seed per continuation, the same for all candidates of all flocks.
-        fresh = [number * CONTINUATIONS + of for of in range(CONTINUATIONS)]
-        start["noise_seed"] = fresh * (len(snapshots) * CANDIDATES)
+        noises = [number * fresh + of for of in range(fresh)]
+        start["noise_seed"] = noises * (len(snapshots) * CANDIDATES)
     seen, _ = branches.reset(options=start)
     added = offsets.repeat(continuations, axis=1).reshape(-1, leaders)
     scores = np.zeros(branches.num_envs)
@@ -83,18 +86,17 @@ def ahead(
     return offsets[np.arange(len(snapshots)), best]
 
 
-def episodes(seeds: list[int], plan: str | None) -> np.ndarray:
-    """Return the signed order of one episode of each seed; without a plan that of the learned."""
+def episodes(seeds: list[int], fresh: int | None) -> np.ndarray:
+    """Return the signed order of one episode of each seed; None: the learned leaders' without."""
     env, leans = flocks(len(seeds), EPISODE_S), learned()
-    known = plan == "known"
-    branches = flocks(len(seeds) * CANDIDATES * (1 if known else CONTINUATIONS), HORIZON_S)
+    branches = flocks(len(seeds) * CANDIDATES * max(1, fresh or 0), HORIZON_S)
     branches.reset(seed=0)
     seen, infos = env.reset(seed=seeds)
     targets = [str(each) for each in infos["target"]]
     for number in range(EPISODE_S // EVERY_S):
         added = np.zeros((len(seeds), env.num_leaders))
-        if plan is not None:
-            added = ahead(branches, env.snapshots(), targets, number, known, seeds[0])
+        if fresh is not None:
+            added = ahead(branches, env.snapshots(), targets, number, fresh, seeds[0])
         for _ in range(EVERY_S):
             seen, _, _, ended, infos = env.step(np.clip(leans(seen) + added, -1.0, 1.0))
     assert ended.all()
@@ -104,16 +106,20 @@ def episodes(seeds: list[int], plan: str | None) -> np.ndarray:
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--noise", choices=("fresh", "known"), default="fresh")
+    parser.add_argument("--continuations", type=int, default=4, help="of fresh noise")
     parser.add_argument("--episodes", type=int, choices=range(2, 65), default=64, metavar="2-64")
     parser.add_argument("--out", type=Path, default=Path("results/plan_ahead"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    path = options.out / f"{options.noise}.csv"
+    if options.continuations < 1:
+        parser.error("--continuations is at least 1")
+    fresh = options.continuations if options.noise == "fresh" else 0
+    path = options.out / (f"fresh_{fresh}.csv" if fresh else "known.csv")
     rows = pd.read_csv(path).to_dict("records") if path.exists() else []
     seeds = release_seeds("plan ahead", 64)[: options.episodes]
     for first in range(len(rows), len(seeds), BLOCK):
         block = list(seeds[first : first + BLOCK])
-        plain, planned = episodes(block, None), episodes(block, options.noise)
+        plain, planned = episodes(block, None), episodes(block, fresh)
         for seed, learned_order, order in zip(block, plain, planned, strict=True):
             rows.append({"seed": seed, "learned": learned_order, "planned": order})
         pd.DataFrame(rows).to_csv(path, index=False)

@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def small(script, monkeypatch):
-    for name, value in {"EPISODE_S": 16, "CANDIDATES": 3, "CONTINUATIONS": 2, "BLOCK": 2}.items():
+    for name, value in {"EPISODE_S": 16, "CANDIDATES": 3, "BLOCK": 2}.items():
         monkeypatch.setattr(script, name, value)
     return script
 
@@ -31,7 +31,7 @@ def test_only_known_noise_is_the_flock_s_own(script):
 def test_the_first_candidate_is_what_the_learned_leaders_do(small, monkeypatch):
     monkeypatch.setattr(small, "CANDIDATES", 1)
     seeds = [5, 6]
-    assert (small.episodes(seeds, "known") == small.episodes(seeds, None)).all()
+    assert (small.episodes(seeds, 0) == small.episodes(seeds, None)).all()
 
 
 def test_an_interrupted_plan_resumes_after_its_last_block(small, tmp_path):
@@ -39,6 +39,6 @@ def test_an_interrupted_plan_resumes_after_its_last_block(small, tmp_path):
     small.main(["--episodes", "4", "--out", str(whole)])
     small.main(["--episodes", "2", "--out", str(parts)])
     small.main(["--episodes", "4", "--out", str(parts)])
-    tables = [pd.read_csv(folder / "fresh.csv") for folder in (whole, parts)]
+    tables = [pd.read_csv(folder / "fresh_4.csv") for folder in (whole, parts)]
     pd.testing.assert_frame_equal(*tables)
     assert np.isfinite(tables[0].to_numpy()).all()
