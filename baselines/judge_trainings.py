@@ -34,8 +34,8 @@ A fourth design was fixed before its trainings: seeds 0, 1 and 2 of PPO with 100
 take less than five minutes on two cores, in the same flocks.
 
 A design of its own has paired branches, seeds 0 to 4 with 200 flock-hours each, in the same flocks.
-The length of a branch, the changes and the learning rate were chosen by eleven searches of 100 or
-200 flock-hours each, 1400 together, judged in 384 other flocks.
+The length of a branch, the changes and the learning rate were chosen by ten searches of 100 or
+200 flock-hours each, 1200 together, judged in 384 other flocks.
 
     for seed in 0 1 2 3 4; do python baselines/paired_branches.py --seed $seed; done
     python baselines/judge_trainings.py results/paired/* --out docs/training/paired

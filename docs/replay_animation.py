@@ -10,7 +10,6 @@ from pathlib import Path
 from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
-from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 import flockenv
@@ -21,11 +20,9 @@ PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s
 SEED, DURATION_S = 7, 480.0
 POLICIES = {"paper's law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
 SIZE = (1160, 816)
-# The picture ends below the charts.
-CROP = (0, 0, 1160, 798)
+# The flocks and what stands below them: no controls, no charts.
+CROP = (0, 0, 1160, 545)
 START_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
-# A boat is pointed at for some of the frames.
-BOAT, POINTED = 3, range(24, 36)
 
 
 def main() -> None:
@@ -66,7 +63,6 @@ def frames(page: Path) -> Iterator[Image.Image]:
             driver.execute_script(
                 "player.seek(arguments[0]); player.show()", START_S + STEP_S * frame
             )
-            point(driver, frame in POINTED)
             picture = Image.open(io.BytesIO(driver.get_screenshot_as_png()))
             yield picture.crop(CROP).convert("RGB")
     finally:
@@ -96,15 +92,6 @@ def chromium() -> webdriver.Chrome:
 def program(variable: str, name: str) -> str:
     """Return a program's path; `tests/browser/need_chromium.sh` has seen that it is there."""
     return shutil.which(os.environ.get(variable, name)) or name
-
-
-def point(driver: webdriver.Chrome, at_boat: bool) -> None:
-    """Move the pointer to the boat, or away from all boats."""
-    canvas = driver.find_element("css selector", ".run canvas")
-    x, y = driver.execute_script("return player.panels[0].scene.place(arguments[0])", BOAT)
-    half = canvas.size["width"] / 2
-    place = (round(x - half), round(y - half)) if at_boat else (0, 0)
-    ActionChains(driver, duration=0).move_to_element_with_offset(canvas, *place).perform()
 
 
 if __name__ == "__main__":
