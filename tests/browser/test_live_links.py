@@ -17,17 +17,17 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
         live.until(
             "return page.other.lesson === arguments[0] && page.simulator.open.size === 0", name
         )
-        assert (
-            live.find(f"#lessons a[data-lesson='{name}']").get_attribute("aria-current") == "true"
-        )
+        chosen = live.find(f"#lessons a[data-lesson='{name}']")
+        live.until("return arguments[0].ariaCurrent === 'true'", chosen)
         assert 60 < len(live.text("#story")) < 140
         assert 40 < len(live.text("#after")) < 110
         live.run_to(live.script("return page.runs[0].end") + 3.0)
         for link in live.driver.find_elements("css selector", "#story a"):
             link.click()
+            # The address changes first, and the page hears of it later.
+            live.until("return arguments[0].ariaCurrent === 'true'", link)
             live.wait()
             assert live.script("return page.other.lesson") == name
-            assert link.get_attribute("aria-current") == "true"
             # A story that stays is not written again: the keyboard's focus remains.
             assert link.is_displayed()
     assert live.complaints() == []
