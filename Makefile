@@ -144,7 +144,7 @@ paper: build ## make every figure and question of paper/ that has runs missing, 
 
 tables: build ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py
-	$(BIN)/python docs/leader_curves.py
+	$(BIN)/python docs/plots.py
 
 audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what this depends on
 	$(UV) --quiet pip-audit

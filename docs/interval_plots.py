@@ -1,0 +1,128 @@
+"""Draw the plots of the pages from committed CSV files: `make tables`.
+
+A plot shows means with 95 % intervals, a policy always in one color. It carries the SHA-256 of the
+files that it was drawn from; tests/docs/test_plots.py fails where these have changed since.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import matplotlib as mpl
+from committed_data import DOCS, Row
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.comparison.figure import policy_colors
+
+DATA = "Data"
+"""The key of a picture's metadata that holds the digest of what it was drawn from."""
+
+# Legible where a phone shows the picture 390 pixels wide.
+_STYLE = {
+    "font.size": 11,
+    "axes.titlesize": 11,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "legend.frameon": False,
+}
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A picture of a page.
+
+    Attributes
+    ----------
+    data
+        CSV files below docs that it is drawn from.
+    draw
+        Draws into an empty figure.
+    size
+        Width and height in inches, at 150 dots each.
+    """
+
+    data: Sequence[str]
+    draw: Callable[[Figure], None]
+    size: tuple[float, float] = (6.8, 4.2)
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the data."""
+        return hashlib.sha256(
+            b"".join((DOCS / file).read_bytes() for file in self.data)
+        ).hexdigest()
+
+    def save(self, name: str) -> None:
+        """Draw into docs/NAME."""
+        with mpl.rc_context(_STYLE):
+            figure = Figure(figsize=self.size, layout="constrained")
+            self.draw(figure)
+            stamp = {"Software": None, DATA: self.digest()}
+            figure.savefig(DOCS / name, format="png", dpi=150, metadata=stamp)
+
+
+def across(
+    axes: Axes,
+    rows: Iterable[Row],
+    x: str,
+    columns: tuple[str, str, str] = ("signed_order", "signed_order_low", "signed_order_high"),
+    by: str = "policy",
+    shift: float = 0.06,
+) -> None:
+    """Draw means with intervals against a column x, a line for each value of `by`.
+
+    Lines stand `shift` apart, so that their bars can be told apart. `columns` name the mean and the
+    ends of its interval.
+    """
+    lines: dict[str, list[tuple[float, ...]]] = {}
+    for row in rows:
+        point = (float(row[x]), *(float(row[name]) for name in columns))
+        lines.setdefault(row[by], []).append(point)
+    colors = policy_colors(lines)
+    colors.update({name: "0.4" for name in lines if name == NO_LEADERS})
+    for place, name in enumerate(lines):
+        at, mean, low, high = zip(*sorted(lines[name]), strict=True)
+        axes.errorbar(
+            [each + shift * (place - (len(lines) - 1) / 2) for each in at],
+            mean,
+            _lengths(mean, low, high),
+            fmt="o-",
+            ms=5,
+            lw=1.5,
+            capsize=3,
+            color=colors[name],
+            label=name,
+        )
+
+
+def listed(
+    axes: Axes,
+    intervals: Mapping[str, tuple[float, float, float]],
+    colors: Mapping[str, str] | None = None,
+    reference: float | None = None,
+) -> None:
+    """Draw a mean with its interval (mean, low, high) on a line for each name, the first on top.
+
+    A vertical line marks the reference.
+    """
+    if reference is not None:
+        axes.axvline(reference, color="0.4", lw=1)
+    colors = policy_colors(intervals) if colors is None else colors
+    for line, (name, (mean, low, high)) in enumerate(intervals.items()):
+        lengths = _lengths([mean], [low], [high])
+        axes.errorbar(
+            [mean], [line], xerr=lengths, fmt="o", ms=5, lw=1.5, capsize=3, color=colors[name]
+        )
+    axes.set_yticks(range(len(intervals)), [*intervals])
+    axes.set_ylim(len(intervals) - 0.5, -0.5)
+
+
+def _lengths(
+    mean: Sequence[float], low: Sequence[float], high: Sequence[float]
+) -> tuple[list[float], list[float]]:
+    below = [middle - end for middle, end in zip(mean, low, strict=True)]
+    above = [end - middle for middle, end in zip(mean, high, strict=True)]
+    return below, above
