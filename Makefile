@@ -9,6 +9,7 @@ JOBS ?= 2
 PYTEST_ARGS ?=
 COMPARE_ARGS ?=
 PAPER_ARGS ?=
+PRETRAINED_ARGS ?=
 INSTRUCTIONS ?=
 # The page of docs/extend that `make extend` follows, if not all; how many of each kind of hostile input.
 PAGE ?=
@@ -141,6 +142,9 @@ test-processors: ## the tests of the same bits on aarch64 and riscv64, emulated
 
 paper: build ## make every figure and question of paper/ that has runs missing, or draw it again
 	OMP_NUM_THREADS=1 $(BIN)/python paper/make.py $(PAPER_ARGS)
+
+pretrained: $(STAMPS)/test $(CORE) ## train the leaders of both pools again (hours; PRETRAINED_ARGS=--trial shortly)
+	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
 tables: build ## fill the tables and draw the curves of README and docs from the committed data
 	$(BIN)/python docs/tables.py

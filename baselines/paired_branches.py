@@ -135,6 +135,13 @@ def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarra
     return total / (generations - generations // 2), np.array(curve)
 
 
+def law(pool: str, weights: np.ndarray, provenance: dict[str, str]) -> LeaningLaw:
+    """Return the law of leans by these weights, the last of which is the bias."""
+    *leans, bias = map(float, LARGEST_LEAN * weights)
+    named = dict(zip(LEAN_FEATURES, leans, strict=True))
+    return LeaningLaw(pool, bias, named, bound="clip", provenance=provenance)
+
+
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=("wide", "narrow"), default="wide")
@@ -158,10 +165,7 @@ def main(arguments: list[str] | None = None) -> None:
         wall_s=time.process_time() - start,
         flock_hours=len(curve) * hours,
     )
-    *leans, bias = map(float, LARGEST_LEAN * weights)
-    named = dict(zip(LEAN_FEATURES, leans, strict=True))
-    law = LeaningLaw(options.pool, bias, named, bound="clip", provenance=provenance)
-    law.save(folder / "policy.json")
+    law(options.pool, weights, provenance).save(folder / "policy.json")
     print(f"{len(curve) * hours:.0f} flock-hours, {time.process_time() - start:.0f} s of one core")
     print(f"order in branches {curve[0]:.3f} at first, {curve[-len(curve) // 4 :].mean():.3f} late")
 

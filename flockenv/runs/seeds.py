@@ -56,6 +56,8 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),
         _search("evolution strategy", 2),
+        # They choose one of several policies.
+        SeedRange("validation", FIRST_TRAINING_SEED + 3 * (_RUNS << 24), 1 << 24),
         _search("easy environment", 5),
         _search("paired branches", 6),
     )

@@ -1,0 +1,260 @@
+"""Make the pretrained leaders of both pools from nothing but these settings.
+
+    make pretrained                              # two hours of one core
+    python baselines/pretrained.py --trial       # all of it with little of everything, a minute
+    python baselines/pretrained.py --ship        # copies what it made to baselines/policies
+
+The design was fixed before the first training. In `wide` eight trainings are those of
+`flockenv train` but for the number of leaders: flocks with one, two, three and four are dealt out,
+equally many. In `narrow`, where PPO does not pass the tuned law, eight searches compare paired
+branches (paired_branches.py) with three leaders. Each has 1100 or 400 flock-hours, and no setting
+was searched for.
+
+Every policy is linear, so that policies have a mean: the mean of their weights. It is the pool's
+policy if it leads at least as well as the best single one in the validation flocks, and that single
+one is otherwise. The score is the mean signed order with one to four leaders, in 128 validation
+flocks each, at the default physics. Flocks that nobody has used then judge the policy with three
+leaders, and the file has that order beside the command, the seeds and the flock-hours.
+
+A training whose policy stands in `--out` is not made again, so that an interrupted command goes on.
+PPO also keeps its policy after 500 flock-hours. baselines/judge_trainings.py compares all seeds.
+
+The policy of a pool replaces the one that ships if it leads at least as well in the validation
+flocks. In `narrow` it counts as learned only if it passes the tuned law by more than 0.008 in 2048
+fresh flocks with some number of leaders.
+"""
+
+import argparse
+import shlex
+import shutil
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import paired_branches
+import pandas as pd
+from provenance import provenance_of
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.logger import configure
+
+from flockenv import FlockParameters
+from flockenv.comparison import run_episodes
+from flockenv.policies import DampedLaw, LeaningLaw
+from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
+from flockenv.statistics import mean_interval
+from flockenv.training import TrainingSettings
+
+SHIPPED = Path(__file__).parent / "policies"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that the policies depend on."""
+
+    seeds: tuple[int, ...] = tuple(range(8))
+    #: Leaders of the flocks of PPO, dealt out in turn, and the flock-hours of each training.
+    n_leaders: tuple[int, ...] = (1, 2, 3, 4)
+    wide_hours: float = 1100.0
+    kept_hours: float = 500.0
+    narrow_hours: float = 400.0
+    num_flocks: int = 128
+    #: Flocks that choose, for each of one to four leaders, and flocks that judge.
+    validation_flocks: int = 128
+    judging_flocks: int = 512
+    episode_s: float = 480.0
+
+
+TRIAL = Settings(
+    seeds=(0, 1),
+    wide_hours=1.5,
+    kept_hours=0.5,
+    narrow_hours=1.0,
+    num_flocks=8,
+    validation_flocks=2,
+    judging_flocks=4,
+    episode_s=16.0,
+)
+
+
+class Keep(BaseCallback):
+    """Saves the policy once a training has had this many samples."""
+
+    def __init__(self, samples: int, pool: str, path: Path) -> None:
+        super().__init__()
+        self.samples, self.pool, self.path = samples, pool, path
+
+    def _on_rollout_start(self) -> None:
+        if self.num_timesteps >= self.samples and not self.path.exists():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            every_step(LeaningLaw.from_model(self.model, self.pool), {}).save(self.path)
+
+    def _on_step(self) -> bool:
+        return True
+
+
+def every_step(law: LeaningLaw, provenance: dict[str, str]) -> LeaningLaw:
+    """Return a law that decides at every control step, and not once per second as trained."""
+    return LeaningLaw(law.pool, law.bias, law.weights, provenance=provenance)
+
+
+def train_wide(given: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
+    """Return the leans that PPO learns."""
+    start = time.process_time()
+    settings = TrainingSettings(
+        pool="wide",
+        seed=seed,
+        flock_hours=given.wide_hours,
+        num_flocks=given.num_flocks,
+        environment={"n_leaders": list(given.n_leaders)},
+    )
+    env = settings.venv()
+    env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
+    model = settings.model(env)
+    model.set_logger(configure(str(folder), ["csv"]))
+    kept = settings.replace(flock_hours=given.kept_hours)
+    model.learn(
+        settings.samples(env),
+        callback=Keep(kept.samples(env), "wide", folder / "kept" / "policy.json"),
+    )
+    model.logger.close()
+    made = provenance_of(
+        command,
+        seed=seed,
+        samples=model.num_timesteps,
+        wall_s=time.process_time() - start,
+        flock_hours=model.num_timesteps / env.num_envs * given.num_flocks / 3600.0,
+    )
+    return every_step(LeaningLaw.from_model(model, "wide"), made)
+
+
+def search_narrow(given: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
+    """Return the leans that paired branches find."""
+    start = time.process_time()
+    settings = paired_branches.Settings(pool="narrow", pairs=given.num_flocks // 2)
+    weights, curve = paired_branches.search(settings, seed, given.narrow_hours)
+    hours = len(curve) * given.num_flocks * settings.branch_s / 3600.0
+    np.savetxt(folder / "curve.csv", curve, "%.5g", header="signed_order", comments="")
+    made = provenance_of(
+        command,
+        seed=seed,
+        samples=round(hours * 3600 * 3),
+        wall_s=time.process_time() - start,
+        flock_hours=hours,
+    )
+    return paired_branches.law("narrow", weights, made)
+
+
+MAKERS: dict[str, Any] = {"wide": train_wide, "narrow": search_narrow}
+#: How the leans of each are bounded.
+BOUND = {"wide": "tanh", "narrow": "clip"}
+
+
+def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -> np.ndarray:
+    """Return the signed order of each flock at the pool's critical noise."""
+    bw_s = FlockParameters.critical_bw_s("simulation", pool)
+    flock = FlockParameters(n_boats=27, pool=pool, bw_s=bw_s, n_leaders=leaders)
+    return run_episodes(flock, policy, seeds, episode_s)["signed_order"]
+
+
+def mean_of(laws: list[LeaningLaw]) -> LeaningLaw:
+    """Return the law whose numbers are the means of those of laws of one pool."""
+    pool = laws[0].pool
+    weights = {
+        name: float(np.mean([each.weights[name] for each in laws])) for name in laws[0].weights
+    }
+    bias = float(np.mean([each.bias for each in laws]))
+    return LeaningLaw(pool, bias, weights, bound=BOUND[pool])
+
+
+def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.DataFrame:
+    """Return the order of each candidate in the validation flocks, by number of leaders."""
+    seeds = POLICY_SEEDS["validation"].seeds(given.validation_flocks)
+    rows = []
+    for name, policy in candidates.items():
+        row = {
+            f"leaders_{k}": orders(policy, pool, k, seeds, given.episode_s).mean()
+            for k in (1, 2, 3, 4)
+        }
+        rows.append({"policy": name, **row, "score": np.mean(list(row.values()))})
+    return pd.DataFrame(rows)
+
+
+def make(given: Settings, pool: str, out: Path, command: str) -> LeaningLaw:
+    """Train what is not yet there, choose, judge and write the policy of a pool."""
+    laws = {}
+    for seed in given.seeds:
+        folder = out / pool / str(seed)
+        path = folder / "policy.json"
+        folder.mkdir(parents=True, exist_ok=True)
+        if not path.exists():
+            MAKERS[pool](given, seed, folder, command).save(path)
+        laws[f"seed {seed}"] = LeaningLaw.load(path)
+    mean = mean_of(list(laws.values()))
+    candidates = {"tuned law": DampedLaw.tuned(pool), "mean": mean, **laws}
+    scores = validated(given, pool, candidates)
+    scores.round(4).to_csv(out / f"validation-{pool}.csv", index=False)
+    print(f"{pool}, validation flocks\n{scores.round(3).to_string(index=False)}", flush=True)
+    score = scores.set_index("policy")["score"]
+    best = str(score[list(laws)].idxmax())
+    chosen = "mean" if score["mean"] >= score[best] else best
+    used = list(laws.values()) if chosen == "mean" else [laws[chosen]]
+    made = {
+        "command": command,
+        "chosen": f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks",
+        "flockenv": used[0].provenance["flockenv"],
+        "commit": ", ".join(sorted({each.provenance["commit"] for each in used})),
+        "seed": ", ".join(each.provenance["seed"] for each in used),
+        **{
+            name: f"{sum(float(each.provenance[name]) for each in used):.10g}"
+            for name in ("samples", "flock_hours", "wall_s")
+        },
+    }
+    seeds = release_seeds("pretrained", given.judging_flocks)
+    signed_order, low, high = mean_interval(
+        orders(candidates[chosen], pool, 3, seeds, given.episode_s)
+    )
+    judged = {
+        "signed_order": round(signed_order, 3),
+        "interval": [round(low, 3), round(high, 3)],
+        "n_boats": 27,
+        "n_leaders": 3,
+        "bw_s": FlockParameters.critical_bw_s("simulation", pool),
+        "episode_s": given.episode_s,
+        "seeds": [seeds[0], seeds[-1]],
+    }
+    chosen_law = candidates[chosen]
+    law = LeaningLaw(
+        pool,
+        chosen_law.bias,
+        chosen_law.weights,
+        bound=BOUND[pool],
+        judged=judged,
+        provenance=made,
+    )
+    law.save(out / f"{pool}.json")
+    print(f"{pool}: {chosen}, signed order {signed_order:.3f} [{low:.3f}, {high:.3f}]", flush=True)
+    return law
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pool", choices=tuple(MAKERS), action="append", help="[both]")
+    parser.add_argument("--trial", action="store_true", help="little of everything")
+    parser.add_argument("--ship", action="store_true", help="copy the files to baselines/policies")
+    parser.add_argument("--out", type=Path, default=Path("results/pretrained"))
+    options = parser.parse_args(arguments)
+    if options.trial and options.ship:
+        parser.error("what a trial makes does not ship")
+    given = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "baselines/pretrained.py", *given])
+    for pool in options.pool or MAKERS:
+        make(TRIAL if options.trial else Settings(), pool, options.out, command)
+        if options.ship:
+            shutil.copyfile(options.out / f"{pool}.json", SHIPPED / f"{pool}.json")
+
+
+if __name__ == "__main__":
+    main()
