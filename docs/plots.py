@@ -4,8 +4,9 @@ from committed_data import DOCS
 from interval_plots import DATA, Plot
 from leader_plots import PLOTS as LEADERS
 from PIL import Image
+from track_plots import PLOTS as TRACKS
 
-PLOTS: dict[str, Plot] = {**LEADERS}
+PLOTS: dict[str, Plot] = {**LEADERS, **TRACKS}
 """How each is drawn, by its file below docs."""
 
 

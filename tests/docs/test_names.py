@@ -39,7 +39,6 @@ OTHERS = {
         "nose_x",
         "nose_y",
         "model.toml",
-        'table = dataset["position"].to_series().unstack(["keypoints", "space"])',
     },
 }
 FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "paper", "src", "tests", "web")
