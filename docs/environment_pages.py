@@ -1,11 +1,12 @@
 """The pages of the environments, written whenever the pages are built.
 
-A class's page is its docstring. `tables.md` lists what the core declares: options, terms of the
-reward, entries of the observation and of the global state, features of the flock.
+A class's page is its docstring. `tables.md` lists what the core declares: parameters, options,
+terms of the reward, entries of the observation and of the global state, features of the flock.
 """
 
 import inspect
 from collections.abc import Iterable
+from dataclasses import fields
 from pathlib import Path
 
 from committed_data import markdown
@@ -19,6 +20,7 @@ from flockenv.envs.observation import (
     state_entries,
 )
 from flockenv.envs.options import OPTIONS, TERMS
+from flockenv.parameters import FlockParameters
 from flockenv.sb3 import LeaderVecEnv
 
 FOLDER = Path(__file__).parent / "environments"
@@ -53,13 +55,20 @@ def tables() -> str:
     )
     return f"""# Tables
 
-Every option of the environments, every term of the reward, and every number that a policy can \
-observe. This page is written from what the core declares, so that it lists what the installed \
-version has.
+Every parameter of a flock, every option of the environments, every term of the reward, and every \
+number that a policy can observe. This page is written from what the core declares, so that it \
+lists what the installed version has.
+
+## Parameters
+
+The fields of `FlockParameters`, each with its value in the presets. [The model](../model.md) says \
+what they do to a flock.
+
+{_parameters()}
 
 ## Options
 
-Any field of [`FlockParameters`](../model.md) is an option too.
+Any field of `FlockParameters` is an option too.
 
 {options}
 
@@ -90,6 +99,21 @@ their sign if `mirror_to_target` reflects the view.
 
 {_features()}
 """
+
+
+def _parameters() -> str:
+    presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
+    body = [
+        [
+            f"`{each.name}`",
+            each.metadata["unit"],
+            *(str(values[each.name]) for values in presets.values()),
+            each.metadata["accepted"],
+            each.metadata["doc"],
+        ]
+        for each in fields(FlockParameters)
+    ]
+    return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
 
 
 def _by_block(entries: Iterable[Entry]) -> str:

@@ -4,7 +4,7 @@ Another task, or another number in one, is another suite. The seeds follow from 
 release, so that a later release scores all entries again, on flocks that none of them has met.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from flockenv._io.arguments import items
 from flockenv._io.extras import require
 from flockenv.comparison.case import Case
 from flockenv.comparison.report import ComparisonReport
+from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import TUNED_LAW
@@ -39,29 +40,38 @@ REFERENCE = TUNED_LAW
 
 _SEEDS = release_seeds("v0.1.0", EPISODES)
 
-# Written out, so that no other default changes a task.
-_FLOCK = FlockParameters.preset("simulation").replace(
-    n_boats=27, pool="wide", bw_s=0.31, dt_s=0.02, target="cw"
-)
+
+def _task(name: str, env_id: str) -> Case:
+    """Return the task that an environment is."""
+    options = dict(ENVIRONMENTS[env_id].options)
+    parameters = FlockParameters.from_dict(options.pop("params"))
+    targets: tuple[Any, ...] = ()
+    if isinstance(options.get("target"), tuple):
+        # No direction is favored: half of the episodes exchange them.
+        told = options.pop("target")
+        targets = (told, told[::-1])
+    return Case(
+        name=name,
+        parameters=parameters,
+        leaders=(parameters.n_leaders,),
+        seeds=_SEEDS,
+        episode_s=options.pop("episode_s"),
+        environment=options,
+        targets=targets,
+    )
 
 
-def _task(name: str, leaders: int, **options: Any) -> Case:
-    """Return a task with leaders in the flock of the suite; options are those of `Case`."""
-    parameters = _FLOCK.replace(n_leaders=leaders)
-    return Case(name=name, parameters=parameters, leaders=(leaders,), seeds=_SEEDS, **options)
+TASK_IDS: Mapping[str, str] = {
+    "one-leader": "flockenv/OneLeader-v0",
+    "three-leaders": "flockenv/ThreeLeaders-v0",
+    "reversal": "flockenv/Reversal-v0",
+    "camera": "flockenv/Camera-v0",
+    "noises": "flockenv/Noises-v0",
+    "misinformed": "flockenv/Misinformed-v0",
+}
+"""The environment of each task."""
 
-
-TASKS: tuple[Case, ...] = (
-    _task("one-leader", 1),
-    _task("three-leaders", 3),
-    # As in figure 7.
-    _task("reversal", 3, environment={"target": "alternate"}, episode_s=960.0),
-    _task("camera", 3, environment={"dropout_rate": 0.02, "delay_frames": 1}),
-    # Half to 1.25 times the critical noise.
-    _task("noises", 3, environment={"bw_s": (0.155, 0.3875)}),
-    # Leader 1 gets the wrong direction.
-    _task("misinformed", 2, targets=(("cw", "ccw"), ("ccw", "cw"))),
-)
+TASKS: tuple[Case, ...] = tuple(_task(name, env_id) for name, env_id in TASK_IDS.items())
 """The tasks, of which docs/suite.md says what each asks of leaders."""
 
 

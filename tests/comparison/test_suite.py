@@ -5,14 +5,25 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pandas as pd
 import pytest
 
+import flockenv
 from flockenv.comparison import suite
 from flockenv.comparison.report import ComparisonReport
-from flockenv.comparison.suite import EPISODES, REFERENCE, TASKS, aggregate, scores_table
+from flockenv.comparison.suite import (
+    EPISODES,
+    REFERENCE,
+    TASK_IDS,
+    TASKS,
+    aggregate,
+    scores_table,
+    tasks_named,
+)
 from flockenv.errors import ParameterError
+from flockenv.policies.registry import named_policy
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 
 FIELDS = ("n_boats", "n_leaders", "pool", "bw_s", "target", "scheme", "noise_scheme", "dt_s")
@@ -36,6 +47,34 @@ def test_tasks_never_change() -> None:
     ]
     digest = hashlib.sha256(json.dumps(frozen, sort_keys=True).encode()).hexdigest()
     assert digest[:16] == FROZEN
+
+
+@pytest.mark.parametrize(("name", "env_id"), TASK_IDS.items())
+def test_an_id_gives_what_the_suite_scores(name: str, env_id: str) -> None:
+    """Bit for bit, from the first observation to the summary, alone and as a vector of flocks."""
+    (task,) = tasks_named("v2", [name])
+    seeds, targets = task.seeds[:2], task.targets or (task.parameters.target,) * 2
+    scored = replace(task, seeds=seeds).run({REFERENCE: REFERENCE})["signed_order"].tolist()
+    law = named_policy(REFERENCE, task.parameters.pool)()
+
+    env = gymnasium.make(env_id)
+    options = {"target": targets[0], **task.environment, "episode_s": task.episode_s}
+    own = flockenv.LeadersEnv(params=task.parameters, **options)
+    assert env.unwrapped.parameters == own.parameters
+    assert env.unwrapped._batch.settings == own._batch.settings
+    observation, _ = env.reset(seed=seeds[0])
+    over, info = False, {}
+    while not over:
+        observation, _, _, over, info = env.step(law.predict(observation)[0])
+    assert info["episode_summary"]["signed_order"] == scored[0]
+
+    many = gymnasium.make_vec(env_id, num_envs=2)
+    exchanged = {"target": list(targets)} if task.targets else None
+    observation, _ = many.reset(seed=seeds[0], options=exchanged)
+    ends = np.zeros(2, bool)
+    while not ends.any():
+        observation, _, _, ends, info = many.step(law.predict(observation)[0])
+    assert info["episode_summary"]["signed_order"].tolist() == scored
 
 
 def test_the_seeds_are_those_of_the_release_and_judge_policies() -> None:

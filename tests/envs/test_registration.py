@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.registration import EASY_ID, ENVIRONMENTS
+from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.policies import DampedLaw, RandomRudders
+
+EASY_ID = "flockenv/Order-easy-v0"
 
 
 @pytest.mark.parametrize("env_id", ENVIRONMENTS)
@@ -40,7 +42,7 @@ def test_the_easy_environment_tells_good_leaders_from_bad():
             total += rewards / 300
         return total.mean()
 
-    options = ENVIRONMENTS[EASY_ID]
+    options = ENVIRONMENTS[EASY_ID].options
     layout = {name: options[name] for name in ("observation", "mirror_to_target")}
     assert mean_reward(DampedLaw(**layout)) > mean_reward(RandomRudders(**layout)) + 0.1
 

@@ -1,0 +1,79 @@
+"""The ids of the environments: what each is for, and its options."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+
+class Environment(NamedTuple):
+    """What an id stands for; its page is made of this."""
+
+    #: A few sentences in Markdown.
+    purpose: str
+    #: Those in which it differs from the defaults.
+    options: Mapping[str, Any]
+    #: What changed, by version.
+    history: tuple[str, ...] = ("v0: initial version.",)
+
+
+def _suite(purpose: str, n_leaders: int, episode_s: float = 480.0, **options: Any) -> Environment:
+    """Return a task of suite v2, which never changes: another number is another version."""
+    # Written out, so that no other default changes a task.
+    flock = {"preset": "simulation", "n_boats": 27, "pool": "wide", "bw_s": 0.31, "dt_s": 0.02}
+    flock |= {"n_leaders": n_leaders, "target": "cw"}
+    return Environment(purpose, {"params": flock, "episode_s": episode_s, **options})
+
+
+ENVIRONMENTS: Mapping[str, Environment] = {
+    "flockenv/Leaders-v0": Environment(
+        "The paper's simulated flock: 27 boats, three of which lead. All other environments are "
+        "this one with other options.",
+        {},
+    ),
+    # Few boats, many leaders and few numbers observed, so that samples show the order:
+    # baselines/learn_easy.py.
+    "flockenv/Order-easy-v0": Environment(
+        "The environment to start with. Four of ten boats lead, they observe few numbers, and the "
+        "order answers within seconds, so that plain PPO learns to lead within two minutes.",
+        {
+            "n_boats": 10,
+            "n_leaders": 4,
+            "pool": "narrow",
+            "bw_s": 0.3,
+            "target": "random",
+            "mirror_to_target": True,
+            "observation": {"neighbors": 0, "target": False},
+            "control_hz": 2.5,
+            "episode_s": 120.0,
+            "reward": {"signed_order": 1.0},
+            "physics": "training",
+        },
+    ),
+    "flockenv/OneLeader-v0": _suite("One leader at the critical noise.", 1),
+    "flockenv/ThreeLeaders-v0": _suite("Three leaders at the critical noise.", 3),
+    "flockenv/Reversal-v0": _suite(
+        "The target alternates every four minutes, as in figure 7 of the paper: leaders have to "
+        "turn a flock that circles the other way.",
+        3,
+        960.0,
+        target="alternate",
+    ),
+    "flockenv/Camera-v0": _suite(
+        "The leaders see through a camera that misses 2 % of the positions and whose picture is "
+        "one frame late.",
+        3,
+        dropout_rate=0.02,
+        delay_frames=1,
+    ),
+    "flockenv/Noises-v0": _suite(
+        "The noise of each episode is drawn from half to 1.25 times the critical one.",
+        3,
+        bw_s=(0.155, 0.3875),
+    ),
+    "flockenv/Misinformed-v0": _suite(
+        "Leader 1 gets the wrong direction; the order counts towards the direction of leader 0. It "
+        "needs two roles: with one policy for both leaders the mean order is 0.",
+        2,
+        target=("cw", "ccw"),
+    ),
+}
+"""Every id that `import flockenv` registers."""
