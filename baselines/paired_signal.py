@@ -2,6 +2,9 @@
 
     python baselines/paired_signal.py
 
+With 1024 states the signal after 48 s is 0.94 in pairs and 0.31 in other flocks, per square root of
+a flock-hour.
+
 Flocks led by the tuned law for 4 minutes are branched in two under one noise: one continues by the
 tuned law, the other leans as the learned leaders do. Their orders differ by what the better policy
 does, and by what chaos has made of it. z is the mean of the difference over its standard error. It

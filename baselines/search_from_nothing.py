@@ -2,6 +2,9 @@
 
     for seed in 2 3 4; do python baselines/search_from_nothing.py narrow $seed; done
 
+Seeds 2 to 4 reach an order of 0.244 to 0.255 in `narrow`, 16 minutes of one core each, where the
+damped law has 0.238 and the tuned law 0.270.
+
 A rudder, chosen ten times per second, is linear in the 29 lean features, which know no law, and a
 constant. A boat that backs up has weights of its own, as a rudder works in reverse there. The
 length of the 60 weights is fixed, and CMA-ES (Hansen's covariance matrix adaptation, from the

@@ -2,6 +2,9 @@
 
     python baselines/train_with_benchmarl.py ippo SEED FLOCK_HOURS FOLDER
 
+With 1000 flock-hours, seeds 0 to 2 score -0.003 to +0.011 in the suite with IPPO and +0.002 to
++0.003 with MAPPO: no gain on the tuned law is shown.
+
 The flocks, the action (a lean, decided once per second), the reward and the horizons are those of
 examples/train_leaders.py. The learner is BenchMARL's own: a network with two hidden layers that all
 leaders share, which sees the default observation, and noise of its action. The critic of MAPPO sees

@@ -3,6 +3,8 @@
     python baselines/tune_laws.py                     # both pools, 1 to 4 leaders, 1.6 hours
     python baselines/tune_laws.py --pool narrow --leaders 3 --generations 10
 
+No gains that two searches found, seeds 0 and 1, pass the tuned law by more than 0.003.
+
 A search is CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) over logarithms
 of the gains. A candidate's score is the mean signed order of its episodes. All candidates of a
 generation steer the same training episodes, and those of the next generation others. A search ends
