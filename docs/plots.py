@@ -3,10 +3,11 @@
 from committed_data import DOCS
 from interval_plots import DATA, Plot
 from leader_plots import PLOTS as LEADERS
+from model_plots import PLOTS as MODEL
 from PIL import Image
 from track_plots import PLOTS as TRACKS
 
-PLOTS: dict[str, Plot] = {**LEADERS, **TRACKS}
+PLOTS: dict[str, Plot] = {**LEADERS, **MODEL, **TRACKS}
 """How each is drawn, by its file below docs."""
 
 

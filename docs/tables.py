@@ -1,13 +1,11 @@
 """Fill the marked tables of the pages from committed data: `make tables`.
 
 A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``; `TABLES` says how NAME is made
-and from which file (`parameters` from what the core declares). tests/docs/test_tables.py fails
-where a page differs from its data.
+and from which file. tests/docs/test_tables.py fails where a page differs from its data.
 """
 
 import re
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 
 from committed_data import (
@@ -23,8 +21,6 @@ from committed_data import (
 from floors import floors
 from readme_numbers import figures, findings, speed
 from training_tables import TRAINING_TABLES
-
-from flockenv import FlockParameters
 
 DOCS = Path(__file__).parent
 PAGES = (
@@ -136,24 +132,7 @@ def tuned_laws() -> str:
     return markdown([*header, "minus the tuned law"], body)
 
 
-def parameters() -> str:
-    """Return what the core declares of each parameter, with the values of the presets."""
-    presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
-    body = [
-        [
-            f"`{each.name}`",
-            each.metadata["unit"],
-            *(str(values[each.name]) for values in presets.values()),
-            each.metadata["accepted"],
-            each.metadata["doc"],
-        ]
-        for each in fields(FlockParameters)
-    ]
-    return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
-
-
 TABLES: dict[str, Callable[[], str]] = {
-    "parameters": parameters,
     "floors": floors,
     "figures": figures,
     "findings": findings,
