@@ -170,7 +170,7 @@ instructions:
 
 clean: ## remove everything that was built or installed here
 	cargo clean
-	rm -rf benches/target benches/peers/.venv $(JS_TESTS)/node_modules docs/_build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf benches/target benches/peers/.venv $(JS_TESTS)/node_modules docs/_build docs/paper dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -rf .venv .venv-* flockenv/_core.*.so flockenv/_core.*.pyd
 	find . -name __pycache__ -prune -exec rm -rf {} +
 

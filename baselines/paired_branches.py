@@ -10,7 +10,7 @@ A policy is linear in the 29 lean features, as in examples/train_leaders.py, and
 law. Each pair of flocks starts from one snapshot and meets one noise. The two flocks differ by a
 Gaussian change of the weights, added in one and subtracted in the other. For about a minute what
 the noise does to them is nearly the same, so that the difference of their orders shows the change
-of the weights (docs/train.md has the measurement). Adam follows the sum of changes times
+of the weights (docs/learning.md has the measurement). Adam follows the sum of changes times
 differences. Then both flocks of a pair continue from the present state of one of them, drawn by a
 coin, until an episode of 8 minutes is over and the pair starts at rest again. So no flock-hour is
 spent on anything but the comparison, and the states are those that the policy leads to.

@@ -8,7 +8,7 @@ gain that 64 flocks show. The file is there to be read.
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is
-saved as a policy that steers any number of leaders without torch. docs/train_with_sb3.md runs
+saved as a policy that steers any number of leaders without torch. docs/training_reference.md runs
 it; needs torch (extra `train`).
 """
 

@@ -1,5 +1,6 @@
 """How Sphinx builds the pages: `make docs`."""
 
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,11 @@ from flockenv.replay import write_replay  # noqa: E402
 from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 
 environment_pages.write()
+
+# Sphinx links pages below this folder alone.
+_paper = Path(__file__).parent / "paper"
+shutil.rmtree(_paper, ignore_errors=True)
+shutil.copytree(_paper.parents[1] / "paper", _paper, ignore=shutil.ignore_patterns("software"))
 
 # What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
 html_extra_path = ["_build/shown"]
@@ -47,6 +53,8 @@ exclude_patterns = ["_build", "results", "speed_vs_error"]
 html_theme = "furo"
 html_title = f"flockenv {release}"
 html_math_renderer = "mathml"
+html_static_path = ["static"]
+html_css_files = ["doors.css"]
 html_show_copyright = False
 html_copy_source = False
 
@@ -67,7 +75,7 @@ nitpick_ignore_regex = [
     (r"py:.*", r"flockenv\.runs\.executors\.(Item|Value)"),
 ]
 
-myst_enable_extensions = ["dollarmath", "deflist"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 # Pages with code cells run whole, at every build; a cell that fails, fails the build.
@@ -99,6 +107,7 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _link_environment_pages)
     app.connect("autodoc-process-signature", _hide_cls)
     app.connect("missing-reference", _plain_name)
+    app.connect("source-read", _link_copies)
 
 
 def _link_environment_pages(
@@ -107,6 +116,11 @@ def _link_environment_pages(
     # Their docstrings are Markdown, and pages of their own.
     if what == "class" and name in ENVIRONMENTS:
         lines[:] = [f"See :doc:`/environments/{obj.__name__}`."]
+
+
+def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
+    # Links to and from the folder paper, where it was copied to.
+    source[0] = source[0].replace("](../paper/", "](paper/").replace("](../docs/", "](../")
 
 
 def _hide_cls(

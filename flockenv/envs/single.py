@@ -31,7 +31,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
 
     `flockenv/Order-easy-v0` is the environment to start with: ten boats, four of which lead and are
     rewarded for the order of the others. Plain PPO passes the paper's law there within two minutes
-    of processor time (docs/train_in_four_minutes.md). `gymnasium.spec("flockenv/Order-easy-v0")`
+    of processor time (docs/train.md). `gymnasium.spec("flockenv/Order-easy-v0")`
     has its options in `kwargs`. `import flockenv` registers the ids;
     `gymnasium.make("flockenv:flockenv/Order-easy-v0")` imports the package by itself.
 

@@ -71,8 +71,13 @@ def _pages() -> dict[str, str]:
 
 def _files(folder: str, pattern: str) -> list[Path]:
     skipped = {"target", "_build", "node_modules", ".venv", "results"}
-    found = (REPOSITORY / folder).rglob(pattern)
-    return [path for path in found if not skipped & {*path.relative_to(REPOSITORY).parts[:-1]}]
+    names = {path: path.relative_to(REPOSITORY) for path in (REPOSITORY / folder).rglob(pattern)}
+    copied = DOCS / "paper"  # by the build of the pages
+    return [
+        path
+        for path, name in names.items()
+        if not skipped & {*name.parts[:-1]} and copied not in path.parents
+    ]
 
 
 PAGES = _pages()
