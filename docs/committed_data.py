@@ -45,13 +45,3 @@ def interval(row: Row, middle: str, low: str, high: str, form: str = ".3f") -> s
     """Return a value with its interval in brackets."""
     value, least, most = (f"{float(row[name]):{form}}" for name in (middle, low, high))
     return f"{value} [{least}, {most}]"
-
-
-def order(row: Row) -> str:
-    """Return a mean signed order with its interval."""
-    return interval(row, "signed_order", "signed_order_low", "signed_order_high")
-
-
-def difference(row: Row) -> str:
-    """Return a paired difference of signed orders with its interval."""
-    return interval(row, "mean", "low", "high", "+.3f")

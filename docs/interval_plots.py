@@ -16,6 +16,9 @@ from matplotlib.figure import Figure
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.comparison.figure import policy_colors
 
+Interval = tuple[float, float, float]
+"""A mean and the ends of its interval."""
+
 DATA = "Data"
 """The key of a picture's metadata that holds the digest of what it was drawn from."""
 
@@ -100,7 +103,7 @@ def across(
 
 def listed(
     axes: Axes,
-    intervals: Mapping[str, tuple[float, float, float]],
+    intervals: Mapping[str, Interval],
     colors: Mapping[str, str] | None = None,
     reference: float | None = None,
 ) -> None:
@@ -111,13 +114,46 @@ def listed(
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
     colors = policy_colors(intervals) if colors is None else colors
-    for line, (name, (mean, low, high)) in enumerate(intervals.items()):
-        lengths = _lengths([mean], [low], [high])
-        axes.errorbar(
-            [mean], [line], xerr=lengths, fmt="o", ms=5, lw=1.5, capsize=3, color=colors[name]
-        )
-    axes.set_yticks(range(len(intervals)), [*intervals])
-    axes.set_ylim(len(intervals) - 0.5, -0.5)
+    for line, (name, interval) in enumerate(intervals.items()):
+        _bars(axes, [line], [interval], color=colors[name])
+    _lines(axes, intervals)
+
+
+def grouped(
+    axes: Axes,
+    series: Mapping[str, Mapping[str, Interval]],
+    colors: Mapping[str, str] | None = None,
+    reference: float | None = None,
+    shift: float = 0.2,
+) -> None:
+    """Draw means with intervals on a line for each name, those of a series in one color.
+
+    On a line the series stand `shift` apart, the first on top. A vertical line marks the reference.
+    """
+    if reference is not None:
+        axes.axvline(reference, color="0.4", lw=1)
+    colors = policy_colors(series) if colors is None else colors
+    names = [*dict.fromkeys(name for intervals in series.values() for name in intervals)]
+    for place, (own, intervals) in enumerate(series.items()):
+        off = shift * (place - (len(series) - 1) / 2)
+        at = [names.index(name) + off for name in intervals]
+        _bars(axes, at, [*intervals.values()], color=colors[own], label=own)
+    _lines(axes, names)
+
+
+def _bars(
+    axes: Axes, at: Sequence[float], intervals: Sequence[Interval], color: str, label: str = ""
+) -> None:
+    mean, low, high = zip(*intervals, strict=True)
+    lengths = _lengths(mean, low, high)
+    style = {"fmt": "o", "ms": 5, "lw": 1.5, "capsize": 3, "color": color, "label": label}
+    axes.errorbar(mean, at, xerr=lengths, **style)
+
+
+def _lines(axes: Axes, names: Iterable[str]) -> None:
+    shown = [*names]
+    axes.set_yticks(range(len(shown)), shown)
+    axes.set_ylim(len(shown) - 0.5, -0.5)
 
 
 def _lengths(

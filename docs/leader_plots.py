@@ -1,13 +1,18 @@
 """The plots of the README and of the page about leaders."""
 
-from committed_data import DIFFERENCES, MEANS, Row, rows
-from interval_plots import Plot, across, listed
+from collections.abc import Mapping
+
+from committed_data import DIFFERENCES, MEANS, Row, one, rows
+from interval_plots import Interval, Plot, across, listed
+from leader_words import CASES, CLOSE, LEARNED, TUNED, planned
 from matplotlib.figure import Figure
 
-LADDER = ("learned", "tuned law", "damped law", "paper's law")
-POOLS = {"wide": "wide-bw-0.31", "narrow": "narrow-bw-0.45"}
+from flockenv.statistics import student_interval
+
+LADDER = (LEARNED, TUNED, "damped law", "paper's law")
 COUNT = "leaders/leader_count.csv"
-CLOSE = "leaders/close_differences.csv"
+GAINS = "leaders/tuned_laws/gains.csv"
+PLANS = {"planner, noise known": "known", "planner, noise unknown": "fresh"}
 
 
 def leader_count(figure: Figure) -> None:
@@ -23,7 +28,7 @@ def leader_count(figure: Figure) -> None:
 def both_pools(figure: Figure) -> None:
     """Draw the order by the number of leaders in both pools."""
     panels = figure.subplots(1, 2, sharey=True)
-    for axes, (pool, case) in zip(panels, POOLS.items(), strict=True):
+    for axes, (pool, case) in zip(panels, CASES.items(), strict=True):
         across(
             axes, (row for name in LADDER for row in rows(MEANS, case=case, policy=name)), "leaders"
         )
@@ -34,26 +39,59 @@ def both_pools(figure: Figure) -> None:
 
 def learned_minus_tuned(figure: Figure) -> None:
     """Draw what learning adds to the tuned law, in the larger of the two sets of flocks."""
+    _by_leaders(figure, {pool: _added(case) for pool, case in CASES.items()}, "learned")
+
+
+def tuned_laws(figure: Figure) -> None:
+    """Draw what a search for each number of leaders adds to the tuned law."""
+    ends = ("beyond", "beyond_low", "beyond_high")
+    found = {pool: {row["leaders"]: row for row in rows(GAINS, pool=pool)} for pool in CASES}
+    shown = {
+        pool: {k: _ends(row, *ends) for k, row in each.items()} for pool, each in found.items()
+    }
+    _by_leaders(figure, shown, "searched gains")
+
+
+def _added(case: str) -> dict[str, Interval]:
+    close = {(row["case"], row["leaders"]): row for row in rows(CLOSE, policy=LEARNED)}
+    other = {"case": case, "policy": LEARNED, "reference": TUNED}
+    few = {k: one(DIFFERENCES, leaders=k, **other) for k in "1234"}
+    return {k: _ends(close.get((case, k), few[k])) for k in "1234"}
+
+
+def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
+    return float(row[mean]), float(row[low]), float(row[high])
+
+
+def _by_leaders(figure: Figure, shown: Mapping[str, Mapping[str, Interval]], name: str) -> None:
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
-    for axes, (pool, case) in zip(panels, POOLS.items(), strict=True):
-        listed(axes, {k: _added(case, k) for k in "1234"}, dict.fromkeys("1234", "0.15"), 0.0)
-        axes.set(title=pool, xlabel="learned minus tuned law")
+    for axes, (pool, found) in zip(panels, shown.items(), strict=True):
+        listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
+        axes.set(title=pool, xlabel=f"{name} minus tuned law")
     panels[0].set_ylabel("leaders")
 
 
-def _added(case: str, leaders: str) -> tuple[float, float, float]:
-    found = {(row["case"], row["leaders"]): row for row in rows(CLOSE, policy="learned")}
-    row: Row | None = found.get((case, leaders))
-    if row is None:
-        (row,) = rows(
-            DIFFERENCES, case=case, leaders=leaders, policy="learned", reference="tuned law"
-        )
-    return float(row["mean"]), float(row["low"]), float(row["high"])
+def plans(figure: Figure) -> None:
+    """Draw what the learned leaders and both planners reach, and what planning adds."""
+    left, right = figure.subplots(1, 2, sharey=True)
+    orders = {name: planned(noise) for name, noise in PLANS.items()}
+    (learned, _), *_ = orders.values()
+    means, gains = {LEARNED: student_interval(learned)}, {LEARNED: (0.0, 0.0, 0.0)}
+    for name, (own, plan) in orders.items():
+        means[name], gains[name] = student_interval(plan), student_interval(plan - own)
+    listed(left, means)
+    listed(right, gains, reference=0.0)
+    left.set(xlabel="signed order", xlim=(0, 1))
+    right.set(xlabel="minus learned")
 
 
 PLOTS = {
     "leaders/leader_count.png": Plot([COUNT], leader_count),
     "leaders/both_pools.png": Plot([MEANS], both_pools, (8.4, 4.2)),
     "leaders/learned_minus_tuned.png": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (8.4, 2.6)),
+    "leaders/tuned_laws.png": Plot([GAINS], tuned_laws, (8.4, 2.6)),
+    "leaders/plans.png": Plot(
+        ["leaders/plan_known.csv", "leaders/plan_fresh.csv"], plans, (8.4, 2.2)
+    ),
 }
 """How each is drawn, by its file below docs."""

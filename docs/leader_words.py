@@ -1,0 +1,71 @@
+"""What the README and docs/leaders.md say of leaders in words, from committed data."""
+
+import numpy as np
+from committed_data import DIFFERENCES, MEANS, Row, one, rows
+
+from flockenv.statistics import student_interval
+
+CASES = {"wide": "wide-bw-0.31", "narrow": "narrow-bw-0.45"}
+"""The comparisons of each pool, at the noise that the pages show."""
+CLOSE = "leaders/close_differences.csv"
+TUNED, LEARNED, PAPERS = "tuned law", "learned", "paper's law"
+
+
+def compared(row: Row) -> str:
+    """Return how learned leaders lead in comparison with the tuned law, by a paired difference."""
+    mean, low, high = (float(row[name]) for name in ("mean", "low", "high"))
+    if low > 0.0 or high < 0.0:
+        return f"{'better' if low > 0.0 else 'worse'} than the tuned law, by {abs(mean):.2f}"
+    return f"about as well as the tuned law, within {max(-low, high):.3f}"
+
+
+def order(policy: str, pool: str, leaders: str = "3") -> str:
+    """Return the mean signed order of a policy."""
+    row = one(MEANS, case=CASES[pool], policy=policy, leaders=leaders)
+    return f"{float(row['signed_order']):.2f}"
+
+
+def _pools() -> tuple[Row, Row]:
+    wide = one(DIFFERENCES, case=CASES["wide"], policy=LEARNED, reference=TUNED, leaders="3")
+    return wide, one(CLOSE, case=CASES["narrow"], policy=LEARNED, leaders="3")
+
+
+def verdict() -> str:
+    """Return how learned leaders compare with the tuned law, for the README."""
+    wide, narrow = _pools()
+    return (
+        f"In {wide['n']} other episodes three learned leaders lead {compared(wide)} "
+        f"({order(LEARNED, 'wide')} and {order(TUNED, 'wide')}). In the pool `narrow` they lead "
+        f"{compared(narrow)} ([leaders](docs/leaders.md))."
+    )
+
+
+def summary() -> str:
+    """Return what docs/leaders.md begins with."""
+    wide, narrow = _pools()
+    return (
+        f"In the pool `wide` three learned leaders among 27 boats lead {compared(wide)}: they "
+        f"reach a signed order of {order(LEARNED, 'wide')}, and the tuned law "
+        f"{order(TUNED, 'wide')} (bw = 0.31 s, {wide['n']} episodes). In the pool `narrow` they "
+        f"lead {compared(narrow)} (bw = 0.45 s, {narrow['n']} episodes). The paper's own law, eq. "
+        f"(10), reaches {order(PAPERS, 'wide')} in `wide` and {order(PAPERS, 'narrow')} in "
+        "`narrow`."
+    )
+
+
+def planned(noise: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the signed orders of the learned leaders and of a planner, in the same episodes."""
+    found = rows(f"leaders/plan_{noise}.csv")
+    learned, plan = ([float(row[name]) for row in found] for name in ("learned", "planned"))
+    return np.array(learned), np.array(plan)
+
+
+def plans() -> str:
+    """Return what planning ahead adds to the learned leaders."""
+    (learned, known), (_, fresh) = planned("known"), planned("fresh")
+    mean, low, high = student_interval(fresh - learned)
+    return (
+        f"**A planner that knows the noise reaches a signed order of {known.mean():.2f}, and the "
+        f"learned leaders {learned.mean():.2f}. A planner that does not know it reaches "
+        f"{fresh.mean():.2f}: a difference of {mean:+.2f} ± {(high - low) / 2:.2f}.**"
+    ).replace("-", "−")
