@@ -60,6 +60,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         SeedRange("validation", FIRST_TRAINING_SEED + 3 * (_RUNS << 24), 1 << 24),
         _search("easy environment", 5),
         _search("paired branches", 6),
+        _search("offline data", 7),
     )
 }
 """Seeds of what makes and judges policies, by use; no two ranges meet."""
