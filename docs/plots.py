@@ -5,9 +5,10 @@ from interval_plots import DATA, Plot
 from leader_plots import PLOTS as LEADERS
 from model_plots import PLOTS as MODEL
 from PIL import Image
+from speed_plots import PLOTS as SPEED
 from track_plots import PLOTS as TRACKS
 
-PLOTS: dict[str, Plot] = {**LEADERS, **MODEL, **TRACKS}
+PLOTS: dict[str, Plot] = {**LEADERS, **MODEL, **SPEED, **TRACKS}
 """How each is drawn, by its file below docs."""
 
 

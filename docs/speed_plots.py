@@ -1,0 +1,93 @@
+"""The plots of the page about speed and error that the benchmark does not draw itself."""
+
+from committed_data import rows
+from interval_plots import Plot, listed
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+ENGINES = "speed_vs_error/short_engines.csv"
+IMPACT = "speed_vs_error/impact.csv"
+LEARNERS = "throughput/learners.csv"
+SHOWN = {
+    "leapfrog": "leapfrog / exact / r0",
+    "leapfrog, 1 relinearization": "leapfrog / exact / r1",
+    "leapfrog, 2 relinearizations": "leapfrog / exact / r2",
+    "moreau": "moreau / exact / r0",
+    "paper": "paper / exact / r0",
+    "rapier2d-f64, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
+    "rapier2d-f64, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
+    "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
+    "pymunk": "pymunk 10 iterations",
+    "MuJoCo": "MuJoCo Newton",
+}
+OURS, OURS_TOO, THEIRS = "#0072b2", "#d55e00", "0.45"
+N_OURS = 5
+
+
+def engines(figure: Figure) -> None:
+    """Draw the cost of a step and two errors, a line for each engine."""
+    panels = figure.subplots(1, 3, sharey=True)
+    found = {row["engine, setting"]: row for row in rows(ENGINES)}
+    lines = [found[name] for name in SHOWN.values()]
+    for axes, columns, label in zip(
+        panels,
+        ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "overlap, cm"}, {"": "slide, cm"}),
+        ("time of a step [µs]", "overlap in the jam [cm]", "error after sliding [cm]"),
+        strict=True,
+    ):
+        for name, column in columns.items():
+            _points(axes, [float(line[column]) for line in lines], name)
+        axes.set(xscale="log", xlabel=label)
+    panels[0].set_yticks(range(len(SHOWN)), [*SHOWN])
+    panels[0].invert_yaxis()
+    panels[0].legend(loc="upper right", fontsize=9)
+
+
+def _points(axes: Axes, values: list[float], name: str) -> None:
+    """Draw a point on each line, ours in color; a hollow one for flocks that move."""
+    colors = [OURS] * N_OURS + [THEIRS] * (len(values) - N_OURS)
+    faces = colors if name != "moving" else ["white"] * len(values)
+    axes.scatter(
+        values, range(len(values)), 45, color=faces, edgecolors=colors, label=name, zorder=3
+    )
+
+
+def impact(figure: Figure) -> None:
+    """Draw the error of a boat that hits the wall against the step."""
+    axes = figure.subplots()
+    for row, color, marker in zip(
+        (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / r2"),
+        (OURS, OURS_TOO),
+        "os",
+        strict=True,
+    ):
+        steps = [column for column in row if column != "scheme"]
+        errors = [float(row[step]) for step in steps]
+        lengths = [float(step.removeprefix("dt = ").removesuffix(" s")) for step in steps]
+        name = row["scheme"].removesuffix(" / r0")
+        axes.plot(lengths, errors, marker + "-", color=color, label=name)
+    axes.set(xscale="log", yscale="log", xlabel="dt [s]", ylabel="error after an impact [cm]")
+    axes.set_xticks(lengths, [f"{length:g}" for length in lengths], minor=False)
+    axes.set_yticks([0.002, 0.005, 0.01, 0.02], ["0.002", "0.005", "0.01", "0.02"])
+    axes.minorticks_off()
+    axes.legend()
+
+
+def learners(figure: Figure) -> None:
+    """Draw the samples per second of each interface over the batch that it steps."""
+    columns = ("median of the batch", "least of the batch", "most of the batch")
+    shares = {
+        row["interface"]: (float(row[columns[0]]), float(row[columns[1]]), float(row[columns[2]]))
+        for row in rows(LEARNERS)[1:]
+    }
+    axes = figure.subplots()
+    listed(axes, shares, dict.fromkeys(shares, OURS), reference=1.0)
+    axes.set(xlim=(0, 1.05), xlabel="samples per second, over the batch alone")
+
+
+PLOTS = {
+    "speed_vs_error/engines.png": Plot([ENGINES], engines, (9.0, 4.2)),
+    "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
+    "throughput/learners.png": Plot([LEARNERS], learners, (8.4, 3.8)),
+}
+"""How each is drawn, by its file below docs."""
