@@ -1,7 +1,8 @@
 """How leaders move, for docs/leaders.md: ``python docs/leader_motion.py`` (a minute of one core).
 
-It writes leaders/motion.csv and draws leaders/tracks-wide.png, from flocks with three leaders over
-64 episodes of 8 minutes, seeds 0 to 63, without the first tenth of each.
+It writes leaders/motion.csv, means with 95 % intervals, and draws leaders/tracks-wide.png, from
+flocks with three leaders over 64 episodes of 8 minutes, seeds 0 to 63, without the first tenth of
+each.
 """
 
 import numpy as np
@@ -13,6 +14,7 @@ from matplotlib.patches import Circle
 import flockenv
 from flockenv import FlockParameters
 from flockenv.policies.registry import named_policy
+from flockenv.statistics import mean_interval
 
 FOLDER = DOCS / "leaders"
 POLICIES = ("paper's law", "tuned law", "learned")
@@ -74,8 +76,12 @@ def main() -> None:
         outer_cm = FlockParameters(pool=pool).pool_radii_cm[0]
         for policy in POLICIES:
             runs = (leaders(pool, policy, seed) for seed in range(EPISODES))
-            means = pd.DataFrame([motion(run, outer_cm) for run in runs]).mean()
-            rows.append({"pool": pool, "policy": policy, **means})
+            found = pd.DataFrame([motion(run, outer_cm) for run in runs])
+            row: dict[str, object] = {"pool": pool, "policy": policy}
+            for name, values in found.items():
+                ends = (str(name), f"{name}_low", f"{name}_high")
+                row |= zip(ends, mean_interval(values), strict=True)
+            rows.append(row)
     pd.DataFrame(rows).to_csv(FOLDER / "motion.csv", index=False, float_format="%.5g")
     draw()
 

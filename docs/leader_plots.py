@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from committed_data import DIFFERENCES, MEANS, Row, one, rows
-from interval_plots import Interval, Plot, across, listed
+from interval_plots import Interval, Plot, across, grouped, listed
 from leader_words import CASES, CLOSE, LEARNED, TUNED, planned
 from matplotlib.figure import Figure
 
@@ -11,6 +11,7 @@ from flockenv.statistics import student_interval
 
 LADDER = (LEARNED, TUNED, "damped law", "paper's law")
 COUNT = "leaders/leader_count.csv"
+MOTION = "leaders/motion.csv"
 GAINS = "leaders/tuned_laws/gains.csv"
 PLANS = {"planner, noise known": "known", "planner, noise unknown": "fresh"}
 
@@ -85,6 +86,31 @@ def plans(figure: Figure) -> None:
     right.set(xlabel="minus learned")
 
 
+SHOWN = {
+    "in the row at the wall": "at_wall",
+    "beside that row": "beside_wall",
+    "close to a leader": "beside_leader",
+    "heading, mean cosine": "alignment",
+}
+"""What the plot of motion shows: shares of the time, and how close to the target leaders head."""
+
+
+def motion(figure: Figure) -> None:
+    """Draw where leaders are and how they head."""
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axes, pool in zip(panels, CASES, strict=True):
+        found = {
+            row["policy"]: {
+                words: _ends(row, name, f"{name}_low", f"{name}_high")
+                for words, name in SHOWN.items()
+            }
+            for row in rows(MOTION, pool=pool)[::-1]
+        }
+        grouped(axes, found)
+        axes.set(title=pool, xlabel="share of the time, or cosine", xlim=(0, 1))
+    panels[0].legend(loc="lower left", fontsize=9)
+
+
 PLOTS = {
     "leaders/leader_count.png": Plot([COUNT], leader_count),
     "leaders/both_pools.png": Plot([MEANS], both_pools, (8.4, 4.2)),
@@ -93,5 +119,6 @@ PLOTS = {
     "leaders/plans.png": Plot(
         ["leaders/plan_known.csv", "leaders/plan_fresh.csv"], plans, (8.4, 2.2)
     ),
+    "leaders/motion.png": Plot([MOTION], motion, (8.4, 3.4)),
 }
 """How each is drawn, by its file below docs."""

@@ -6,9 +6,10 @@ from leader_plots import PLOTS as LEADERS
 from model_plots import PLOTS as MODEL
 from PIL import Image
 from speed_plots import PLOTS as SPEED
+from suite_plots import PLOTS as SUITE
 from track_plots import PLOTS as TRACKS
 
-PLOTS: dict[str, Plot] = {**LEADERS, **MODEL, **SPEED, **TRACKS}
+PLOTS: dict[str, Plot] = {**LEADERS, **SUITE, **MODEL, **SPEED, **TRACKS}
 """How each is drawn, by its file below docs."""
 
 

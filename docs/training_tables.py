@@ -1,10 +1,6 @@
 """The tables of the pages about training: the easy environment, seeds, signals of rewards."""
 
-from collections.abc import Mapping
-
-from committed_data import DOCS, interval, markdown, one, rows
-
-from flockenv.policies import load
+from committed_data import interval, markdown, one, rows
 
 ALGORITHMS = {
     "train_leaders": "PPO (the example)",
@@ -12,9 +8,6 @@ ALGORITHMS = {
     "evolution": "evolution strategy",
 }
 """Algorithms by the folders of their trainings."""
-BASELINES = {"ppo": "PPO", "evolution": "evolution strategy", "ippo": "IPPO", "mappo": "MAPPO"}
-"""The suite's baselines by the names of their rows."""
-ENTRIES = DOCS.parent / "baselines" / "suite"
 SIGNALS = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
 
 
@@ -68,34 +61,6 @@ def nothing() -> str:
     return markdown(["pool", "policy", "minutes of one core", "signed order"], body)
 
 
-def made_by(entry: str) -> Mapping[str, str]:
-    """Return what made a policy of the suite; a LookupError refuses one that does not say it."""
-    (file,) = ENTRIES.glob(f"*/{entry}.*")
-    made = load(file).provenance
-    missing = {"command", "flock_hours", "samples"} - made.keys()
-    if missing:
-        raise LookupError(f"{file.name} does not say its {', '.join(sorted(missing))}")
-    return made
-
-
-def baselines() -> str:
-    """Return the scores of the suite's baselines, means over three seeds, and their budgets."""
-    header, body = [], []
-    for algorithm, called in BASELINES.items():
-        for hours in (100, 1000):
-            names = [f"{algorithm}-{hours}-{seed}" for seed in range(3)]
-            made, *_ = map(made_by, names)
-            seeds = [rows("suite/baselines.csv", policy=name) for name in names]
-            header = [row["task"] for row in seeds[0][:-1]]
-            scores = [[float(row["score"]) for row in own[:-1]] for own in seeds]
-            means = [f"{sum(own) / 3:+.3f}" for own in zip(*scores, strict=True)]
-            lowest, *_, highest = sorted(own[-1] for own in scores)
-            budget = [f"{float(made['flock_hours']):.0f}", f"{int(made['samples']):,}"]
-            ends = f"{means[-1]} ({lowest:+.3f} to {highest:+.3f})"
-            body.append([called, *budget, *means[:-1], ends])
-    return markdown(["algorithm", "flock-hours", "environment steps", *header], body)
-
-
 def easy() -> str:
     """Return what each training in the easy environment reached, and the laws in its flocks."""
     body = []
@@ -116,7 +81,6 @@ TRAINING_TABLES = {
     "easy": easy,
     "from-nothing": nothing,
     "signals": signals,
-    "suite-baselines": baselines,
     "training-seeds": seeds,
 }
 """How each table is made."""
