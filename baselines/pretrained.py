@@ -17,7 +17,10 @@ flocks each, at the default physics. Flocks that nobody has used then judge the 
 leaders, and the file has that order beside the command, the seeds and the flock-hours.
 
 A training whose policy stands in `--out` is not made again, so that an interrupted command goes on.
-PPO also keeps its policy after 500 flock-hours. baselines/judge_trainings.py compares all seeds.
+PPO also keeps its policy after 500 flock-hours. This compares all seeds:
+
+    python baselines/judge_trainings.py results/pretrained/wide/* results/pretrained/wide-500/* \\
+        --out docs/training/pretrained
 
 The policy of a pool replaces the one that ships if it leads at least as well in the validation
 flocks. In `narrow` it counts as learned only if it passes the tuned law by more than 0.008 in 2048
@@ -115,9 +118,10 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
     model = settings.model(env)
     model.set_logger(configure(str(folder), ["csv"]))
     kept = settings.replace(flock_hours=given.kept_hours)
+    beside = folder.parent.with_name(f"wide-{given.kept_hours:g}")
     model.learn(
         settings.samples(env),
-        callback=Keep(kept.samples(env), "wide", folder / "kept" / "policy.json"),
+        callback=Keep(kept.samples(env), "wide", beside / str(seed) / "policy.json"),
     )
     model.logger.close()
     made = provenance_of(

@@ -37,7 +37,7 @@ def test_a_training_that_is_there_is_not_made_again(script, trial, monkeypatch):
 
 
 def test_ppo_keeps_its_policy_on_the_way(trial):
-    kept, last = (load(trial / "wide/0" / name / "policy.json") for name in ("kept", ""))
+    kept, last = (load(trial / name / "0/policy.json") for name in ("wide-0.5", "wide"))
     assert kept.decision_period_s is None
     assert kept.weights != last.weights
 
