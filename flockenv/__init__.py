@@ -1,26 +1,29 @@
 """Flocks of leader-steered rigid boats in a pool, simulated in Rust."""
 
 import importlib
-from importlib.metadata import version
-from typing import Any
+import importlib.util
+from typing import TYPE_CHECKING, Any
 
-from flockenv import policies
-from flockenv.envs.parallel import LeadersParallelEnv, env, parallel_env
+from flockenv._core import __version__
 from flockenv.envs.registration import register
-from flockenv.envs.single import LeadersEnv
-from flockenv.envs.vector import LeadersVectorEnv
-from flockenv.errors import (
-    EpisodeError,
-    FlockError,
-    InUseError,
-    ParameterError,
-    SolverError,
-)
-from flockenv.flock import Contacts, ContactSeries, Flock, Statistics
-from flockenv.order import OrderParameters, OrderSeries, order_series
-from flockenv.parameters import FlockParameters
-from flockenv.recording import Recording
-from flockenv.simulation import simulate
+
+if TYPE_CHECKING:
+    from flockenv import policies
+    from flockenv.envs.parallel import LeadersParallelEnv, env, parallel_env
+    from flockenv.envs.single import LeadersEnv
+    from flockenv.envs.vector import LeadersVectorEnv
+    from flockenv.errors import (
+        EpisodeError,
+        FlockError,
+        InUseError,
+        ParameterError,
+        SolverError,
+    )
+    from flockenv.flock import Contacts, ContactSeries, Flock, Statistics
+    from flockenv.order import OrderParameters, OrderSeries, order_series
+    from flockenv.parameters import FlockParameters
+    from flockenv.recording import Recording
+    from flockenv.simulation import simulate
 
 __all__ = [
     "ContactSeries",
@@ -47,13 +50,34 @@ __all__ = [
     "simulate",
 ]
 
-__version__ = version("flockenv")
+_NAMES = {
+    "envs.parallel": ("LeadersParallelEnv", "env", "parallel_env"),
+    "envs.single": ("LeadersEnv",),
+    "envs.vector": ("LeadersVectorEnv",),
+    "errors": ("EpisodeError", "FlockError", "InUseError", "ParameterError", "SolverError"),
+    "flock": ("ContactSeries", "Contacts", "Flock", "Statistics"),
+    "order": ("OrderParameters", "OrderSeries", "order_series"),
+    "parameters": ("FlockParameters",),
+    "recording": ("Recording",),
+    "simulation": ("simulate",),
+}
 
 register()
 
 
 def __getattr__(name: str) -> Any:
-    # What belongs to other libraries takes seconds to import: only for those who use it.
-    if name in ("benchmarl", "rllib", "sb3", "torchrl"):
-        return importlib.import_module(f"flockenv.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    # Imported where it is used: Gymnasium and PettingZoo alone take as long to import as NumPy.
+    for module, names in _NAMES.items():
+        if name in names:
+            value = getattr(importlib.import_module(f"flockenv.{module}"), name)
+            break
+    else:
+        if name.startswith("_") or importlib.util.find_spec(f"flockenv.{name}") is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = importlib.import_module(f"flockenv.{name}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -20,7 +20,7 @@ from ray.rllib.core.rl_module.apis.value_function_api import ValueFunctionAPI
 from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 from ray.rllib.core.rl_module.torch import TorchRLModule
 
-from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.network import ACTIVATIONS

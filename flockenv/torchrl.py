@@ -20,8 +20,9 @@ from torchrl.envs import EnvBase
 
 from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
-from flockenv.envs.observation import ObservationSpace, state_entries
+from flockenv.envs.observation import state_entries
 from flockenv.envs.options import EnvOptions
+from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import UnknownOptionError, refuse_unknown
 
 GROUP = "leaders"
@@ -73,7 +74,7 @@ class LeadersEnv(EnvBase):
     ----------
     group_map : dict
         Names of the agents in the group ``"leaders"``.
-    observation_space : flockenv.envs.observation.ObservationSpace
+    observation_space : flockenv.envs.spaces.ObservationSpace
         The space of one leader's observation, which `NetworkPolicy.from_module` takes.
     episode_steps : int
         Decisions of an episode.

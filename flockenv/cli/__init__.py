@@ -1,35 +1,36 @@
 """The command line, one file per command; `flockenv COMMAND --help` describes each."""
 
+import importlib
 import io
+import os
 import sys
-from typing import Annotated
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any
 
 import typer
 
 from flockenv._core import __version__
-from flockenv.cli.analyze import analyze
-from flockenv.cli.compare import compare
-from flockenv.cli.console import console, ends_on_interrupt, errors, say
-from flockenv.cli.demo import demo
-from flockenv.cli.presets import presets
-from flockenv.cli.replay import replay
-from flockenv.cli.run import run
-from flockenv.cli.sweep import sweep
-from flockenv.cli.train import train
-from flockenv.cli.unknown import refuse_unknown_options
+from flockenv.cli.console import console, errors, say
 from flockenv.errors import FlockError
 
 __all__ = ["app", "main"]
 
-app = typer.Typer(
-    no_args_is_help=True,
-    rich_markup_mode="markdown",
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
-)
+app: typer.Typer
+"""Every command, imported."""
 
-for command in (demo, run, replay, analyze, compare, presets, sweep, train):
-    app.command()(ends_on_interrupt(command))
+COMMANDS: Mapping[str, str] = {
+    "demo": "Run the paper's law and the learned leaders side by side, and open the page that "
+    "plays both.",
+    "run": "Run one flock and record it.",
+    "replay": "Write recordings as one page that plays them: in any browser, without a network.",
+    "analyze": "Print the order parameters of a recording, or of tracked robots or animals.",
+    "compare": "Print and plot order against the number of leaders, for your policies and others.",
+    "presets": "Print every preset: values, units, meanings and sources (sections of Tarcai et al. "
+    "2011).",
+    "sweep": "Run a grid of parameters and seeds, as one table.",
+    "train": "Train one policy for all leaders with PPO (extra `train`).",
+}
+"""The commands, and the first line of each one's help."""
 
 
 def main() -> None:
@@ -37,22 +38,58 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # Not every console has a Ψ.
+    words = sys.argv[1:]
     try:
-        refuse_unknown_options(getattr(typer.main.get_command(app), "commands", {}), sys.argv[1:])
-        app()
+        # Words to be completed are in the environment.
+        named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
+        commands = _app(named)
+        if named:
+            unknown = importlib.import_module("flockenv.cli.unknown")
+            known = getattr(typer.main.get_command(commands), "commands", {})
+            unknown.refuse_unknown_options(known, words)
+        commands()
     except (FlockError, OSError) as error:
-        words = str(error)
+        text = str(error)
         if isinstance(error, OSError) and error.filename is not None:
-            words = f"{error.filename}: {error.strerror}"
+            text = f"{error.filename}: {error.strerror}"
         errors.print("[bold red]Error:[/]", end=" ")
-        say(words, errors)
+        say(text, errors)
         raise SystemExit(2) from error
 
 
-@app.callback(invoke_without_command=True)
+def _app(named: Collection[str]) -> typer.Typer:
+    """Return the command line, where commands that are not named have a line of help alone."""
+    app = typer.Typer(
+        no_args_is_help=True,
+        rich_markup_mode="markdown",
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
+    )
+    app.callback(invoke_without_command=True)(_root)
+    for name, line in COMMANDS.items():
+        if name in named:
+            from flockenv.cli.progress import ends_on_interrupt
+
+            command = getattr(importlib.import_module(f"flockenv.cli.{name}"), name)
+            app.command()(ends_on_interrupt(command))
+        else:
+            app.command(name, help=line)(_not_imported)
+    return app
+
+
 def _root(
     version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
 ) -> None:
     if version:
         console.print(__version__)
         raise typer.Exit
+
+
+def _not_imported() -> None:
+    raise NotImplementedError
+
+
+def __getattr__(name: str) -> Any:
+    if name == "app":
+        return _app(COMMANDS)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -12,10 +12,11 @@ from typing import Any
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
-from flockenv.cli.console import console, errors, print_json, progress, say
+from flockenv.cli.console import console, errors, print_json, say
 from flockenv.cli.options import TRUST, Flocks, Printing, option, takes
 from flockenv.cli.output import prepare, printable, read_policy
 from flockenv.cli.parameters import changed_fields, given_fields, option_of, read_parameters
+from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import steering
 from flockenv.comparison.report import ComparisonReport

@@ -1,15 +1,8 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
-import functools
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any
 
-import typer
 from rich.console import Console
-from rich.progress import Progress
-
-from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
 
 console = Console()
 errors = Console(stderr=True)
@@ -28,40 +21,3 @@ def warn(line: str) -> None:
 def print_json(data: Any) -> None:
     """Print data as JSON, in ASCII: the same on every console."""
     console.print_json(data=data, ensure_ascii=True)
-
-
-@contextmanager
-def progress(
-    what: str, total: float, quiet: bool, ends: bool = True
-) -> Iterator[Callable[..., None]]:
-    """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
-
-    Yields a function that moves it on by an amount of work, and may change what it says is done;
-    with `ends`, work ends there if Ctrl-C was noted.
-    """
-    disable = quiet or not errors.is_terminal
-    with Progress(console=errors, transient=True, disable=disable) as bar:
-        task = bar.add_task(what, total=total)
-
-        def advance(done: float = 1.0, what: str | None = None) -> None:
-            bar.update(task, advance=done, description=what)
-            if ends:
-                end_if_interrupted()
-
-        yield advance
-
-
-def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that Ctrl-C ends with exit code 130, where nothing is half done."""
-
-    @functools.wraps(command)
-    def wrapped(*arguments: Any, **options: Any) -> None:
-        with noted_interrupts():
-            try:
-                command(*arguments, **options)
-                end_if_interrupted()
-            except KeyboardInterrupt:
-                say("Interrupted. What was finished before is stored.", errors)
-                raise typer.Exit(INTERRUPTED) from None
-
-    return wrapped

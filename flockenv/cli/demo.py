@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import print_json, progress, say
+from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
+from flockenv.cli.progress import progress
 
 
 @dataclass(frozen=True, kw_only=True)

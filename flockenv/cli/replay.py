@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.cli.console import print_json, progress, say
+from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import load_recording, open_page, prepare, printable
+from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 
 _FPS = {".gif": 12.5, ".mp4": 25.0}

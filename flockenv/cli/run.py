@@ -6,10 +6,11 @@ from itertools import chain, count
 from pathlib import Path
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import print_json, progress, say
+from flockenv.cli.console import print_json, say
 from flockenv.cli.options import TRUST, OneFlock, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
 from flockenv.cli.parameters import read_parameters
+from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, quoted

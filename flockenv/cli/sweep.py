@@ -7,9 +7,10 @@ from pathlib import Path
 import typer
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import errors, print_json, progress, say, warn
+from flockenv.cli.console import errors, print_json, say, warn
 from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import prepare
+from flockenv.cli.progress import progress
 from flockenv.runs.executors import named
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing

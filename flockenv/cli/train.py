@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flockenv._io.atomic_write import write_csv
-from flockenv.cli.console import errors, print_json, progress, say
+from flockenv.cli.console import errors, print_json, say
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.parameters import changed_fields, option_of
+from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 
 if TYPE_CHECKING:

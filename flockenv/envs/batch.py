@@ -9,8 +9,8 @@ from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import once, real_numbers, whole
-from flockenv.envs.observation import flock_feature_space, state_space
 from flockenv.envs.options import RESET_OPTIONS, TERMS, EnvOptions, known_reset_options
+from flockenv.envs.spaces import flock_feature_space, state_space
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters

@@ -1,9 +1,8 @@
-"""What leaders observe: spaces, tables, and a flock observed without an environment."""
+"""What leaders observe: tables, and a flock observed without an environment."""
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
-import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -41,63 +40,9 @@ def flock_feature_entries() -> list[Entry]:
     return [Entry(**row) for row in _core.FLOCK_FEATURES]
 
 
-def flock_feature_space() -> "_Box":
-    """Return the space of a flock's features."""
-    low, high = _bounds(flock_feature_entries()).T.copy()
-    return _Box(low, high, dtype=np.float32)
-
-
 def state_entries(n_boats: int) -> list[Entry]:
     """Return every entry of the global state of a flock of this size, in order."""
     return [Entry(**row) for row in _core.state_table(n_boats)]
-
-
-def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
-    return np.array([(entry.low, entry.high) for entry in entries], np.float32)
-
-
-if TYPE_CHECKING:
-    _Box = gymnasium.spaces.Box[np.float32]
-else:
-    # Not generic before gymnasium 1.4.
-    _Box = gymnasium.spaces.Box
-
-
-class ObservationSpace(_Box):
-    """The space of one leader's observation, or of several leaders' one after another.
-
-    Models keep the space that they were trained on, also in their files. This one says how its
-    observations are made, so that a model gets such ones wherever it steers.
-
-    Attributes
-    ----------
-    leaders
-        Number of leaders.
-    options
-        Options of the environment that a policy depends on: ``observation``, ``mirror_to_target``,
-        ``control_hz``, ``action_mode`` and ``decision_period_s``.
-    """
-
-    def __init__(self, options: Mapping[str, Any], leaders: int = 1) -> None:
-        bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
-        super().__init__(*bounds.T.copy(), dtype=np.float32)
-        self.leaders = leaders
-        names = (
-            "observation",
-            "mirror_to_target",
-            "control_hz",
-            "action_mode",
-            "decision_period_s",
-        )
-        self.options = {name: options[name] for name in names}
-
-
-def state_space(n_boats: int) -> _Box:
-    """Return the space of the global state."""
-    boat_and_rest, rest = _bounds(state_entries(1)), _bounds(state_entries(0))
-    boats = np.tile(boat_and_rest[: -len(rest)], (n_boats, 1))
-    low, high = np.concatenate([boats, rest]).T.copy()
-    return _Box(low, high, dtype=np.float32)
 
 
 def observe(

@@ -13,10 +13,9 @@ from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed, is_plain
-from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
-from flockenv.envs.spaces import leader_action_space
+from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
 

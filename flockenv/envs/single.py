@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed, is_plain, mean_rows
-from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
-from flockenv.envs.spaces import joint_action_space, spec_of_episodes
+from flockenv.envs.spaces import ObservationSpace, joint_action_space, spec_of_episodes
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 

@@ -1,11 +1,73 @@
-"""What Gymnasium knows of an environment: action spaces, and the length of its episodes."""
+"""What Gymnasium knows of an environment: its spaces, and the length of its episodes."""
 
 import copy
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
+from numpy.typing import NDArray
+
+from flockenv.envs.observation import (
+    Entry,
+    flock_feature_entries,
+    observation_entries,
+    state_entries,
+)
+
+if TYPE_CHECKING:
+    _Box = gymnasium.spaces.Box[np.float32]
+else:
+    # Not generic before gymnasium 1.4.
+    _Box = gymnasium.spaces.Box
+
+
+def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
+    return np.array([(entry.low, entry.high) for entry in entries], np.float32)
+
+
+class ObservationSpace(_Box):
+    """The space of one leader's observation, or of several leaders' one after another.
+
+    Models keep the space that they were trained on, also in their files. This one says how its
+    observations are made, so that a model gets such ones wherever it steers.
+
+    Attributes
+    ----------
+    leaders
+        Number of leaders.
+    options
+        Options of the environment that a policy depends on: ``observation``, ``mirror_to_target``,
+        ``control_hz``, ``action_mode`` and ``decision_period_s``.
+    """
+
+    def __init__(self, options: Mapping[str, Any], leaders: int = 1) -> None:
+        bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
+        super().__init__(*bounds.T.copy(), dtype=np.float32)
+        self.leaders = leaders
+        names = (
+            "observation",
+            "mirror_to_target",
+            "control_hz",
+            "action_mode",
+            "decision_period_s",
+        )
+        self.options = {name: options[name] for name in names}
+
+
+def flock_feature_space() -> _Box:
+    """Return the space of a flock's features."""
+    low, high = _bounds(flock_feature_entries()).T.copy()
+    return _Box(low, high, dtype=np.float32)
+
+
+def state_space(n_boats: int) -> _Box:
+    """Return the space of the global state."""
+    boat_and_rest, rest = _bounds(state_entries(1)), _bounds(state_entries(0))
+    boats = np.tile(boat_and_rest[: -len(rest)], (n_boats, 1))
+    low, high = np.concatenate([boats, rest]).T.copy()
+    return _Box(low, high, dtype=np.float32)
 
 
 def leader_action_space(levels: int | None) -> gymnasium.Space[Any]:

@@ -14,10 +14,9 @@ from flockenv import _core
 from flockenv._io.arguments import once
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
-from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import RESET_OPTIONS, EnvOptions
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import joint_action_space, spec_of_episodes
+from flockenv.envs.spaces import ObservationSpace, joint_action_space, spec_of_episodes
 from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
 

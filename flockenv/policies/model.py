@@ -9,18 +9,19 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
-from flockenv.envs.observation import ObservationSpace
 from flockenv.errors import ParameterError
 from flockenv.policies.base import leaders_observed, observed
+
+if TYPE_CHECKING:
+    import gymnasium
 
 _WEIGHTS = "policy.pth"
 _NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
@@ -65,6 +66,8 @@ class ModelPolicy:
     """
 
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
+        from flockenv.envs.spaces import ObservationSpace
+
         self.model = model
         self.provenance = dict(provenance or {})
         space = getattr(model, "observation_space", None)
@@ -167,8 +170,10 @@ def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - t
     return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], len(weight))
 
 
-def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
+def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
     """Return the number of levels of a model's actions, None where they are rudders."""
+    import gymnasium
+
     if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
         return None
     if isinstance(space, gymnasium.spaces.Discrete) and leaders == 1:
@@ -183,7 +188,8 @@ def _levels_of(space: gymnasium.Space[Any], leaders: int) -> int | None:
 
 def as_policy(policy: Any) -> Any:
     """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
-    if isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
+    gymnasium = sys.modules.get("gymnasium")  # Without it there is no model.
+    if gymnasium and isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
         return ModelPolicy(policy)
     return policy
 

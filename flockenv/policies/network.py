@@ -6,18 +6,20 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
-import gymnasium
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import items, real_numbers
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION, ObservationSpace
+from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.base import RowPolicy
+
+if TYPE_CHECKING:
+    import gymnasium
 
 FORMAT = "flockenv policy 1"
 """First entry of every network's file."""
@@ -96,7 +98,7 @@ class NetworkPolicy(RowPolicy):
     def from_module(
         cls,
         module: Any,
-        space: gymnasium.Space[Any],
+        space: "gymnasium.Space[Any]",
         *,
         squashed: bool = False,
         provenance: Mapping[str, str] | None = None,
@@ -125,6 +127,8 @@ class NetworkPolicy(RowPolicy):
         ParameterError
             For other layers, for layers that do not fit, and for spaces of other environments.
         """
+        from flockenv.envs.spaces import ObservationSpace
+
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
                 f"space = {shown(space)} is not accepted: the space of observations of an "

@@ -11,7 +11,7 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
-from flockenv.envs.observation import ObservationSpace
+from flockenv.envs.spaces import ObservationSpace
 from flockenv.policies import ModelPolicy
 from flockenv.policies.base import check_action_mode
 from flockenv.sb3.leader_vec_env import LeaderVecEnv

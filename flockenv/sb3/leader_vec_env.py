@@ -15,7 +15,6 @@ from flockenv import _core
 from flockenv._io.arguments import once
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
-from flockenv.envs.observation import ObservationSpace
 from flockenv.envs.options import (
     RESET_OPTIONS,
     UPCOMING_OPTIONS,
@@ -24,7 +23,7 @@ from flockenv.envs.options import (
 )
 from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import leader_action_space
+from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE

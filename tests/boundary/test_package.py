@@ -1,12 +1,16 @@
-"""Law: the installed package is this source tree, and importing it needs no optional library."""
+"""Law: the installed package is this source tree, and what is imported is what is used."""
 
 import re
 import shutil
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
+import pytest
+
 import flockenv
+from flockenv.cli import COMMANDS
 
 REPOSITORY = Path(__file__).parents[2]
 OPTIONAL = (
@@ -29,6 +33,48 @@ def test_version_is_the_one_of_cargo_toml():
 def test_import_needs_no_optional_library():
     blocked = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL}))"
     subprocess.run([sys.executable, "-c", f"{blocked}; import flockenv"], check=True)
+
+
+@pytest.mark.parametrize(
+    ("code", "absent"),
+    [
+        ("import flockenv", ("numpy", "gymnasium", "pettingzoo", "rich", "typer")),
+        (
+            "import flockenv; flockenv.Flock(flockenv.FlockParameters(), seed=1)",
+            ("gymnasium", "pettingzoo", "rich", "typer"),
+        ),
+        (
+            "import flockenv as f; f.simulate(f.FlockParameters(), 1, 1.0, policy='learned')",
+            ("gymnasium", "pettingzoo", "rich", "typer"),
+        ),
+        (
+            "import sys; sys.argv = ['flockenv', '--help']; from flockenv.cli import main; main()",
+            ("numpy", "gymnasium", "pettingzoo"),
+        ),
+    ],
+)
+def test_libraries_are_imported_where_they_are_used(code, absent):
+    end = "import atexit, sys; atexit.register(lambda: print('imported', *sys.modules))"
+    words = subprocess.check_output([sys.executable, "-c", f"{end}; {code}"], text=True).split()
+    found = {*words[words.index("imported") :]}
+    assert "flockenv" in found
+    assert not found & {*OPTIONAL, *absent}
+
+
+def test_the_names_of_the_package_are_those_of_its_modules():
+    assert {*flockenv.__all__} <= {*dir(flockenv)}
+    for name in flockenv.__all__:
+        value = getattr(flockenv, name)
+        assert getattr(value, "__name__", name).split(".")[-1] == name
+    assert flockenv.statistics is import_module("flockenv.statistics")
+    with pytest.raises(AttributeError, match="module 'flockenv' has no attribute 'Flocks'"):
+        flockenv.Flocks  # noqa: B018
+
+
+def test_the_help_has_the_first_sentence_of_every_command():
+    for name, line in COMMANDS.items():
+        command = getattr(import_module(f"flockenv.cli.{name}"), name)
+        assert line == " ".join(command.__doc__.split("\n\n")[0].split())
 
 
 def test_sources_without_the_compiled_simulator_say_so(tmp_path):

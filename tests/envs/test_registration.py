@@ -32,6 +32,21 @@ def test_ids_import_the_package(env_id):
     assert done.stdout.startswith("(")
 
 
+@pytest.mark.parametrize(
+    "imports",
+    [
+        "import flockenv, gymnasium",
+        "import gymnasium, flockenv",
+        # To look for Gymnasium is not to import it.
+        "import flockenv, importlib.util; importlib.util.find_spec('gymnasium'); import gymnasium",
+    ],
+)
+def test_ids_are_known_whichever_is_imported_first(imports):
+    code = f"{imports}; print(sorted(gymnasium.registry))"
+    listed = subprocess.check_output([sys.executable, "-c", code], text=True)
+    assert all(repr(env_id) in listed for env_id in ENVIRONMENTS)
+
+
 def test_the_easy_environment_tells_good_leaders_from_bad():
     def mean_reward(policy):
         venv = gymnasium.make_vec(EASY_ID, num_envs=32, autoreset_mode="disabled")

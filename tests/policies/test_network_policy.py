@@ -12,7 +12,8 @@ import pytest
 import flockenv
 from flockenv._core import env_defaults
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.envs.observation import OBSERVATION_VERSION, ObservationSpace, observation_entries
+from flockenv.envs.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.envs.spaces import ObservationSpace
 from flockenv.policies import NetworkPolicy, RandomRudders, StraightAhead, load
 
 SIZE = len(observation_entries())
