@@ -24,10 +24,10 @@ export const LESSONS = [
   },
   {
     name: "noise",
-    title: "Noise makes motion",
+    title: "Dense flocks need noise to move",
     link: `${NOISE}&bw_s=0`,
     before: `Boats that [never back up](${NOISE}&bw_s=0) jam at the wall. Let them back up [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8).`,
-    after: "Some noise frees the jam and lets the flock circle; too much noise ends the order.",
+    after: "Some noise frees the jam and lets this dense flock circle; too much ends the order. Sparse flocks circle without noise.",
   },
   {
     name: "leaders",
