@@ -109,7 +109,7 @@ def overlap() -> str:
         "depending on how much overlap a step tolerates. The paper reports 0.6 to 0.8 s (24 runs "
         "at each noise, no leaders).",
         "readings",
-        "Loss of order against the overlap tolerance",
+        "When each variant of the model loses its order",
     )
 
 
@@ -151,11 +151,13 @@ FIGURES = {
 
 def figures() -> str:
     """Return how many statements of each figure hold, fail and are open, and which fail."""
-    body = []
+    body, total = [], [0] * len(VERDICTS)
     for name, (number, picture) in FIGURES.items():
         claims = rows(CLAIMS, figure=name)
         found = [[row for row in claims if row["verdict"] == v] for v in VERDICTS]
+        total = [before + len(each) for before, each in zip(total, found, strict=True)]
         failed = dict.fromkeys(row["claim"] for row in found[1])
         cells = [str(len(each)) for each in found]
         body.append([f"[{number}](pictures/{picture}.png)", *cells, "; ".join(failed)])
+    body.append(["all", *map(str, total), ""])
     return markdown(["figure", *VERDICTS, "what fails in a reading"], body)

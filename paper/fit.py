@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, bca, fall, mean, write_claims
+from claim import Claims, bca, fall, mean, write_claims
 from section4 import LEVELS_S, at
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, order_row, picture, simulated
 
@@ -251,17 +251,17 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         for row, name in zip(panels, SETS, strict=True):
             for axes, leaders in zip(row, LEADERS, strict=True):
                 for color, marker, current in zip(COLORS, "os", CURRENTS, strict=False):
-                    found: list[Interval] = [
-                        mean(runs[:, 0]) for runs in arm(table, name, current, leaders)
-                    ]
-                    if len(found) == len(LEVELS_S):
+                    runs = arm(table, name, current, leaders)
+                    if len(runs) == len(LEVELS_S):
                         style = {"color": color, "marker": marker, "label": current}
-                        curve(axes, LEVELS_S, found, **style)
+                        curve(axes, LEVELS_S, [mean(each[:, 0]) for each in runs], **style)
+                        _, low, high = bca(runs, lambda *d: fall(LEVELS_S, d))
+                        axes.axvspan(low, high, color=color, alpha=0.25, lw=0)
                 axes.axvline(2.0 if leaders else 1.4, color="0.6", linestyle="--", zorder=0)
                 axes.set_title(f"{name} constants, {leaders} leaders")
             row[0].set_ylabel("mean Ψ_o")
         for axes in panels[1]:
-            axes.set_xlabel("bw (s); dashed: where the paper has order lost")
+            axes.set_xlabel("bw (s); shaded: order is lost; dashed: in the paper")
         panels[0, 0].legend()
 
 

@@ -1,14 +1,16 @@
 """Readings of Section 5 as a family: where each claim holds, over scheme, noise and tolerance."""
 
+from typing import Any
+
 import fig14
 import fig15
 import fig16
 import fig17
 import numpy as np
 import pandas as pd
-from claim import Claims, write_claims
-from section5 import PRESETS, READINGS, STUDY, Evidence
-from study import COLORS, Options, curve, main, picture, write
+from claim import Claims, Interval, write_claims
+from section5 import PRESETS, READINGS, SERIES, STUDY, Evidence
+from study import COLORS, Options, main, picture, write
 
 
 def judge(e: Evidence) -> Claims:
@@ -33,30 +35,26 @@ def write_table(options: Options, found: dict[str, Claims]) -> None:
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:
-    """Draw the critical bw and the jam of 50 boats against the tolerance, for both noises."""
-    with picture(options, "readings", height_cm=6.0) as figure:
-        left, right = figure.subplots(1, 2)
-        for color, marker, noise in zip(COLORS, "os", ("per-step", "white"), strict=False):
-            names = [
-                name
-                for name, row in READINGS.items()
-                if (row["scheme"], row["noise_scheme"]) == ("paper", noise)
-                and (row["pool"], row["dt_s"]) == ("wide", 0.02)
-            ]
-            names.sort(key=lambda name: READINGS[name]["overlap_tolerance_cm"])
-            x = [READINGS[name]["overlap_tolerance_cm"] for name in names]
-            evidence = [Evidence(table, name) for name in names]
-            lost = [e.critical(20, 0) for e in evidence]
-            style = {"color": color, "marker": marker, "label": f"{noise} noise"}
-            curve(left, x, lost, **style)
-            jams = [fig17.mean(_jammed(e)) for e in evidence]
-            curve(right, x, jams, **style)
-        left.axhspan(0.6, 0.8, color="0.9", zorder=0)
-        left.set(ylabel="critical bw (s), n = 20, k = 0")
-        right.set(ylabel="jammed share, n = 50, bw = 0", ylim=(0, 1))
-        for axes in (left, right):
-            axes.set(xscale="log", xlabel="overlap tolerance (cm), scheme paper, dt = 0.02 s")
-        left.legend()
+    """Draw the bw at which each reading loses its order, if it has any, and the jam of 50 boats."""
+    names = sorted(READINGS)
+    evidence = [Evidence(table, name) for name in names]
+    with picture(options, "readings", height_cm=12.0) as figure:
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(2, 1))
+        for place, (color, (n, k)) in enumerate(zip(COLORS, SERIES, strict=False)):
+            lost = [e.critical(n, k) for e in evidence]
+            _bars(left, lost, 0.18 * (place - 1.5), color, f"{n} boats, {k} of them lead")
+        _bars(right, [fig17.mean(_jammed(e)) for e in evidence], 0.0, COLORS[2], "")
+        left.axvspan(0.6, 0.8, color="0.9", zorder=0)
+        left.set_yticks(range(len(names)), names)
+        left.set(xlabel="bw at which order is lost (s); shaded: the paper's", ylim=(15.6, -0.6))
+        right.set(xlabel="jammed share, n = 50, bw = 0", xlim=(0, 1.02))
+        figure.legend(loc="outside upper center", ncols=4)
+
+
+def _bars(axes: Any, found: list[Interval], shift: float, color: str, label: str) -> None:
+    value, low, high = np.array(found).T
+    at = np.arange(len(value)) + shift
+    axes.errorbar(value, at, xerr=[value - low, high - value], fmt="o", color=color, label=label)
 
 
 def _jammed(e: Evidence) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Is the jamming–order transition of first order? Lifetimes of a jam and of a rotating flock.
 
-The rules of the answer stand in transition_rules.md.
+The rules of the answer stand in transition.md.
 """
 
 import math
@@ -75,7 +75,7 @@ RULES = {
 
 
 def judge(table: pd.DataFrame, rule: str, suffix: str = "") -> Claims:
-    """Judge a rule of transition_rules.md, at each coverage and noise."""
+    """Judge a rule of transition.md, at each coverage and noise."""
     claims = Claims("5.2, left open", "")
     lasts, counted = RULES[rule]
     by = ["coverage", "scheme", "c4", "dt_s"]

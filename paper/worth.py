@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, bca, judging, mean, unknown
-from study import COLORS, Options, curve, main, picture
+from study import Options, curve, main, picture
 from worth_runs import LAW, NOISES_S, POLICIES, STUDY
+
+from flockenv.comparison.figure import policy_colors
 
 
 def of(table: pd.DataFrame, **values: Any) -> np.ndarray:
@@ -148,7 +150,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     with picture(options, "worth") as figure:
         left, right = figure.subplots(1, 2)
         noises = sorted(set(NOISES_S) & set(table.loc[table["n_boats"] == 27, "bw_s"]))
-        for place, (policy, color) in enumerate(zip(POLICIES, COLORS, strict=False)):
+        colors = policy_colors(map(_named, POLICIES))
+        for place, (policy, color) in enumerate(zip(POLICIES, colors.values(), strict=True)):
             known = [b for b in noises if len(of(table, policy=policy, bw_s=b, leaders=1))]
             shift = 0.004 * place
             slopes = [slope(table, policy, 27, b) for b in known]
@@ -158,7 +161,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             if policy != LAW and known:
                 curve(right, np.array(known) + shift, ratios, color=color)
         left.set(xlabel="bw (s)", ylabel="m per leader, n = 27")
-        right.axhline(1.0, color=COLORS[0])
+        right.axhline(1.0, color=colors[_named(LAW)])
         right.set(xlabel="bw (s)", ylabel="worth in leaders of the paper's law")
         left.legend()
 
