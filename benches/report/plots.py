@@ -55,12 +55,12 @@ def _style(color: str, marker: str, filled: bool) -> dict:
 
 def _pareto(m: Measurements) -> plt.Figure:
     settings = m.settings()
-    figure, axes = plt.subplots(2, 2, figsize=(12, 11), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(8.6, 8.8), layout="constrained")
     panels = [
-        ("jam", "jam_overlap_mean_cm", "deepest overlap of a step, mean, in cm"),
-        ("jam", "slide_median_cm", "error of one boat after sliding for 2 s, in cm"),
-        ("jam", "jam_half_second_cm", "error of all poses after 0.5 s of jam, in cm"),
-        ("cycle", "cycle_half_second_cm", "error of all poses after 0.5 s of the cycle, in cm"),
+        ("jam", "jam_overlap_mean_cm", "mean overlap in the jam [cm]"),
+        ("jam", "slide_median_cm", "error after sliding for 2 s [cm]"),
+        ("jam", "jam_half_second_cm", "error after 0.5 s of the jam [cm]"),
+        ("cycle", "cycle_half_second_cm", "error after 0.5 s of the cycle [cm]"),
     ]
     for axis, (scene, column, label) in zip(axes.flat, panels, strict=True):
         for name, (who, *style) in SERIES.items():
@@ -68,11 +68,11 @@ def _pareto(m: Measurements) -> plt.Figure:
             cost = rows[f"{scene}_us_per_step"] / rows.dt_s / 1000
             axis.plot(cost, rows[column], label=name, **_style(*style))
         axis.set(xscale="log", yscale="log", ylabel=label)
-        axis.set_xlabel(f"ms of computing for 1 s of 27 boats, {scene}")
+        axis.set_xlabel(f"computing [ms] for 1 s of the {scene}")
     handles, labels = axes.flat[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
     figure.suptitle(
-        "Speed against error: lower left is better. From right to left each line goes through "
+        "Lower left is better. From right to left each line goes through\n"
         "dt = 0.005, 0.01, 0.02 s and, for flockenv, 0.05 and 0.1 s",
         fontsize=11,
     )
@@ -99,26 +99,26 @@ def _order_parameters(m: Measurements) -> plt.Figure:
     rows = m.order[(m.order.first_seed == 1)].iloc[1:].iloc[::-1]
     names = [f"{r.engine}, {r.setting}, {r.dt_s:g} s" for r in rows.itertuples()]
     names = [name.replace(" / block-pivoting", "").replace("flockenv, ", "") for name in names]
-    figure, axes = plt.subplots(1, 2, figsize=(12, 6), layout="constrained", sharey=True)
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 5.2), layout="constrained", sharey=True)
     for axis, value, width, label in [
-        (axes[0], "psi_o_error", "psi_o_half_width", "error of mean Ψ_o"),
-        (axes[1], "c_v_error_cm2_s2", "c_v_half_width_cm2_s2", "error of mean C_v in cm²/s²"),
+        (axes[0], "psi_o_error", "psi_o_half_width", "error of Ψ_o"),
+        (axes[1], "c_v_error_cm2_s2", "c_v_half_width_cm2_s2", "error of C_v [cm²/s²]"),
     ]:
         axis.axvline(0, color="black", linewidth=1)
         axis.errorbar(rows[value], names, xerr=rows[width], fmt="o", color="#0072B2", capsize=3)
-        axis.set_xlabel(f"{label}, with 95 % interval")
+        axis.set_xlabel(label)
     return figure
 
 
 def _growth(m: Measurements) -> plt.Figure:
-    figure, axes = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.9), layout="constrained")
     jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == 0.01)]
     for name, (who, *style) in SERIES.items():
         rows = jam[(jam.engine == who[0]) & (jam.setting == who[1])].sort_values("n")
         if len(rows) > 1:
             axes[0].plot(rows.n, rows.us_per_step, label=name, **_style(*style))
     axes[0].set(ylabel="µs per step, jam, dt = 0.01 s")
-    axes[0].legend(frameon=False, fontsize=9)
+    axes[0].legend(frameon=False, fontsize=7)
     of_factor = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
         (m.growth.bytes_per_boat, "held, with room to grow", "#000000", "s"),
@@ -126,8 +126,8 @@ def _growth(m: Measurements) -> plt.Figure:
         (of_factor, "in use, of the factor", "#D55E00", "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
-    axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, None))
-    axes[1].legend(frameon=False)
+    axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, 5e3))
+    axes[1].legend(frameon=False, fontsize=8)
     for axis in axes:
         axis.set(xscale="log", yscale="log", xlabel="boats")
     return figure
@@ -135,7 +135,7 @@ def _growth(m: Measurements) -> plt.Figure:
 
 def _parts(m: Measurements) -> plt.Figure:
     rows = m.parts.iloc[::-1]
-    figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
+    figure, axis = plt.subplots(figsize=(7.6, 4.2), layout="constrained")
     spread = [rows.us_per_step - rows.us_q1, rows.us_q3 - rows.us_per_step]
     axis.barh(rows.scene, rows.us_per_step, xerr=spread, color="#56B4E9", capsize=3)
     axis.set_xlabel("µs per step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
