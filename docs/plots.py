@@ -8,8 +8,9 @@ from PIL import Image
 from speed_plots import PLOTS as SPEED
 from suite_plots import PLOTS as SUITE
 from track_plots import PLOTS as TRACKS
+from training_plots import PLOTS as TRAINING
 
-PLOTS: dict[str, Plot] = {**LEADERS, **SUITE, **MODEL, **SPEED, **TRACKS}
+PLOTS: dict[str, Plot] = {**LEADERS, **SUITE, **MODEL, **SPEED, **TRACKS, **TRAINING}
 """How each is drawn, by its file below docs."""
 
 

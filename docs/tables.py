@@ -11,7 +11,7 @@ from pathlib import Path
 from floors import floors
 from leader_words import plans, summary, verdict
 from readme_numbers import figures, findings, speed
-from training_tables import TRAINING_TABLES
+from training_words import example
 
 DOCS = Path(__file__).parent
 PAGES = (
@@ -45,7 +45,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "leaders-summary": summary,
     "leaders-plans": plans,
     "speed": speed,
-    **TRAINING_TABLES,
+    "training-example": example,
 }
 """How each table is made."""
 

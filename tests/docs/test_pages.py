@@ -63,7 +63,9 @@ def _minutes_in_seconds(monkeypatch):
     monkeypatch.setattr(
         PPO,
         "learn",
-        lambda model, _, **options: learn(model, 3 * model.n_steps * model.n_envs, **options),
+        lambda model, _, *others, **options: learn(
+            model, 3 * model.n_steps * model.n_envs, *others, **options
+        ),
     )
     monkeypatch.setattr(case, "compare_leaders", compared)
 
