@@ -119,8 +119,10 @@ def _link_environment_pages(
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
-    # Links to and from the folder paper, where it was copied to.
-    source[0] = source[0].replace("](../paper/", "](paper/").replace("](../docs/", "](../")
+    # Links to and from the folder paper, where it was copied to; a folder has no page.
+    for link, here in (("../paper/", "paper/"), ("../docs/", "../")):
+        source[0] = source[0].replace(f"]({link}", f"]({here}")
+    source[0] = source[0].replace("[results/](results/)", "`results/`")
 
 
 def _hide_cls(

@@ -30,7 +30,6 @@ OTHERS = {
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
     "docs/extend/task.md": {"carousel.monitor.csv"},
     "docs/leaders.md": {"damped-law-POOL.csv", "damped-law-POOL-LEADERS.csv"},
-    "docs/other_learners.md": {"timeit"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
     "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
     "docs/tracks.md": {
