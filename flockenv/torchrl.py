@@ -3,7 +3,7 @@
 Needs the extra ``torchrl``.
 """
 
-from typing import Any
+from typing import Any, ClassVar
 
 from flockenv._io.extras import require
 
@@ -21,7 +21,7 @@ from torchrl.envs import EnvBase
 from flockenv import _core
 from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
 from flockenv.envs.observation import state_entries
-from flockenv.envs.options import EnvOptions
+from flockenv.envs.options import EnvOptions, FixedOptions
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import UnknownOptionError, refuse_unknown
 
@@ -32,7 +32,7 @@ STATES = ("boats", "set", "features", "none")
 """What the entry ``state`` may hold."""
 
 
-class LeadersEnv(EnvBase):
+class LeadersEnv(FixedOptions, EnvBase):
     """Many flocks for TorchRL, stepped at once in Rust: batch size ``[flocks]``, leaders a group.
 
     All flocks have equally many leaders. Tensors share the memory of the arrays that the core
@@ -88,6 +88,8 @@ class LeadersEnv(EnvBase):
     UnknownOptionError
         For unknown options, with the nearest known one.
     """
+
+    _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_flocks", "num_leaders", "rudder_levels")
 
     def __init__(
         self,

@@ -2,19 +2,19 @@
 
 import copy
 from collections.abc import Callable, Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.arguments import once
 from flockenv.envs.batch import LeaderBatch
-from flockenv.envs.options import EnvOptions
+from flockenv.envs.options import EnvOptions, FixedOptions
 from flockenv.envs.render_mode import RenderMode
 from flockenv.flock import Flock
 
 
-class Resumable:
+class Resumable(FixedOptions):
     """An environment that continues from what it was, or as a copy of itself."""
 
     _batch: LeaderBatch
@@ -63,6 +63,7 @@ class SingleEnvironmentBase(Resumable):
     """The base of the environments of one flock: its episodes, infos and frames."""
 
     metadata: dict[str, Any]
+    _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_leaders", "render_mode")
 
     def _set_up(self, options: dict[str, Any], render_mode: str | None, render_size: Any) -> None:
         parsed = EnvOptions.parse(options)

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from numpy.typing import ArrayLike
 
@@ -201,3 +201,45 @@ def _refuse_reset_option(name: object, takes: tuple[str, ...]) -> None:
     else:
         words = f"{near!r} is fixed when an environment is made: make another one to change it"
     raise ParameterError(f"{name!r} is no reset option, which are {options}: {words}")
+
+
+class FixedOptions:
+    """An environment whose options are no attributes: to set one is an error, not without effect.
+
+    Names in other case or without their unit are refused too. What a constructor keeps under the
+    name of an argument is set there, once.
+    """
+
+    _kept: ClassVar[tuple[str, ...]] = ()
+    _next_episode: ClassVar[str] = "reset(options={...})"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute; an AttributeError says what sets an option instead."""
+        if name not in self._kept or vars(self).get(name, value) is not value:
+            refuse_attribute(name, self._next_episode)
+        super().__setattr__(name, value)
+
+
+_ARGUMENTS_OF_RESET = (*RESET_OPTIONS, "seed", "reset_mask")
+_FIXED = (*_NAMES, *_ARGUMENTS, "parameters", "num_leaders")
+_BARE = {
+    bare: name for name in (*_FIXED, *_ARGUMENTS_OF_RESET) for bare in _bare(name) if len(bare) > 1
+}
+
+
+def refuse_attribute(name: str, next_episode: str) -> None:
+    """Refuse to set an attribute that is named like an option or another argument.
+
+    `next_episode` is the call that sets options of an episode.
+    """
+    near = () if name.startswith("_") else _bare(name)
+    meant = next((_BARE[each] for each in near if each in _BARE), None)
+    if meant is None:
+        return
+    if meant == "seed":
+        words = "it is given to a reset"
+    elif meant in _ARGUMENTS_OF_RESET:
+        words = f"{next_episode} sets {meant!r} for an episode"
+    else:
+        words = "it is fixed when an environment is made: make another one to change it"
+    raise AttributeError(f"{name!r} cannot be set as an attribute: {words}")

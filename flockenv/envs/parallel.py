@@ -13,7 +13,7 @@ from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed, is_plain
-from flockenv.envs.options import TERMS
+from flockenv.envs.options import TERMS, FixedOptions
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
@@ -209,10 +209,14 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
     return LeadersParallelEnv(render_mode=render_mode, **options)
 
 
+class _Turns(FixedOptions, OrderEnforcingWrapper[str, Any, Any]):
+    """Agents that act in turn, and in order."""
+
+
 def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, Any]:
     """Return `parallel_env` behind PettingZoo's other interface, whose agents act in turn.
 
     The flock moves once all of them have acted.
     """
     turns = parallel_to_aec(parallel_env(render_mode=render_mode, **options))
-    return OrderEnforcingWrapper(turns)
+    return _Turns(turns)

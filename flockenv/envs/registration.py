@@ -43,6 +43,10 @@ def _register() -> None:
                 entry_point=ENTRY_POINT,
                 vector_entry_point="flockenv.envs.vector:LeadersVectorEnv",
                 kwargs=dict(each.options),
+                # It refuses a step before a reset itself, and options as attributes, which wrappers
+                # would take.
+                order_enforce=False,
+                disable_env_checker=True,
             )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase
 from flockenv.envs.batch import drawn_seed, is_plain, mean_rows
-from flockenv.envs.options import TERMS
+from flockenv.envs.options import TERMS, refuse_attribute
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import ObservationSpace, joint_action_space, spec_of_episodes
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -222,6 +222,11 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         self._show()
         (reward,) = mean_rows(rewards[:, None].tolist())
         return rows.reshape(-1), reward, False, over, info
+
+    def set_wrapper_attr(self, name: str, value: Any, *, force: bool = True) -> bool:
+        """Set an attribute that there is, for Gymnasium's wrappers; options are refused."""
+        refuse_attribute(name, self._next_episode)
+        return super().set_wrapper_attr(name, value, force=force)
 
     def observe(self) -> NDArray[np.float32]:
         """Return the present observation."""

@@ -1,7 +1,7 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -76,6 +76,7 @@ class LeadersVectorEnv(
         "render_modes": ["rgb_array"],
         "render_fps": 10.0,
     }
+    _kept: ClassVar[tuple[str, ...]] = ("num_envs", "num_leaders", "autoreset_mode", "render_mode")
 
     def __init__(
         self,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -134,6 +134,9 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     ## Version history
     - v0: as `LeadersEnv`.
     """
+
+    _kept: ClassVar[tuple[str, ...]] = ("num_envs", "num_flocks", "render_mode", "action_mode")
+    _next_episode: ClassVar[str] = "set_attr or set_options"
 
     def __init__(
         self,

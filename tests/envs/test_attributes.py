@@ -1,0 +1,110 @@
+"""Law: an option that is set as an attribute is an error that says what sets it, never ignored."""
+
+import copy
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+
+import flockenv
+from flockenv.envs.options import _NAMES, OPTIONS, RESET_OPTIONS
+
+SMALL = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
+ARGUMENTS = ("seed", "reset_mask", "render_mode", "render_size", "num_envs", "num_flocks")
+
+
+def of_sb3(**options):
+    pytest.importorskip("stable_baselines3")
+    return flockenv.sb3.LeaderVecEnv(2, **options)
+
+
+def of_torchrl(**options):
+    pytest.importorskip("torchrl")
+    return flockenv.torchrl.LeadersEnv(2, **options)
+
+
+EVERY = {
+    "single": flockenv.LeadersEnv,
+    "parallel": flockenv.parallel_env,
+    "aec": flockenv.env,
+    "vector": lambda **options: flockenv.LeadersVectorEnv(2, **options),
+    "gymnasium.make": lambda **options: gymnasium.make("flockenv/Leaders-v0", **options),
+    "gymnasium.make_vec": lambda **options: gymnasium.make_vec(
+        "flockenv/Leaders-v0", num_envs=2, **options
+    ),
+    "unwrapped": lambda **options: (
+        gymnasium.wrappers.FlattenObservation(
+            gymnasium.make("flockenv/Leaders-v0", **options)
+        ).unwrapped
+    ),
+    "sb3": of_sb3,
+    "torchrl": of_torchrl,
+}
+
+
+@pytest.fixture(params=EVERY.values(), ids=EVERY.keys())
+def env(request):
+    return request.param(**SMALL)
+
+
+def test_names_of_options_are_no_attributes(env):
+    """Also of such as the environment keeps under that name: parameters, modes and counts."""
+    before = vars(env).copy()
+    names = {*OPTIONS, *_NAMES, *RESET_OPTIONS, *ARGUMENTS, "parameters", "num_leaders"}
+    for name in sorted(names):
+        for written in (name, name.upper(), name.title(), name.replace("_", "")):
+            with pytest.raises(AttributeError, match=f"^'{written}' cannot be set as an attribute"):
+                setattr(env, written, 3)
+    assert vars(env) == before
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("bw_s", r"(reset\(options=.*|set_options) sets 'bw_s'"),
+        ("bw", r"(reset\(options=.*|set_options) sets 'bw_s'"),
+        ("target", r"(reset\(options=.*|set_options) sets 'target'"),
+        ("seed", "a reset"),
+        ("n_boats", "make another one"),
+        ("c4", "make another one"),
+        ("render_mode", "make another one"),
+    ],
+)
+def test_the_error_says_what_sets_it(env, name, words):
+    with pytest.raises(AttributeError, match=words):
+        setattr(env, name, 2.0)
+
+
+def test_other_attributes_are_set_and_copies_are_made(env):
+    env.note = 3
+    env._bw_s = 4
+    assert (env.note, vars(env)["_bw_s"]) == (3, 4)
+    # PettingZoo's wrappers have no copies of their own.
+    if hasattr(env, "clone"):
+        assert env.clone().note == copy.deepcopy(env).note == 3
+
+
+def test_gymnasium_sets_no_option_through_wrappers():
+    """`set_wrapper_attr` would set on the outermost wrapper what the environment does not have."""
+    inner = gymnasium.make("flockenv/Leaders-v0", **SMALL)
+    env = gymnasium.wrappers.RecordEpisodeStatistics(gymnasium.wrappers.FlattenObservation(inner))
+    for name in ("bw_s", "n_boats", "target", "parameters"):
+        for each in (inner, env):
+            with pytest.raises(AttributeError, match=f"'{name}' cannot be set as an attribute"):
+                each.set_wrapper_attr(name, 2.0)
+    many = gymnasium.vector.SyncVectorEnv([lambda: EVERY["gymnasium.make"](**SMALL)] * 2)
+    with pytest.raises(AttributeError, match="'bw_s' cannot be set as an attribute"):
+        many.set_attr("bw_s", 2.0)
+    env.set_wrapper_attr("note", 3)
+    assert env.get_wrapper_attr("note") == 3
+
+
+def test_what_is_made_by_id_is_the_environment_itself():
+    """A wrapper around it would take any attribute, and keep it to itself."""
+    env = gymnasium.make("flockenv/Order-easy-v0")
+    assert type(env) is flockenv.LeadersEnv
+    with pytest.raises(flockenv.EpisodeError, match="reset"):
+        env.step(np.zeros(4))
+    again = gymnasium.make(pickle.loads(pickle.dumps(env.spec)))
+    assert again.unwrapped.parameters == env.parameters
