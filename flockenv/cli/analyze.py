@@ -36,14 +36,15 @@ def analyze(options: AnalyzeOptions) -> None:
 
     The means are those that `flockenv run` prints: over the analysis window after the first tenth,
     or over all samples after it where the phases of motors are not known. What of the tracks was
-    left out is reported. A table without a description gets a guessed one beside it, and the lines
-    to check are named. Compare the first frame, which `--plot` draws, with the video: nothing else
-    shows that a whole experiment is mirrored. `--out` writes the poses for other programs too:
-    tables with their layout beside them, or GSD for OVITO and freud.
+    left out is reported, with `--json` under "tracks" by name. A table without a description gets a
+    guessed one beside it, and the lines to check are named. Compare the first frame, which `--plot`
+    draws, with the video: nothing else shows that a whole experiment is mirrored. `--out` writes
+    the poses for other programs too: tables with their layout beside them, or GSD for OVITO and
+    freud.
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
     """
-    from flockenv.tracks import EXPORTS, export
+    from flockenv.tracks import EXPORTS, TrackReport, export
 
     out, plot, endings = options.out, options.plot, (".npz", *EXPORTS)
     if out is not None and out.suffix.lower() not in endings:
@@ -53,7 +54,10 @@ def analyze(options: AnalyzeOptions) -> None:
     is_table = out is not None and out.suffix.lower() not in (".npz", ".gsd")
     beside = out.with_suffix(".toml") if out is not None and is_table else None
     written = [path for path in (plot, out, beside) if path is not None]
-    recording = load_recording(options.file, options.layout, quiet=options.quiet)
+    found: list[TrackReport] = []
+    recording = load_recording(
+        options.file, options.layout, quiet=options.quiet, report=found.append
+    )
     prepare(*written, overwrites=options.force)
     if plot is not None:
         with atomic_write(plot) as file:
@@ -64,7 +68,8 @@ def analyze(options: AnalyzeOptions) -> None:
         export(recording, out, overwrite=options.force)
     if options.as_json:
         files = [printable(path) for path in written]
-        print_json({**summary_of(recording), "files": files})
+        report = {"tracks": found[0].named()} if found else {}
+        print_json({**summary_of(recording), **report, "files": files})
         return
     boats = recording.parameters.n_boats
     say(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")

@@ -6,7 +6,7 @@ import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from flockenv.policies.registry import named_policy
 from flockenv.recording import Recording
 from flockenv.runs.sweep import summary
 
+if TYPE_CHECKING:
+    from flockenv.tracks import TrackReport
+
 
 def printable(name: str | os.PathLike[str]) -> str:
     """Return the name of a file or policy with a sign in place of bytes that are no UTF-8.
@@ -28,14 +31,22 @@ def printable(name: str | os.PathLike[str]) -> str:
     return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
-def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = False) -> Recording:
-    """Return a recording, or one made of a table of tracks; what of these was left out is printed.
+def load_recording(
+    path: Path,
+    layout: Path | None = None,
+    *,
+    quiet: bool = False,
+    report: Callable[["TrackReport"], object] = lambda found: None,
+) -> Recording:
+    """Return a recording, or one made of a table of tracks.
+
+    What of these was left out is printed, unless `quiet`, and given to `report`.
 
     The layout of tracks is by default that of the TOML file beside them. A table without one gets
     one that is guessed from its columns, and what is to be checked in it is printed. A
     ParameterError names a file that cannot be read, is damaged, or neither.
     """
-    from flockenv.tracks import SUFFIXES, TrackReport, guess_layout, read_layout, read_tracks
+    from flockenv.tracks import SUFFIXES, guess_layout, read_layout, read_tracks
 
     if layout is None and path.suffix.lower() not in SUFFIXES:
         try:
@@ -49,11 +60,12 @@ def load_recording(path: Path, layout: Path | None = None, *, quiet: bool = Fals
         for line in checks:
             say(f"  {line}", errors)
 
-    def report(found: TrackReport) -> None:
+    def say_and_report(found: "TrackReport") -> None:
         if not quiet:
             say(f"{printable(path)}: {found}", errors)
+        report(found)
 
-    return read_tracks(path, None if layout is None else read_layout(layout), report)
+    return read_tracks(path, None if layout is None else read_layout(layout), say_and_report)
 
 
 def read_policy(name: str, pool: Any, trust: bool) -> Callable[[], LeaderPolicy | str]:

@@ -1,7 +1,8 @@
 """What of tracks was used, and what was left out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 _WEAK = 0.3
 
@@ -45,6 +46,11 @@ class TrackReport:
     lone: int = 0
     cosine: float = float("nan")
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
+
+    def named(self) -> dict[str, Any]:
+        """Return the attributes by name, None for a cosine that is undefined."""
+        named = asdict(self)
+        return named if self.cosine == self.cosine else {**named, "cosine": None}
 
     def __str__(self) -> str:
         all_of = self.samples + self.missing

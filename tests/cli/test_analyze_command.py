@@ -38,6 +38,8 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
         json.loads(cli("analyze", str(path), "--json").stdout)
         for path in (tmp_path / "again.npz", tracks)
     ]
+    report = summaries[1].pop("tracks")
+    assert (report["samples"], report["left_out"]) == (1206, {})
     assert summaries[0] == summaries[1]
     assert summaries[0]["psi_o_mean"] == pytest.approx(recording.analyzed().order.psi_o.mean())
 
@@ -87,6 +89,25 @@ def test_what_was_left_out_is_said_by_boat(cli, run, tmp_path):
         "left out: 30 rows (30 in no water: 5 5, 4 5, 3 5, 2 5, 1 5, 1 more boats)" in done.stderr
     )
     assert "gaps: 6, the longest 0.6 s" in done.stderr
+    named = json.loads(cli("analyze", str(tracks), "--json", "--quiet").stdout)["tracks"]
+    counted = {"5": 5, "4": 5, "3": 5, "2": 5, "1": 5, "0": 5}
+    assert named.pop("left_out") == {"in no water": counted}
+    cosine = named.pop("cosine")
+    assert f"mean cosine between heading and motion: {cosine:.2f}" in done.stderr
+    assert named.pop("longest_gap_s") == pytest.approx(0.6)
+    assert named.pop("stuck") == {}
+    counts = [named[each] for each in ("frames", "boats", "samples", "missing", "gaps")]
+    assert counts == [201, 6, 1176, 30, 6]
+    assert named["broken"] == named["lone"] == 0
+
+
+def test_a_report_by_name_has_no_cosine_of_what_stands_still(cli, tmp_path):
+    rows = "".join(f"{k},a,60.0,40.0,90\n" for k in range(30))
+    (tmp_path / "t.csv").write_text("frame,id,x,y,heading\n" + rows)
+    (tmp_path / "t.toml").write_text('pool = [90, 0]\nfps = 10\nheading_unit = "deg"\n')
+    named = json.loads(cli("analyze", str(tmp_path / "t.csv"), "--json").stdout)["tracks"]
+    assert named["cosine"] is None
+    assert named["stuck"] == {"a": [60.0, 40.0, 30]}
 
 
 def test_gsd(cli, run, tmp_path):
