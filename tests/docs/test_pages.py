@@ -70,6 +70,7 @@ def _minutes_in_seconds(monkeypatch):
     monkeypatch.setattr(case, "compare_leaders", compared)
 
 
+@pytest.mark.filterwarnings("ignore:PettingZoo in TorchRL is tested")
 @pytest.mark.parametrize("page", EXECUTED)
 def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request):
     monkeypatch.chdir(tmp_path)

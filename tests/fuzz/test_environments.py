@@ -173,6 +173,17 @@ def test_names_of_options_in_a_reset_act_or_are_refused(interfaces, name, slip, 
 
 
 @FUZZ
+@given(st.sampled_from(OURS), st.sampled_from(SLIPS[:-1]), st.integers(0, 30), anything)
+def test_names_of_options_are_no_attributes(interfaces, name, slip, place, value):
+    written = with_a_slip(name, slip, place)
+    for env in interfaces:
+        before = vars(env).copy()
+        with pytest.raises(AttributeError, match="cannot be set as an attribute"):
+            setattr(env, written, value)
+        assert vars(env) == before
+
+
+@FUZZ
 @given(
     st.one_of(st.sampled_from(["bw_s", "target", "leader_index", *OURS]), st.text(max_size=8)),
     anything,

@@ -13,7 +13,9 @@ from flockenv.errors import ParameterError
 torch = pytest.importorskip("torch")
 pytest.importorskip("torchrl")
 
-from torchrl.envs.utils import check_env_specs, step_mdp  # noqa: E402 - after the check above
+from pettingzoo.utils import BaseParallelWrapper, parallel_to_aec  # noqa: E402 - after the check above
+from torchrl.envs import PettingZooWrapper  # noqa: E402
+from torchrl.envs.utils import check_env_specs, step_mdp  # noqa: E402
 
 from flockenv.torchrl import LeadersEnv  # noqa: E402
 
@@ -156,3 +158,27 @@ def test_copies_and_pickles_continue_with_the_same_bits(state):
 def test_bad_options_are_named(options, message):
     with pytest.raises(ParameterError, match=message):
         made(**options)
+
+
+class WithoutInfos(BaseParallelWrapper):
+    """As on the page: torchrl makes tensors of infos, the same ones in every step."""
+
+    def reset(self, seed=None, options=None):
+        observations, infos = self.env.reset(seed, options)
+        return observations, {agent: {} for agent in infos}
+
+
+@pytest.mark.filterwarnings("ignore:PettingZoo in TorchRL is tested")
+@pytest.mark.parametrize("options", [{}, {"target": ["cw", "ccw"]}, {"rudder_levels": 5}])
+def test_torchrls_own_wrapper_takes_the_agents_without_their_infos(options):
+    options = {**SHORT, **options}
+    env = PettingZooWrapper(WithoutInfos(flockenv.parallel_env(**options)), return_state=True)
+    env.set_seed(3)
+    check_env_specs(env)
+    agents = flockenv.parallel_env(**options)
+    observations, _ = agents.reset(seed=3)
+    seen = env.reset(seed=3)["leader", "observation"].numpy()
+    assert np.array_equal(seen, [*observations.values()])
+    assert env.rollout(30).shape == (20,)
+    in_turn = parallel_to_aec(WithoutInfos(flockenv.parallel_env(**options)))
+    assert PettingZooWrapper(in_turn, use_mask=True).rollout(6).shape == (6,)
