@@ -46,15 +46,16 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinxcontrib.typer",
+    "loop",
     "mathml",
 ]
-exclude_patterns = ["_build", "results", "speed_vs_error"]
+exclude_patterns = ["_build", "environments/_*", "results", "speed_vs_error"]
 
 html_theme = "furo"
 html_title = f"flockenv {release}"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
-html_css_files = ["doors.css"]
+html_css_files = ["doors.css", "loops.css"]
 html_show_copyright = False
 html_copy_source = False
 

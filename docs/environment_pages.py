@@ -1,7 +1,8 @@
 """The pages of the environments, written whenever the pages are built.
 
-A class's page is its docstring. `tables.md` lists what the core declares: parameters, options,
-terms of the reward, entries of the observation and of the global state, features of the flock.
+A class's page is its docstring, and id_pages.py makes those of the ids. `tables.md` lists what the
+core declares: parameters, options, terms of the reward, entries of the observation and of the
+global state, features of the flock.
 """
 
 import inspect
@@ -10,6 +11,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from committed_data import markdown
+from id_pages import draw_films, id_pages
 
 import flockenv
 from flockenv.envs.observation import (
@@ -41,7 +43,8 @@ def pages() -> dict[Path, str]:
         )
         for each in CLASSES
     }
-    return {FOLDER / f"{name}.md": text for name, text in {**texts, "tables": tables()}.items()}
+    texts |= {**id_pages(), "tables": tables()}
+    return {FOLDER / f"{name}.md": text for name, text in texts.items()}
 
 
 def tables() -> str:
@@ -162,7 +165,8 @@ def _plain(text: str) -> str:
 
 
 def write() -> None:
-    """Write the pages that differ."""
+    """Write the pages that differ, and draw what they show."""
+    draw_films()
     for path, text in pages().items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")

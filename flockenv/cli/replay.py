@@ -27,6 +27,7 @@ class ReplayOptions(Printing):
     mp4: Path | None = option(None, "A video, in its place.")
     colors: str = option("direction", "Of pictures, what color shows: direction or role.")
     speed: float = option(8.0, "Of pictures: how many times real time.", min=0.1, max=100.0)
+    start: float = option(0.0, "Of pictures: second of the recording that is first.", min=0.0)
     seconds: float = option(20.0, "Of pictures: how long they last at most.", min=0.1)
     name: list[str] | None = option(None, "What a recording is called; once for each.")
     show: bool = option(False, "Open the page in a browser.", "--open")
@@ -97,9 +98,10 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
     captions = list(named) if options.name or len(runs) > 1 else [""]
     for path in paths:
         fps = _FPS[path.suffix.lower()]
-        longest_s = max(run.duration_s for run in runs)
+        longest_s = max(run.duration_s for run in runs) - options.start
         lasting_s = min(options.seconds, longest_s / options.speed)
-        steps_s = np.arange(max(1, round(lasting_s * fps))) * options.speed / fps
+        count = max(1, round(lasting_s * fps))
+        steps_s = options.start + np.arange(count) * options.speed / fps
         with progress("drawing", len(steps_s), options.shows_nothing) as advance:
 
             def drawn(step_s: Any) -> NDArray[np.uint8]:

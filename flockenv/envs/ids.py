@@ -25,15 +25,16 @@ def _suite(purpose: str, n_leaders: int, episode_s: float = 480.0, **options: An
 
 ENVIRONMENTS: Mapping[str, Environment] = {
     "flockenv/Leaders-v0": Environment(
-        "The paper's simulated flock: 27 boats, three of which lead. All other environments are "
-        "this one with other options.",
+        "Three leaders among 27 boats, near the noise at which a flock loses its order. All other "
+        "environments are this one with other options.",
         {},
     ),
     # Few boats, many leaders and few numbers observed, so that samples show the order:
     # baselines/learn_easy.py.
     "flockenv/Order-easy-v0": Environment(
         "The environment to start with. Four of ten boats lead, they observe few numbers, and the "
-        "order answers within seconds, so that plain PPO learns to lead within two minutes.",
+        "order answers within seconds, so that plain PPO learns to lead within two minutes of "
+        "processor time.",
         {
             "n_boats": 10,
             "n_leaders": 4,

@@ -117,6 +117,18 @@ def test_replay_draws_two_side_by_side(cli, run, tmp_path):
     assert cli(*draw, "--colors", "red").returncode == 2
 
 
+@pytest.mark.parametrize(("start", "frames", "first_s"), [("4", 12, 4.0), ("99", 1, 12.0)])
+def test_a_moving_picture_starts_later(cli, run, tmp_path, start, frames, first_s):
+    """The 8 s that are left last 1 s at 8 times real time; of nothing there is the last frame."""
+    done = cli("replay", run, "--gif", tmp_path / "late.gif", "--start", start)
+    assert done.returncode == 0, done.stderr
+    with Image.open(tmp_path / "late.gif") as picture:
+        assert picture.n_frames == frames
+        found = np.array(picture.convert("RGB")).astype(int)
+    expected = frame(flockenv.Recording.load(run), first_s)
+    assert np.abs(found - expected).mean() < 2.0
+
+
 def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_path):
     stable_baselines3 = pytest.importorskip("stable_baselines3")
     from flockenv.sb3 import LeaderVecEnv

@@ -45,6 +45,7 @@ FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "paper", "src
 FOREIGN = (
     "gymnasium",
     "gymnasium.utils.performance",
+    "gymnasium.wrappers",
     "pettingzoo",
     "stable_baselines3.common.evaluation",
     "stable_baselines3.common.callbacks",
@@ -290,7 +291,7 @@ def test_names_exist(page):
 def test_commands_and_imports_exist(page):
     for _, _, language, block in FENCE.findall(PAGES[page]):
         lines = block.replace("\\\n", " ").splitlines()
-        if language in ("sh", "bash", "console"):
+        if language in ("sh", "bash", "console", "loop"):
             wrong = [wrong_command(line.removeprefix("$ ")) for line in lines if line.strip()]
             assert [each for each in wrong if each] == []
         if language == "python":
