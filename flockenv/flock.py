@@ -219,7 +219,7 @@ class Flock:
     @property
     def parameters(self) -> FlockParameters:
         """The parameters, with the target that holds now."""
-        return FlockParameters(**self.core.parameters)
+        return FlockParameters.of(self.core.parameters)
 
     @property
     def seed(self) -> int:
@@ -385,7 +385,7 @@ class Flock:
         return type(self).from_snapshot, (self.snapshot(),)
 
     def __repr__(self) -> str:
-        boats, leaders = (self.core.parameters[name] for name in ("n_boats", "n_leaders"))
+        boats, leaders = self.parameters.n_boats, self.parameters.n_leaders
         time_s = repr(self.time_s).removesuffix(".0")
         return (
             f"<flockenv.Flock of {boats} boats, {leaders} of them leaders, seed {self.seed}, "

@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
@@ -13,17 +13,15 @@ from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError, refuse_unknown, shown
 
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
-_DEFAULTS = _core.changed_fields("simulation", {})
+_DEFAULTS = _core.Parameters("simulation", {}).values
 
 
 def _declared(name: str) -> Any:
     """Return the field that the core declares under this name: default, unit, range and meaning."""
-    # None: as the hull makes it.
-    default = None if name == "gyration_radius_cm" else _DEFAULTS[name]
-    return field(default=default, metadata=_TABLE[name])
+    return field(default=_DEFAULTS[name], metadata=_TABLE[name])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class FlockParameters:
     """Parameters of a flock: frozen, checked once on construction, hashable, picklable.
 
@@ -73,20 +71,26 @@ class FlockParameters:
     walls: tuple[tuple[float, float, float, float], ...] = _declared("walls")
     leader_speed_factor: float = _declared("leader_speed_factor")
 
-    def __new__(cls, **values: Any) -> Self:
-        """Refuse unknown fields and suggest the nearest name, which a dataclass does not."""
-        refuse_unknown(values, _NAMES, "field of FlockParameters")
-        if values.get("gyration_radius_cm", 0.0) is None:
-            raise TypeError("gyration_radius_cm must be a number or left out, not None")
-        return object.__new__(cls)
+    if not TYPE_CHECKING:  # Editors complete the fields, as the dataclass declares them.
 
-    def __post_init__(self) -> None:
-        # No `asdict`: it copies, and a view of one number can claim petabytes.
-        given = {name: _stored(getattr(self, name)) for name in _NAMES}
-        if given["gyration_radius_cm"] is None:
-            del given["gyration_radius_cm"]
-        for name, value in _core.changed_fields("simulation", given).items():
-            object.__setattr__(self, name, value)
+        def __init__(self, **values: Any) -> None:
+            self._hold(_changed("simulation", values))
+
+    @classmethod
+    def of(cls, core: _core.Parameters) -> Self:
+        """Return the parameters that the core has checked."""
+        parameters = cls.__new__(cls)
+        parameters._hold(core)
+        return parameters
+
+    def _hold(self, core: _core.Parameters) -> None:
+        vars(self).update(core.values, core=core)
+
+    @property
+    def core(self) -> _core.Parameters:
+        """The checked values, as the core takes them."""
+        core: _core.Parameters = vars(self)["core"]
+        return core
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor, so that what is unpickled is checked too.
@@ -110,7 +114,7 @@ class FlockParameters:
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
             ``"experiment"``: Table 1, with constants fitted to Section 4.
         """
-        return cls(**_core.changed_fields(name, {}))
+        return cls.of(_core.Parameters(name, {}))
 
     @classmethod
     def preset_sources(cls, name: str) -> dict[str, str]:
@@ -157,7 +161,7 @@ class FlockParameters:
         A hull of another size has a radius of gyration in the same ratio to that of a hull of even
         mass, unless ``gyration_radius_cm`` is among the changes.
         """
-        return type(self)(**_changed(self, changes))
+        return self.of(_changed(self.core, changes))
 
     def to_dict(self) -> dict[str, Any]:
         """Every field by name: numbers, bools, words, tuples for unnamed pools and targets."""
@@ -178,7 +182,7 @@ class FlockParameters:
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
         changes = {str(name): value for name, value in values.items()}
-        return cls(**_changed(changes.pop("preset", "simulation"), changes))
+        return cls.of(_changed(changes.pop("preset", "simulation"), changes))
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, every field on a line of its own."""
@@ -196,10 +200,10 @@ class FlockParameters:
 _NAMES = tuple(each.name for each in fields(FlockParameters))
 
 
-def _changed(base: FlockParameters | str, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return all fields of parameters, or of a preset by name, with some of them changed."""
+def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.Parameters:
+    """Return parameters, or a preset by name, with some of their fields changed."""
     refuse_unknown(changes, _NAMES, "field of FlockParameters")
-    return _core.changed_fields(base, {name: _stored(each) for name, each in changes.items()})
+    return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
 
 
 def _stored(value: Any) -> Any:

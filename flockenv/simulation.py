@@ -140,7 +140,14 @@ def simulate(
     seats = _seats(policy, parameters)
     changes = _changes(parameters, schedule, seed)
     functions = checked_functions({} if quantities is None else quantities)
-    flock = _started(parameters, seed, start, noise_seed)
+    if noise_seed is not None and not isinstance(start, bytes):
+        raise ParameterError(
+            f"noise_seed = {shown(noise_seed)} is not accepted: it goes with a snapshot as start, "
+            "which it continues with other noise"
+        )
+    flock = (
+        Flock(parameters, seed) if start is None else _started(parameters, seed, start, noise_seed)
+    )
     precision = np.dtype(dtype)
     if precision not in PRECISIONS:
         raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
@@ -344,16 +351,7 @@ def _radii_cm(parameters: FlockParameters) -> set[float]:
     return {*_core.pool_radii_cm(parameters.pool)}
 
 
-def _started(
-    parameters: FlockParameters, seed: int, start: Start | None, noise_seed: int | None
-) -> Flock:
-    if noise_seed is not None and not isinstance(start, bytes):
-        raise ParameterError(
-            f"noise_seed = {shown(noise_seed)} is not accepted: it goes with a snapshot as start, "
-            "which it continues with other noise"
-        )
-    if start is None:
-        return Flock(parameters, seed)
+def _started(parameters: FlockParameters, seed: int, start: Start, noise_seed: int | None) -> Flock:
     if isinstance(start, Recording):
         start = start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
     if isinstance(start, Mapping):

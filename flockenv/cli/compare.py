@@ -13,9 +13,9 @@ from typing import Any
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, say
-from flockenv.cli.options import TRUST, Flocks, Printing, option, takes
+from flockenv.cli.options import TRUST, Printing, option, takes
 from flockenv.cli.output import prepare, printable, read_policy
-from flockenv.cli.parameters import changed_fields, given_fields, option_of, read_parameters
+from flockenv.cli.parameters import Flocks, changed_fields, option_of
 from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import steering
@@ -234,7 +234,7 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     Fields that neither the file nor a change names are the preset's, except for 27 boats and
     the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
     """
-    given = given_fields(options.preset, options.params, options.changes, options.named)
+    given = options.fields()
     if "n_leaders" in changed_fields(options.changes or ()):
         raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --n-leaders")
     if isinstance(given.get("target"), list):
@@ -242,7 +242,7 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
             f"target = {shown(given['target'])} is not accepted: leaders, of which there are "
             "several numbers here, have one target: cw or ccw"
         )
-    base = read_parameters(options.preset, options.params, options.changes, options.named)
+    base = options.parameters()
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
     own: list[Any] = [base.pool]

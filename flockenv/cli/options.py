@@ -4,7 +4,6 @@ import inspect
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, field, fields
 from functools import wraps
-from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
@@ -48,44 +47,6 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
         return called
 
     return taking
-
-
-def _given(**fields: Any) -> dict[str, Any]:
-    return {name: value for name, value in fields.items() if value is not None}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Flocks:
-    """Which parameters a flock has."""
-
-    preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")
-    params: Path | None = option(
-        None, "TOML file of parameters, such as those saved beside results."
-    )
-    n_boats: int | None = option(None, "Boats, leaders included.")
-    changes: list[str] | None = option(
-        None, "Change any other field; may be repeated.", "--set", metavar="FIELD=VALUE"
-    )
-
-    @property
-    def named(self) -> dict[str, Any]:
-        """The fields that have options of their own, where those are given."""
-        return _given(n_boats=self.n_boats)
-
-
-@dataclass(frozen=True, kw_only=True)
-class OneFlock(Flocks):
-    """The parameters of one flock."""
-
-    pool: str | None = option(None, "wide, narrow or (outer_cm, inner_cm). [that of the preset]")
-    n_leaders: int | None = option(None, "How many of the boats lead.")
-    bw_s: float | None = option(None, "Noise: backward duration in s.")
-
-    @property
-    def named(self) -> dict[str, Any]:
-        """The fields that have options of their own, where those are given."""
-        others = _given(pool=self.pool, n_leaders=self.n_leaders, bw_s=self.bw_s)
-        return {**super().named, **others}
 
 
 @dataclass(frozen=True, kw_only=True)

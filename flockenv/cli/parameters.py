@@ -1,53 +1,73 @@
 """The parameters of a command: a preset, a TOML file, single fields."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 from flockenv._io.toml import read_toml, read_toml_file
+from flockenv.cli.options import option
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
-_NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+@dataclass(frozen=True, kw_only=True)
+class Flocks:
+    """Which parameters a flock has."""
+
+    #: The fields that have options of their own.
+    named: ClassVar[tuple[str, ...]] = ("n_boats",)
+
+    preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")
+    params: Path | None = option(
+        None, "TOML file of parameters, such as those saved beside results."
+    )
+    n_boats: int | None = option(None, "Boats, leaders included.")
+    changes: list[str] | None = option(
+        None, "Change any other field; may be repeated.", "--set", metavar="FIELD=VALUE"
+    )
+
+    def parameters(self) -> FlockParameters:
+        """Return the parameters of the preset, the file and the changes of single fields.
+
+        The preset is the file's own, or "simulation", unless it is given. A ParameterError names an
+        unknown preset or field, a value that is not accepted, or a file that cannot be read or is
+        no TOML.
+        """
+        try:
+            return FlockParameters.from_dict(self.fields())
+        except TypeError as error:
+            raise ParameterError(str(error)) from error
+
+    def fields(self) -> dict[str, Any]:
+        """Return the fields that the options name, and ``preset`` if they name one."""
+        file, preset = self.params, self.preset
+        fields = {} if file is None else read_toml_file(file, f"--params {file}")
+        if preset is not None and fields.setdefault("preset", preset) != preset:
+            raise ParameterError(
+                f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
+            )
+        changed = changed_fields(self.changes or ())
+        for name in self.named:
+            value = getattr(self, name)
+            if value is not None and name in changed:
+                raise ParameterError(
+                    f"{option_of(name)} and --set {name} are both given: one of them"
+                )
+            if value is not None:
+                changed[name] = _value(value) if isinstance(value, str) else value
+        return fields | changed
 
 
-def read_parameters(
-    preset: str | None = None,
-    file: Path | None = None,
-    changes: Sequence[str] | None = None,
-    named: Mapping[str, Any] = _NOTHING,
-) -> FlockParameters:
-    """Return the parameters of a preset, a TOML file and changes of single fields.
+@dataclass(frozen=True, kw_only=True)
+class OneFlock(Flocks):
+    """The parameters of one flock."""
 
-    The preset is the file's own, or "simulation", unless it is given. Changes are ``FIELD=VALUE``;
-    `named` are fields by options of their own. A ParameterError names an unknown preset or field, a
-    value that is not accepted, or a file that cannot be read or is no TOML.
-    """
-    try:
-        return FlockParameters.from_dict(given_fields(preset, file, changes, named))
-    except TypeError as error:
-        raise ParameterError(str(error)) from error
+    named: ClassVar[tuple[str, ...]] = ("n_boats", "pool", "n_leaders", "bw_s")
 
-
-def given_fields(
-    preset: str | None = None,
-    file: Path | None = None,
-    changes: Sequence[str] | None = None,
-    named: Mapping[str, Any] = _NOTHING,
-) -> dict[str, Any]:
-    """Return the fields that a command's options name, and ``preset`` if they name one."""
-    fields = {} if file is None else read_toml_file(file, f"--params {file}")
-    if preset is not None and fields.setdefault("preset", preset) != preset:
-        raise ParameterError(
-            f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
-        )
-    changed = changed_fields(changes or ())
-    for name, value in named.items():
-        if name in changed:
-            raise ParameterError(f"{option_of(name)} and --set {name} are both given: one of them")
-        changed[name] = _value(value) if isinstance(value, str) else value
-    return fields | changed
+    pool: str | None = option(None, "wide, narrow or (outer_cm, inner_cm). [that of the preset]")
+    n_leaders: int | None = option(None, "How many of the boats lead.")
+    bw_s: float | None = option(None, "Noise: backward duration in s.")
 
 
 def option_of(name: str) -> str:

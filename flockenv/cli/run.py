@@ -7,9 +7,9 @@ from pathlib import Path
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, say
-from flockenv.cli.options import TRUST, OneFlock, Overwriting, Printing, option, takes
+from flockenv.cli.options import TRUST, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
-from flockenv.cli.parameters import read_parameters
+from flockenv.cli.parameters import OneFlock
 from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 from flockenv.policies.names import EVERY_SUBSTEP
@@ -48,7 +48,7 @@ def run(options: RunOptions) -> None:
 
     Example: `flockenv run --n-boats 27 --n-leaders 3 --bw-s 0.3 --seed 7`
     """
-    parameters = read_parameters(options.preset, options.params, options.changes, options.named)
+    parameters = options.parameters()
     policy = read_policy(options.policy, parameters.pool, options.trust)()
     out = options.out or _free(_OUT)
     if out.suffix != ".npz":

@@ -131,7 +131,7 @@ class LeaderBatch:
 
     def parameters(self, flock: int) -> FlockParameters:
         """Return the parameters of a flock's environment."""
-        return FlockParameters(**self.core.parameters(flock))
+        return FlockParameters.of(self.core.parameters(flock))
 
     def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""

@@ -3,6 +3,7 @@
 use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
+use super::parameters::PyParameters;
 use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
 use crate::analysis::quantities::RECORDED;
 use crate::environment::observation::FlockFeatures;
@@ -101,10 +102,8 @@ impl PyEnvBatch {
         Ok(Field::values(EnvSettings::FIELDS, batch.settings()))
     }
 
-    fn parameters(&self, flock: usize) -> Result<Value> {
-        self.env(flock, |env| {
-            Field::values(FlockParameters::FIELDS, env.parameters())
-        })
+    fn parameters(&self, flock: usize) -> Result<PyParameters> {
+        self.env(flock, |env| PyParameters(env.parameters().clone()))
     }
 
     /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.

@@ -2,6 +2,7 @@
 
 use super::arrays::{floats, rows_from, rows_of};
 use super::exclusive::{Exclusive, interruptible};
+use super::parameters::PyParameters;
 use super::value::{given, noise_seed_from, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
 use crate::contact::Partner;
@@ -10,7 +11,7 @@ use crate::error::{FlockError, Result};
 use crate::flock::{ContactForce, Flock, State};
 use crate::geometry::{Pose, Vec2, Velocity};
 use crate::integrator::Steering;
-use crate::parameters::{Field, FlockParameters, Targets, Value, text_of};
+use crate::parameters::{FlockParameters, Targets, Value, text_of};
 use numpy::{Element, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
@@ -55,7 +56,6 @@ impl PyFlock {
         seed: &Bound<'_, PyAny>,
         state: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        parameters.check()?;
         let (seed, state) = (seed_from(seed)?, state_from(state, parameters.n_boats)?);
         Ok(Self::of(Flock::from_state(parameters, seed, &state)?))
     }
@@ -68,9 +68,8 @@ impl PyFlock {
     }
 
     #[getter]
-    fn parameters(&self) -> Result<Value> {
-        let flock = self.0.read()?;
-        Ok(Field::values(FlockParameters::FIELDS, flock.parameters()))
+    fn parameters(&self) -> Result<PyParameters> {
+        Ok(PyParameters(self.0.read()?.parameters().clone()))
     }
 
     #[getter]

@@ -8,6 +8,7 @@ mod exclusive;
 mod flock;
 mod law;
 mod observation;
+mod parameters;
 mod recording;
 mod tables;
 mod value;
@@ -46,11 +47,13 @@ mod _core {
     #[pymodule_export]
     use super::observation::{observation_table, observe, state_table};
     #[pymodule_export]
+    use super::parameters::PyParameters;
+    #[pymodule_export]
     use super::recording::record;
     #[pymodule_export]
     use super::tables::{
-        changed_fields, critical_bw_s, decisions_in, env_defaults, physics_fields, pool_radii_cm,
-        preset_sources, rudders_of_levels,
+        critical_bw_s, decisions_in, env_defaults, physics_fields, pool_radii_cm, preset_sources,
+        rudders_of_levels,
     };
 
     #[pymodule_init]

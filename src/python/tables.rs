@@ -1,34 +1,11 @@
 //! What the core declares of parameters and options, and what follows from it before there is a flock.
 
-use super::value::{given, set_given};
+use super::value::given;
 use crate::clock::whole_steps;
 use crate::environment::EnvSettings;
 use crate::error::Result;
-use crate::geometry::resized_gyration_radius_cm;
 use crate::parameters::{Field, FlockParameters, Physics, Pool, Preset, Value};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-
-/// Parameters with some fields changed, checked, as plain Python values: of others, or of a preset by name. A hull of
-/// another size has a radius of gyration in the same ratio to that of a hull of even mass, unless it is given.
-#[pyfunction]
-pub(super) fn changed_fields(
-    preset: &Bound<'_, PyAny>,
-    changes: &Bound<'_, PyDict>,
-) -> PyResult<Value> {
-    let base: FlockParameters = match preset.getattr_opt("n_boats")? {
-        Some(_) => preset.extract()?,
-        None => FlockParameters::preset(given(preset, "preset")?),
-    };
-    let mut changed = base.clone();
-    set_given(&mut changed, FlockParameters::FIELDS, changes)?;
-    if !changes.contains("gyration_radius_cm")? {
-        let (radius_cm, shape) = (changed.boat_radius_cm, changed.boat_shape);
-        changed.gyration_radius_cm = resized_gyration_radius_cm(&base, radius_cm, shape);
-    }
-    changed.check()?;
-    Ok(Field::values(FlockParameters::FIELDS, &changed))
-}
 
 /// Where each field of a preset comes from.
 #[pyfunction]

@@ -133,21 +133,6 @@ pub(super) fn set_given<S>(
     Ok(())
 }
 
-/// Fields are read as attributes of the same name, so any object that has them will do.
-impl<'py> FromPyObject<'_, 'py> for FlockParameters {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let mut parameters = Self::default();
-        for field in Self::FIELDS {
-            let value = object.getattr_opt(field.name)?;
-            let refuse = || wrong_type(&object, "parameters", "FlockParameters");
-            set(&mut parameters, field, &value.ok_or_else(refuse)?)?;
-        }
-        Ok(parameters)
-    }
-}
-
 /// The error of a value that is out of range.
 fn not_accepted(name: &'static str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
     FlockError::parameter(name, shown(value), accepted).into()

@@ -3,14 +3,14 @@
 import pytest
 
 import flockenv
-from flockenv.cli.parameters import read_parameters
+from flockenv.cli.parameters import OneFlock
 
 SIMULATION = flockenv.FlockParameters()
 
 
 def test_nothing_asked_for_is_the_preset_simulation():
-    assert read_parameters() == SIMULATION
-    assert read_parameters("paper") == flockenv.FlockParameters.preset("paper")
+    assert OneFlock().parameters() == SIMULATION
+    assert OneFlock(preset="paper").parameters() == flockenv.FlockParameters.preset("paper")
 
 
 @pytest.mark.parametrize(
@@ -28,22 +28,27 @@ def test_nothing_asked_for_is_the_preset_simulation():
     ],
 )
 def test_values_are_those_of_toml_and_words(change, field, value):
-    assert read_parameters(changes=[change]) == SIMULATION.replace(**{field: value})
+    assert OneFlock(changes=[change]).parameters() == SIMULATION.replace(**{field: value})
 
 
 def test_a_file_then_fields(tmp_path):
     file = tmp_path / "flock.toml"
     file.write_text('preset = "paper"\nn_boats = 12\nbw_s = 0.1\n')
     paper = flockenv.FlockParameters.preset("paper")
-    assert read_parameters(file=file) == paper.replace(n_boats=12, bw_s=0.1)
-    assert read_parameters("paper", file, ["bw_s=0.2"]) == paper.replace(n_boats=12, bw_s=0.2)
+    assert OneFlock(params=file).parameters() == paper.replace(n_boats=12, bw_s=0.1)
+    assert OneFlock(
+        preset="paper", params=file, changes=["bw_s=0.2"]
+    ).parameters() == paper.replace(n_boats=12, bw_s=0.2)
     with pytest.raises(flockenv.ParameterError, match="contradicts preset = 'paper'"):
-        read_parameters("simulation", file)
+        OneFlock(preset="simulation", params=file).parameters()
 
 
 @pytest.mark.parametrize("change", ["cw, ccw", "[cw, ccw]", "(cw,ccw)", '["cw", "ccw"]'])
 def test_lists_of_words_need_no_quotes(change):
-    assert read_parameters(changes=["n_leaders=2", f"target={change}"]).target == ("cw", "ccw")
+    assert OneFlock(changes=["n_leaders=2", f"target={change}"]).parameters().target == (
+        "cw",
+        "ccw",
+    )
 
 
 @pytest.mark.parametrize(
@@ -61,7 +66,7 @@ def test_lists_of_words_need_no_quotes(change):
 )
 def test_bad_changes_are_named(changes, words):
     with pytest.raises(flockenv.ParameterError, match=words):
-        read_parameters(changes=changes)
+        OneFlock(changes=changes).parameters()
 
 
 @pytest.mark.parametrize(
@@ -78,4 +83,4 @@ def test_bad_files_are_named(content, words, tmp_path):
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(flockenv.ParameterError, match=words):
-        read_parameters(file=file)
+        OneFlock(params=file).parameters()

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
 from flockenv._io.array_file import read_arrays
-from flockenv.cli.parameters import read_parameters
+from flockenv.cli.parameters import OneFlock
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
 from flockenv.rendering import save_animation
@@ -57,7 +57,7 @@ KINDS = {
     ),
     "parameters": (
         lambda path: Path(path).write_text(PARAMETERS.to_toml()),
-        lambda path: read_parameters(file=path),
+        lambda path: OneFlock(params=path).parameters(),
         lambda found: found == PARAMETERS,
     ),
 }

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 import flockenv
-from flockenv.cli.parameters import read_parameters
+from flockenv.cli.parameters import OneFlock
 
 pytestmark = pytest.mark.live
 
@@ -65,7 +65,7 @@ def test_command_and_python_name_the_same_flock(flock, expected, pytestconfig, t
     wanted = flockenv.FlockParameters(**expected)
     words = shlex.split(command)
     changes = [value for option, value in pairwise(words) if option == "--set"]
-    assert read_parameters(changes=changes) == wanted
+    assert OneFlock(changes=changes).parameters() == wanted
     assert words[words.index("--minutes") + 1] == "1.5"
     assert words[words.index("--seed") + 1] == flock.get("seed", "0")
     same = tmp_path / "same.py"

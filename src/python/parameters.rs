@@ -1,0 +1,52 @@
+//! Parameters that are checked, behind `flockenv.FlockParameters`, which shows their values.
+
+use super::value::{given, set_given, wrong_type};
+use crate::geometry::resized_gyration_radius_cm;
+use crate::parameters::{Field, FlockParameters, Value};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Parameters that passed their check.
+#[pyclass(name = "Parameters", module = "flockenv._core", frozen)]
+pub(super) struct PyParameters(pub(super) FlockParameters);
+
+#[pymethods]
+impl PyParameters {
+    /// Others, or a preset by name, with some fields changed. A hull of another size has a radius of gyration in the
+    /// same ratio to that of a hull of even mass, unless it is given.
+    #[new]
+    fn new(base: &Bound<'_, PyAny>, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let base = match base.cast::<Self>() {
+            Ok(base) => base.get().0.clone(),
+            Err(_) => FlockParameters::preset(given(base, "preset")?),
+        };
+        let mut changed = base.clone();
+        set_given(&mut changed, FlockParameters::FIELDS, changes)?;
+        if !changes.contains("gyration_radius_cm")? {
+            let (radius_cm, shape) = (changed.boat_radius_cm, changed.boat_shape);
+            changed.gyration_radius_cm = resized_gyration_radius_cm(&base, radius_cm, shape);
+        }
+        changed.check()?;
+        Ok(Self(changed))
+    }
+
+    /// The fields by name, as plain Python values.
+    #[getter]
+    fn values(&self) -> Value {
+        Field::values(FlockParameters::FIELDS, &self.0)
+    }
+}
+
+/// Those that a `flockenv.FlockParameters` holds.
+impl<'py> FromPyObject<'_, 'py> for FlockParameters {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let core = object.getattr_opt("core")?;
+        let core = core
+            .as_ref()
+            .and_then(|core| core.cast::<PyParameters>().ok());
+        let core = core.ok_or_else(|| wrong_type(&object, "parameters", "FlockParameters"))?;
+        Ok(core.get().0.clone())
+    }
+}
