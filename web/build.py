@@ -41,6 +41,7 @@ _OWN = (
     "core.mjs",
     "npz.mjs",
     "request.mjs",
+    "laws.mjs",
     "order_map.mjs",
     "lap_frame.mjs",
     "growing_run.mjs",

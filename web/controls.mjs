@@ -1,6 +1,7 @@
 // Sliders and choices, one for each parameter that the page lets a visitor change.
 
 import { element, plain } from "../flockenv/replay/shared/words.mjs";
+import { YOU } from "./laws.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
 /** Parameter, words, least, most, step: the one that everybody needs, and more. */
@@ -27,51 +28,28 @@ const CHOICES = {
   ],
 };
 
-/** How leaders may steer, in words. */
-export const LEADERS = {
-  "paper's law at every substep": "the paper's law",
-  "tuned law": "the tuned law",
-  learned: "learned steering",
-  you: "you",
-};
-/** How each of several leaders may steer, in words. */
-const OWN = { "paper's law": "the paper's law", "tuned law": "the tuned law", learned: "learned steering" };
-
-/** What may run beside a flock: what of it differs, and in words. */
-const BESIDE_CHOICES = [
-  ["", "nothing"],
-  ["leaders=paper's law at every substep", "the paper's law"],
-  ["leaders=tuned law", "the tuned law"],
-  ["leaders=learned", "learned steering"],
-  ["n_leaders=0", "no leaders"],
-  ["n_leaders=1", "one leader"],
-  ["n_leaders=4", "four leaders"],
-];
+/** Numbers of leaders that may run beside a flock, in words. */
+const NUMBERS_BESIDE = [["n_leaders=0", "no leaders"], ["n_leaders=1", "one leader"], ["n_leaders=4", "four leaders"]];
 
 /** The targets of so many leaders, half of them against the other half. */
 export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }
 
-/** A policy for each of so many leaders: those of a list, or the one policy; one for all where there are not several. */
-export function policiesOf(policy, leaders) {
-  const given = policy.split(",").map((name) => (Object.hasOwn(OWN, name) ? name : "paper's law"));
-  return leaders > 1 ? Array.from({ length: leaders }, (_, k) => given[k] ?? given.at(-1)).join(",") : given[0];
-}
-
 export class Controls {
   inputs = new Map();
 
   /** `meanings`: what the simulator says of each parameter; `change` gets a name and a value. */
-  constructor(meanings, policies, change) {
-    Object.assign(this, { meanings, change });
+  constructor(meanings, laws, change) {
+    Object.assign(this, { meanings, laws, change });
     const byId = (id) => document.getElementById(id);
     for (const [id, sliders] of Object.entries(SLIDERS)) {
       byId(id).append(...sliders.map(([name, words, low, high, step]) => this.#slider(name, words, { low, high, step })));
     }
-    const known = Object.entries(LEADERS).filter(([name]) => policies.includes(name));
+    const known = laws.ofAll.map((name) => [name, laws.words(name)]);
+    const beside = known.filter(([name]) => name !== YOU).map(([name, words]) => [`leaders=${name}`, words]);
     byId("choices").append(this.#choice("leaders", "leaders steer by", [...known, ["each", "each its own"]]),
-      this.#choice("beside", "beside it", BESIDE_CHOICES));
+      this.#choice("beside", "beside it", [["", "nothing"], ...beside, ...NUMBERS_BESIDE]));
     for (const [id, choices] of Object.entries(CHOICES)) {
       byId(id).append(...choices.map(([name, words, options]) => this.#choice(name, words, options)));
     }
@@ -126,7 +104,7 @@ export class Controls {
   #ownChoice(each, leader) {
     const label = element("label", "", `leader ${leader} `);
     const select = element("select");
-    select.append(...Object.entries(OWN).map(([value, shown]) => new Option(shown, value)));
+    select.append(...this.laws.ofEach.map((name) => new Option(this.laws.words(name), name)));
     const chosen = () => Array.from(each.querySelectorAll("select"), ({ value }) => value).join(",");
     select.addEventListener("change", () => this.change("leaders", chosen()));
     label.append(select);

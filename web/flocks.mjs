@@ -1,17 +1,17 @@
 // The flocks that are shown, one or two: what is asked of the simulator, and what it answers.
 
-import { LEADERS, opposedTargets, policiesOf } from "./controls.mjs";
+import { opposedTargets } from "./controls.mjs";
 import { GrowingRun } from "./growing_run.mjs";
+import { Laws, YOU } from "./laws.mjs";
 import { requestsOf, textOf } from "./request.mjs";
 
-export const EVERY_SUBSTEP = "paper's law at every substep";
 /** Samples per second. */
 const SAMPLING = 10;
 /** Fields whose change makes another flock of a map's. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
-/** What is wanted after a change of one field. `values`: those of the parameters now. */
-export function changed(base, values, name, value) {
+/** What is wanted after a change of one field. `values`: those of the parameters now; `laws`: those that there are. */
+export function changed(base, values, laws, name, value) {
   const wanted = { flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
   if (name === "beside") {
@@ -21,7 +21,7 @@ export function changed(base, values, name, value) {
     const { n_boats, n_leaders, seed, leaders: policy } = { ...values, ...wanted.flock };
     wanted.flock = { preset: value, n_boats, n_leaders, ...(seed && { seed }), ...(policy && { leaders: policy }) };
   } else if (name === "leaders" && value === "each") {
-    wanted.flock.leaders = policiesOf(base.flock.leaders ?? "", leaders);
+    wanted.flock.leaders = laws.forEach(base.flock.leaders ?? "", leaders);
   } else if (name === "target") {
     wanted.flock.target = value === "opposed" ? opposedTargets(leaders) : value;
   } else {
@@ -31,15 +31,15 @@ export function changed(base, values, name, value) {
     wanted.flock.target = Number(value) > 1 ? opposedTargets(Number(value)) : "cw";
   }
   if (name === "n_leaders" && wanted.flock.leaders?.includes(",")) {
-    wanted.flock.leaders = policiesOf(wanted.flock.leaders, Number(value));
+    wanted.flock.leaders = laws.forEach(wanted.flock.leaders, Number(value));
   }
-  if (wanted.flock.leaders === "you") {
+  if (wanted.flock.leaders === YOU) {
     if (name === "leaders" && leaders === 0) {
       wanted.flock.n_leaders = "1";
     }
-    wanted.beside ??= { leaders: EVERY_SUBSTEP };
+    wanted.beside ??= { leaders: laws.atEverySubstep };
   }
-  if (name === "leaders" && value !== "you" && base.flock.leaders === "you") {
+  if (name === "leaders" && value !== YOU && base.flock.leaders === YOU) {
     wanted.beside = null;
   }
   return wanted;
@@ -63,17 +63,17 @@ export class Flocks {
   signature = "";
   isRecorded = false;
 
-  /** `kinds`: those of the parameters; `series`: the names of the quantities; `version`: that of the package. */
-  constructor(simulator, { kinds, series, phases, version }) {
-    Object.assign(this, { simulator, kinds, series, phases, version });
+  /** `kinds`: those of the parameters; `laws`: the simulator's table; `series`: the names of the quantities; `version`: that of the package. */
+  constructor(simulator, { kinds, laws, series, phases, version }) {
+    Object.assign(this, { simulator, kinds, laws: new Laws(laws), series, phases, version });
   }
 
   get areYours() {
-    return !this.isRecorded && this.shown?.flock.leaders === "you";
+    return !this.isRecorded && this.shown?.flock.leaders === YOU;
   }
 
   get policy() {
-    return this.shown.flock.leaders ?? EVERY_SUBSTEP;
+    return this.shown.flock.leaders ?? this.laws.atEverySubstep;
   }
 
   /** Has the simulator open or change the flocks; returns whether they continue from where they were. */
@@ -113,8 +113,8 @@ export class Flocks {
   #describe(answer, wanted, place) {
     const fields = place === 0 ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = answer.parameters.n_leaders;
-    const policy = fields.leaders ?? EVERY_SUBSTEP;
-    const steering = policy.includes(",") ? "each its own" : LEADERS[policy] ?? policy;
+    const policy = fields.leaders ?? this.laws.atEverySubstep;
+    const steering = policy.includes(",") ? "each its own" : this.laws.words(policy);
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
     return this.described(answer, { name, seed: fields.seed ?? "0", version: this.version });
   }

@@ -30,12 +30,12 @@ export class LivePage {
       ...rest, key: name, decimals: 2, words: label.replace(/^[^,]*/, (word) => `${word} ${symbol}`.trim()).replace("_o", "ₒ"),
     }));
     const series = this.quantities.map(({ key }) => key);
-    this.flocks = new Flocks(simulator, { kinds: this.kinds, series, phases: described.phases, version: about.version });
+    this.flocks = new Flocks(simulator, { kinds: this.kinds, laws: described.laws, series, phases: described.phases, version: about.version });
     this.view = new View(this.flocks, this, about.orders, (time) => this.seek(time));
     this.hand = new Rudder(byId("thumb"), () => this.flocks.areYours);
     this.playback = new Playback(this);
     const meanings = Object.fromEntries(described.fields.map(({ name, meaning, accepted }) => [name, `${meaning} Accepted: ${accepted}`]));
-    this.controls = new Controls(meanings, described.policies, (name, value) => this.set(name, value));
+    this.controls = new Controls(meanings, this.flocks.laws, (name, value) => this.set(name, value));
     byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
     byId("color-key").append(...colorKey());
     byId("lessons").append(...LESSONS.map(({ name, title, link }) => {
@@ -102,7 +102,7 @@ export class LivePage {
 
   /** Changes one parameter, from where the flock is if that is possible. */
   set(name, value) {
-    this.wanted = changed(this.wanted ?? this.flocks.asked, this.flocks.values, name, value);
+    this.wanted = changed(this.wanted ?? this.flocks.asked, this.flocks.values, this.flocks.laws, name, value);
     this.#change();
   }
 

@@ -114,10 +114,10 @@ export function commandLine(flock, seconds) {
     const isList = value.includes(",") || value.includes(";");
     words.push(`--set ${isList ? `'${name}=${listed(value)}'` : `${name}=${value}`}`);
   }
-  const policy = flock.leaders ?? "paper's law at every substep";
-  words.push(...(policy === "paper's law at every substep" ? [] : [`--policy "${policy}"`]), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
+  const { leaders = "" } = flock;
+  words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
   // A flock whose leaders have policies of their own is no command.
-  return policy.includes(",") ? "" : words.join(" ");
+  return leaders.includes(",") ? "" : words.join(" ");
 }
 
 /** A list as TOML has it; a row of numbers that ends in a semicolon is one of several. */
@@ -136,10 +136,10 @@ export function pythonText(flocks, seconds, kinds) {
 function simulation(flock, seconds, kinds, name) {
   const changes = Object.entries(flock).filter(([name]) => isOwn(name))
     .map(([name, value]) => `${name}=${pythonValue(value, kinds[name])}`);
-  const { leaders = "paper's law at every substep" } = flock;
+  const { leaders = "" } = flock;
   const each = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
   const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
-  const policy = leaders === "paper's law at every substep" ? "" : `, policy=${steering}`;
+  const policy = leaders ? `, policy=${steering}` : "";
   return [
     "",
     `parameters = flockenv.FlockParameters.preset("${flock.preset ?? "simulation"}")${changes.length > 0 ? `.replace(\n    ${changes.join(", ")}\n)` : ""}`,

@@ -1,6 +1,7 @@
 // A flock taken along: the file of its recording, and a file that is dropped onto the page.
 
 import { GrowingRun } from "./growing_run.mjs";
+import { YOU } from "./laws.mjs";
 import { array, readNpz, writeNpz } from "./npz.mjs";
 import { checkedArrays } from "./recording.mjs";
 import { commandLine, pythonText, tomlOf, valuesOfToml } from "./request.mjs";
@@ -94,7 +95,7 @@ export function derivedOf(arrays, { target, boats }, names) {
 
 /** Writes the same flocks as commands and in Python. */
 export function showTexts({ shown, kinds }) {
-  const isYours = shown.flock.leaders === "you";
+  const isYours = shown.flock.leaders === YOU;
   const { leaders: _, ...lawful } = shown.flock;
   const flocks = [isYours ? lawful : shown.flock];
   if (shown.beside && !isYours) {

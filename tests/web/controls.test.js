@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { opposedTargets, policiesOf } from "../../web/controls.mjs";
+import { opposedTargets } from "../../web/controls.mjs";
+import { Laws } from "../../web/laws.mjs";
 import { readLink } from "../../web/request.mjs";
 import { LESSONS, OPENING, wordsOf } from "../../web/lessons.mjs";
 
@@ -14,11 +15,19 @@ test("opposed leaders are two halves, the larger one clockwise", () => {
   assert.equal(opposedTargets(4), "cw,cw,ccw,ccw");
 });
 
+const laws = new Laws(["paper's law at every substep", "paper's law", "tuned law", "learned"].map((name) => ({ name })));
+
+test("laws that differ only in how often they act are offered once for all leaders, and each for one of them", () => {
+  assert.deepEqual(laws.ofAll, ["paper's law at every substep", "tuned law", "learned", "you"]);
+  assert.deepEqual(laws.ofAll.map((name) => laws.words(name)), ["the paper's law", "the tuned law", "learned steering", "you"]);
+  assert.deepEqual(laws.ofEach, ["paper's law", "tuned law", "learned"]);
+});
+
 test("each leader has a policy, the last one's if no other is known", () => {
-  assert.equal(policiesOf("paper's law at every substep", 3), "paper's law,paper's law,paper's law");
-  assert.equal(policiesOf("learned,tuned law", 3), "learned,tuned law,tuned law");
-  assert.equal(policiesOf("learned,tuned law", 1), "learned");
-  assert.equal(policiesOf("you", 2), "paper's law,paper's law");
+  assert.equal(laws.forEach("paper's law at every substep", 3), "paper's law,paper's law,paper's law");
+  assert.equal(laws.forEach("learned,tuned law", 3), "learned,tuned law,tuned law");
+  assert.equal(laws.forEach("learned,tuned law", 1), "learned");
+  assert.equal(laws.forEach("you", 2), "paper's law,paper's law");
 });
 
 test("a lesson has a short sentence or two before and after, and so has the opening", () => {

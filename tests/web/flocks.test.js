@@ -2,40 +2,42 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { changed, EVERY_SUBSTEP } from "../../web/flocks.mjs";
+import { changed } from "../../web/flocks.mjs";
+import { Laws } from "../../web/laws.mjs";
 
 const values = { n_boats: "27", n_leaders: "4", target: "cw" };
+const laws = new Laws([{ name: "a law at every substep" }, { name: "a law" }]);
 const base = { flock: { preset: "paper", seed: "7", bw_s: "0.3" }, beside: null };
 
 test("a field changes, and what it was changed from does not", () => {
   const before = structuredClone(base);
-  assert.deepEqual(changed(base, values, "bw_s", "1"), { flock: { ...base.flock, bw_s: "1" }, beside: null });
+  assert.deepEqual(changed(base, values, laws, "bw_s", "1"), { flock: { ...base.flock, bw_s: "1" }, beside: null });
   assert.deepEqual(base, before);
 });
 
 test("a preset keeps boats, leaders, seed and policy alone", () => {
-  const { flock } = changed({ ...base, flock: { ...base.flock, leaders: "learned" } }, values, "preset", "experiment");
+  const { flock } = changed({ ...base, flock: { ...base.flock, leaders: "learned" } }, values, laws, "preset", "experiment");
   assert.deepEqual(flock, { preset: "experiment", n_boats: "27", n_leaders: "4", seed: "7", leaders: "learned" });
 });
 
 test("whoever steers gets a leader, and the law beside it, which goes when nobody steers", () => {
-  const yours = changed(base, { ...values, n_leaders: "0" }, "leaders", "you");
+  const yours = changed(base, { ...values, n_leaders: "0" }, laws, "leaders", "you");
   assert.equal(yours.flock.n_leaders, "1");
-  assert.deepEqual(yours.beside, { leaders: EVERY_SUBSTEP });
-  assert.equal(changed(base, values, "leaders", "you").flock.n_leaders, undefined);
-  assert.equal(changed(yours, values, "leaders", "learned").beside, null);
-  assert.deepEqual(changed({ ...base, beside: { n_leaders: "1" } }, values, "leaders", "learned").beside, { n_leaders: "1" });
+  assert.deepEqual(yours.beside, { leaders: "a law at every substep" });
+  assert.equal(changed(base, values, laws, "leaders", "you").flock.n_leaders, undefined);
+  assert.equal(changed(yours, values, laws, "leaders", "learned").beside, null);
+  assert.deepEqual(changed({ ...base, beside: { n_leaders: "1" } }, values, laws, "leaders", "learned").beside, { n_leaders: "1" });
 });
 
 test("opposed targets follow the number of leaders", () => {
-  assert.equal(changed(base, values, "target", "opposed").flock.target, "cw,cw,ccw,ccw");
+  assert.equal(changed(base, values, laws, "target", "opposed").flock.target, "cw,cw,ccw,ccw");
   const opposed = { ...values, target: "cw,ccw" };
-  assert.equal(changed(base, opposed, "n_leaders", "3").flock.target, "cw,cw,ccw");
-  assert.equal(changed(base, opposed, "n_leaders", "1").flock.target, "cw");
-  assert.equal(changed(base, values, "n_leaders", "3").flock.target, undefined);
+  assert.equal(changed(base, opposed, laws, "n_leaders", "3").flock.target, "cw,cw,ccw");
+  assert.equal(changed(base, opposed, laws, "n_leaders", "1").flock.target, "cw");
+  assert.equal(changed(base, values, laws, "n_leaders", "3").flock.target, undefined);
 });
 
 test("what runs beside differs in one field, or nothing does", () => {
-  assert.deepEqual(changed(base, values, "beside", "n_leaders=0").beside, { n_leaders: "0" });
-  assert.equal(changed({ ...base, beside: { n_leaders: "0" } }, values, "beside", "").beside, null);
+  assert.deepEqual(changed(base, values, laws, "beside", "n_leaders=0").beside, { n_leaders: "0" });
+  assert.equal(changed({ ...base, beside: { n_leaders: "0" } }, values, laws, "beside", "").beside, null);
 });

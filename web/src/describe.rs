@@ -1,7 +1,6 @@
 //! What there is, and what a flock is like, as JSON.
 
 use crate::json::written;
-use crate::leaders::POLICIES;
 use crate::live::quantities;
 use flockenv::analysis::quantities::Quantity;
 use flockenv::draw::palette::style_sheet;
@@ -9,6 +8,7 @@ use flockenv::environment::observation::ObservationLayout;
 use flockenv::geometry::Hull;
 use flockenv::integrator::Phase;
 use flockenv::parameters::{Field, FlockParameters, Kind, Preset};
+use flockenv::policies::LawName;
 use serde_json::{Value as Json, json};
 
 fn kind_name(kind: Kind) -> &'static str {
@@ -33,13 +33,13 @@ fn field(each: &Field<FlockParameters>) -> Json {
     })
 }
 
-/// Presets, parameters, policies, phases, quantities, entries of an observation, and the colors.
+/// Presets, parameters, laws, phases, quantities, entries of an observation, and the colors.
 pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
     json!({
         "presets": Preset::names(),
-        "policies": POLICIES,
+        "laws": LawName::ALL.iter().map(|law| written(&law.named())).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
         "quantities": quantities().map(|each| written(&Quantity::named(each))).collect::<Json>(),

@@ -8,15 +8,6 @@ use flockenv::{Flock, FlockError, Result};
 /// The paper's law at every substep, by the name that the command line has for it.
 pub(crate) const EVERY_SUBSTEP: &str = LawName::EverySubstep.name();
 
-/// The policies, by the names that the command line has for them; `you` is the visitor.
-pub(crate) const POLICIES: [&str; 5] = [
-    EVERY_SUBSTEP,
-    LawName::Paper.name(),
-    LawName::Tuned.name(),
-    LawName::Learned.name(),
-    "you",
-];
-
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
 
@@ -115,10 +106,11 @@ fn refused(name: &str, accepted: &str) -> FlockError {
     FlockError::parameter("leaders", name, accepted)
 }
 
-/// The law of a name that the page has, but for [`EVERY_SUBSTEP`].
+/// The law of a name, which acts at every decision.
 fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
-    if !POLICIES[1..4].contains(&name) {
-        return Err(refused(name, &POLICIES.join(", ")));
+    let names = LawName::names();
+    if name == EVERY_SUBSTEP || !names.contains(&name) {
+        return Err(refused(name, &format!("{}, you", names.join(", "))));
     }
     let found = Law::named(name, parameters.pool.name());
     found.map_err(|_| refused(name, "this law is for the pools that have a name"))

@@ -1,0 +1,35 @@
+// How leaders may steer: by the laws that the simulator lists, or by the visitor's hand.
+
+/** The visitor, where links and requests have a law's name. */
+export const YOU = "you";
+
+export class Laws {
+  /** `listed`: the simulator's table. The first law acts at every substep, the others at each decision of a leader. */
+  constructor(listed) {
+    const names = listed.map(({ name }) => name);
+    [this.atEverySubstep] = names;
+    this.ofEach = names.slice(1);
+  }
+
+  /** What all leaders together may steer by: of laws that have the same words the first, and the visitor. */
+  get ofAll() {
+    const alike = [this.atEverySubstep, ...this.ofEach].filter((name, place, names) =>
+      names.findIndex((each) => this.words(each) === this.words(name)) === place);
+    return [...alike, YOU];
+  }
+
+  /** A law in words, which do not say how often it acts. */
+  words(name) {
+    const kind = name.replace(/ at every .*/, "");
+    if (kind === YOU) {
+      return kind;
+    }
+    return kind.endsWith(" law") ? `the ${kind}` : `${kind} steering`;
+  }
+
+  /** A law for each of so many leaders: those of a list, or the one law; one for all where there are not several. */
+  forEach(policy, leaders) {
+    const given = policy.split(",").map((name) => (this.ofEach.includes(name) ? name : this.ofEach[0]));
+    return leaders > 1 ? Array.from({ length: leaders }, (_, k) => given[k] ?? given.at(-1)).join(",") : given[0];
+  }
+}
