@@ -1,4 +1,4 @@
-"""Judge trainings by `examples/train_leaders.py` in the same fresh flocks, and draw their curves.
+"""Judge trainings by `examples/train_leaders.py` in the same fresh flocks.
 
     for seed in 0 1 2; do python examples/train_leaders.py $seed 2000 16; done
     python baselines/judge_trainings.py results/train_leaders/* --out docs/training/wide
@@ -36,7 +36,6 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from flockenv import FlockParameters
 from flockenv.comparison import compare_leaders
@@ -44,20 +43,6 @@ from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import mean_interval, paired_difference
 
 LAWS = ("paper's law", "tuned law")
-#: Decisions per flock-hour, three leaders with one every second; episodes over the horizon.
-SAMPLES_PER_HOUR, RETURN_PER_REWARD = 3 * 3600, 480.0 / 40.0
-
-
-def curve(folder: Path) -> pd.DataFrame:
-    """Return the mean reward of the last 384 episodes of a training, against flock-hours."""
-    log = pd.read_csv(folder / "progress.csv").dropna(subset="rollout/ep_rew_mean")
-    return pd.DataFrame(
-        {
-            "seed": folder.name,
-            "flock_hours": log["time/total_timesteps"] / SAMPLES_PER_HOUR,
-            "reward": log["rollout/ep_rew_mean"] / RETURN_PER_REWARD,
-        }
-    )
 
 
 def several(folders: list[Path]) -> bool:
@@ -98,16 +83,6 @@ def algorithms(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def draw(curves: pd.DataFrame, path: Path) -> None:
-    """Draw the flocks of training, whose leaders explore."""
-    axes = (figure := Figure((6.4, 3.6), layout="constrained")).subplots()
-    for seed, own in curves.groupby("seed"):
-        axes.plot(own["flock_hours"], own["reward"], label=f"seed {seed}")
-    axes.set(xlabel="simulated time of all flocks (hours)", ylabel="mean reward")
-    axes.legend(frameon=False, fontsize=8)
-    figure.savefig(path, dpi=150)
-
-
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folders", nargs="+", type=Path)
@@ -115,16 +90,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/judged"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    tables = {"evaluation": judged(options.folders, options.flocks)}
-    if several(options.folders) or not (options.folders[0] / "progress.csv").exists():
-        tables["algorithms"] = algorithms(tables["evaluation"])
-    else:
-        tables["learning_curves"] = pd.concat(map(curve, options.folders))
-        draw(tables["learning_curves"], options.out / "learning_curves.png")
+    policies = judged(options.folders, options.flocks)
+    tables = {"evaluation": policies, "algorithms": algorithms(policies)}
     for name, table in tables.items():
         table.to_csv(options.out / f"{name}.csv", index=False, float_format="%.4f")
-        if name != "learning_curves":
-            print(table.round(3).to_string(index=False))
+        print(table.round(3).to_string(index=False))
 
 
 if __name__ == "__main__":

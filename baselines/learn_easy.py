@@ -21,7 +21,6 @@ from typing import Any
 import gymnasium
 import numpy as np
 import torch
-from matplotlib.figure import Figure
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import LinearSchedule
@@ -109,21 +108,6 @@ def learn(seed: int, samples: int, law: np.ndarray) -> list[dict[str, Any]]:
     return curve.rows
 
 
-def draw(rows: list[dict[str, Any]], path: Path) -> None:
-    """Draw the curves, and the laws as level lines."""
-    figure = Figure((6.4, 3.6), layout="constrained")
-    axes = figure.subplots()
-    for row, style in zip((row for row in rows if "seed" not in row), ("--", ":"), strict=True):
-        axes.axhline(row["signed_order"], color="0.4", lw=1, ls=style, label=row["policy"])
-    for seed in dict.fromkeys(row["seed"] for row in rows if "seed" in row):
-        own = [row for row in rows if row.get("seed") == seed and row["policy"] == "PPO"]
-        x, y = ([row[name] for row in own] for name in ("cpu_s", "signed_order"))
-        axes.plot(x, y, ".-", label=f"PPO, seed {seed}")
-    axes.set(xlabel="processor time of the training (s)", ylabel="mean signed order")
-    axes.legend(fontsize=8, frameon=False)
-    figure.savefig(path, dpi=150)
-
-
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", nargs="+", type=int, default=[0, 1, 2, 3, 4])
@@ -142,7 +126,6 @@ def main(arguments: list[str] | None = None) -> None:
             for row in rows:
                 shown = {n: round(v, 4) if isinstance(v, float) else v for n, v in row.items()}
                 table.writerow(shown)
-    draw(rows, options.out / "curve.png")
     print(f"written to {options.out}")
 
 

@@ -18,7 +18,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 from plan_ahead import flocks, learned
 
 from flockenv.runs.seeds import release_seeds
@@ -73,19 +72,7 @@ def main(arguments: list[str] | None = None) -> None:
             row = {"horizon_s": horizon, "paired": paired, "difference": mean, "scatter": scatter}
             rows.append({**row, "z": z / spend, "z_low": low, "z_high": high})
     options.out.mkdir(parents=True, exist_ok=True)
-    table = pd.DataFrame(rows)
-    table.to_csv(options.out / "signal.csv", index=False, float_format="%.5g")
-    figure = Figure(figsize=(6.0, 3.6), layout="constrained")
-    axes = figure.subplots()
-    for paired, name in ((True, "one state, one noise"), (False, "other flocks")):
-        own = table[table["paired"] == paired]
-        errors = [own["z"] - own["z_low"], own["z_high"] - own["z"]]
-        axes.errorbar(own["horizon_s"], own["z"], errors, fmt="o-", capsize=2, label=name)
-    axes.axhline(0.0, color="gray", linewidth=0.8)
-    axes.set_xlabel("seconds after the branch")
-    axes.set_ylabel("z of the order per √flock-hour")
-    axes.legend(frameon=False)
-    figure.savefig(options.out / "signal.png", dpi=150)
+    pd.DataFrame(rows).to_csv(options.out / "signal.csv", index=False, float_format="%.5g")
 
 
 if __name__ == "__main__":

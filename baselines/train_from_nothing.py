@@ -27,7 +27,6 @@ from typing import Any
 
 import pandas as pd
 import torch
-from matplotlib.figure import Figure
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -142,34 +141,13 @@ def judged(
 
 
 def write(pool: str, policy: dict[str, Any], rows: list[dict[str, Any]], folder: Path) -> None:
-    """Judge the policy beside the laws in fresh flocks, and write and draw the learning curve."""
+    """Judge the policy beside the laws in fresh flocks, and write the learning curve."""
     end = {"stage": "end", "cpu_s": rows[-1]["cpu_s"]}
     policies = {**dict(zip(LAWS, LAWS, strict=True)), **policy}
     last = judged(pool, policies, release_seeds("from_nothing", JUDGES[1]), end)
     table = pd.DataFrame(rows + last)[list(COLUMNS)]
     table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
-    draw(folder.parent, pool)
     print(f"written to {folder}")
-
-
-def draw(folder: Path, pool: str) -> None:
-    """Draw the learning curves of all seeds of a pool, and the laws as level lines."""
-    axes = (figure := Figure((6.4, 3.6), layout="constrained")).subplots()
-    for path in sorted(folder.glob(f"{pool}_*/curve.csv")):
-        rows = pd.read_csv(path)
-        own = rows[rows["stage"] != "end"]
-        axes.plot(
-            own["cpu_s"] / 60,
-            own["signed_order"],
-            ".-",
-            label=f"seed {path.parent.name.removeprefix(f'{pool}_')}",
-        )
-    for name, style in zip(LAWS, ("--", "-.", ":"), strict=True):
-        level = rows.loc[rows["policy"] == name, "signed_order"].item()
-        axes.axhline(level, color="0.4", lw=1, ls=style, label=name)
-    axes.set(xlabel="processor time of the training (min)", ylabel="mean signed order")
-    axes.legend(frameon=False, fontsize=8)
-    figure.savefig(folder / f"{pool}.png", dpi=150)
 
 
 def main(pool: str, seed: int, folder: Path) -> None:

@@ -17,4 +17,4 @@ def test_a_short_run(script, tmp_path, monkeypatch) -> None:
     assert list(rows["policy"][-4:]) == [*script.LAWS, "PPO"]
     assert rows["flock_hours"].dropna().is_monotonic_increasing
     assert rows["stage"].nunique() == 3
-    assert all((tmp_path / name).exists() for name in ("narrow_5/model.zip", "narrow.png"))
+    assert (tmp_path / "narrow_5" / "model.zip").exists()
