@@ -21,10 +21,15 @@ from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 
 environment_pages.write()
 
-# Sphinx links pages below this folder alone.
+# Sphinx knows pages below this folder alone.
 _paper = Path(__file__).parent / "paper"
 shutil.rmtree(_paper, ignore_errors=True)
 shutil.copytree(_paper.parents[1] / "paper", _paper, ignore=shutil.ignore_patterns("software"))
+_notebooks = Path(__file__).parent / "examples"
+shutil.rmtree(_notebooks, ignore_errors=True)
+_notebooks.mkdir()
+for _notebook in (_notebooks.parents[1] / "examples").glob("*.ipynb"):
+    shutil.copy2(_notebook, _notebooks)
 
 # What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
 html_extra_path = ["_build/shown"]
@@ -121,8 +126,8 @@ def _link_environment_pages(
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
     # Links to and from the folder paper, where it was copied to; a folder has no page.
-    for link, here in (("../paper/", "paper/"), ("../docs/", "../")):
-        source[0] = source[0].replace(f"]({link}", f"]({here}")
+    link, here = ("../docs/", "../") if "/" in docname else ("../paper/", "paper/")
+    source[0] = source[0].replace(f"]({link}", f"]({here}")
     source[0] = source[0].replace("[results/](results/)", "`results/`")
 
 

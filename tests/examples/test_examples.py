@@ -1,11 +1,14 @@
 """Every example that people copy runs as it stands, with a small budget."""
 
 import json
+import re
 import runpy
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
+from PIL import Image
 
 plt = pytest.importorskip("matplotlib.pyplot")
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -35,19 +38,39 @@ def test_an_example(name, monkeypatch, tmp_path, capsys):
     assert made or name == "own_reward.py"
 
 
-def test_the_notebook():
-    cells = json.loads((EXAMPLES / "order_against_noise.ipynb").read_text())["cells"]
-    names: dict[str, object] = {}
+def _run(notebook: str, **smaller: str) -> dict[str, Any]:
+    """Return the names that a notebook defines if some of them have smaller values."""
+    cells = json.loads((EXAMPLES / notebook).read_text())["cells"]
+    names: dict[str, Any] = {}
     for cell in cells:
         if cell["cell_type"] == "code":
             assert cell["outputs"] == []
             source = "".join(cell["source"])
-            source = source.replace("MINUTES = 8", "MINUTES = 0.5").replace("range(6)", "range(2)")
+            for name, value in smaller.items():
+                source = re.sub(rf"^{name} = [^#\n]*", f"{name} = {value}  ", source, flags=re.M)
             exec(source, names)  # noqa: S102 - the notebook is ours
+    assert all(f"{names[name]!r}" == value for name, value in smaller.items())
+    return names
+
+
+def test_the_notebook_on_noise():
+    names = _run("order_against_noise.ipynb", MINUTES="0.5", SEEDS="range(0, 2)")
     assert names["rotation"].shape == (len(names["NOISES_S"]), 2)
     assert (names["order"] <= 1.0).all()
+
+
+def test_the_notebook_on_training(tmp_path):
+    pytest.importorskip("stable_baselines3")
+    pytest.importorskip("IPython")
+    names = _run("train_compare_film.ipynb", DECISIONS="1", FLOCKS="2")
+    assert names["model"].num_timesteps == 128 * 4 * 64
+    assert [*names["means"].index] == ["mine", "damped law", "paper's law"]
+    with Image.open(tmp_path / "film.gif") as film:
+        assert (film.size, film.n_frames) == ((600, 300), len(names["times_s"]))
 
 
 def test_every_example_is_run():
     found = {path.name for path in EXAMPLES.glob("*.py")}
     assert found == {*SMALL, "train_leaders.py"}
+    notebooks = {path.name for path in EXAMPLES.glob("*.ipynb")}
+    assert notebooks == {"order_against_noise.ipynb", "train_compare_film.ipynb"}
