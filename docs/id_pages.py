@@ -81,10 +81,10 @@ def page(env_id: str) -> str:
         "```python\nimport gymnasium\n\n"
         f'env = gymnasium.make("flockenv:{env_id}")\n'
         "observation, info = env.reset(seed=7)\n```",
-        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. Every '
-        "[option](tables.md) can be given to both, and [`LeadersEnv`](LeadersEnv.md) specifies the "
-        f"task. In the film (seed {SEED}, a flock that follows) the leaders steer by the policy "
-        f"`{good_policy(env_id)}`{_told(env_id)}. It plays ten times as fast as they do.",
+        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. Both '
+        "take every [option](tables.md), and [`LeadersEnv`](LeadersEnv.md) specifies the task. In "
+        f"the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} (seed "
+        f"{SEED}, a flock that follows), at ten times real time.",
         spaces,
     ]
     if env_id != LEADERS:
@@ -147,7 +147,7 @@ def good_policy(env_id: str) -> str:
 
 def _told(env_id: str) -> str:
     is_each = isinstance(ENVIRONMENTS[env_id].options.get("target"), tuple)
-    return ", all told the direction of leader 0" if is_each else ""
+    return ", which are both told the direction of leader 0" if is_each else ""
 
 
 def film(env_id: str) -> Iterator[Image.Image]:
@@ -193,8 +193,8 @@ def _suite(task: str) -> tuple[Plot, str]:
     }
     own = float(found[0]["signed_order"]) - float(found[0]["score"])
     words = (
-        "The mean signed order of each policy stands beside its name. The bars are 95 % intervals "
-        "of its difference from the tuned law's over 256 episodes ([v2.csv](../suite/v2.csv)). "
+        "The number beside a policy is its mean signed order. The dot is its difference from the "
+        "tuned law in the same 256 episodes, with a 95 % interval ([v2.csv](../suite/v2.csv)). "
         f"[The suite](../suite.md) scores this environment as its task `{task}`, and has "
         "trained policies too."
     )
@@ -209,8 +209,8 @@ def _leaders() -> tuple[Plot, str]:
     found = [row for name in LADDER for row in rows(MEANS, **AT_THREE, policy=name)]
     intervals = {row["policy"]: _interval(row, "signed_order", "signed_order_") for row in found}
     words = (
-        "Mean signed order with 95 % intervals over 256 episodes at bw = 0.31 s, where this "
-        "environment has 0.3 s ([means.csv](../leaders/means.csv)). [Leaders compared]"
+        "Mean signed order with 95 % intervals, in 256 episodes with a little more noise than "
+        "here: bw = 0.31 s ([means.csv](../leaders/means.csv)). [Leaders compared]"
         "(../leaders.md) has other numbers of leaders and the pool `narrow`, and [Train leaders]"
         "(../train.md) has learning curves."
     )

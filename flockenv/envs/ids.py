@@ -32,9 +32,8 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     # Few boats, many leaders and few numbers observed, so that samples show the order:
     # baselines/learn_easy.py.
     "flockenv/Order-easy-v0": Environment(
-        "The environment to start with. Four of ten boats lead, they observe few numbers, and the "
-        "order answers within seconds, so that plain PPO learns to lead within two minutes of "
-        "processor time.",
+        "The environment to start with: four of ten boats lead and see few numbers. The order "
+        "answers within seconds, so that plain PPO learns to lead in two minutes of one core.",
         {
             "n_boats": 10,
             "n_leaders": 4,
@@ -49,30 +48,35 @@ ENVIRONMENTS: Mapping[str, Environment] = {
             "physics": "training",
         },
     ),
-    "flockenv/OneLeader-v0": _suite("One leader at the critical noise.", 1),
-    "flockenv/ThreeLeaders-v0": _suite("Three leaders at the critical noise.", 3),
+    "flockenv/OneLeader-v0": _suite(
+        "How far does one leader get? It leads 26 boats at the critical noise.", 1
+    ),
+    "flockenv/ThreeLeaders-v0": _suite(
+        "How do leaders share their work? Three lead 24 boats at the critical noise.", 3
+    ),
     "flockenv/Reversal-v0": _suite(
-        "The target alternates every four minutes, as in figure 7 of the paper: leaders have to "
-        "turn a flock that circles the other way.",
+        "Can leaders turn a flock that circles the other way? The target alternates every four "
+        "minutes, as in figure 7 of the paper.",
         3,
         960.0,
         target="alternate",
     ),
     "flockenv/Camera-v0": _suite(
-        "The leaders see through a camera that misses 2 % of the positions and whose picture is "
+        "Does a policy work behind a camera? It misses 2 % of the positions, and its picture is "
         "one frame late.",
         3,
         dropout_rate=0.02,
         delay_frames=1,
     ),
     "flockenv/Noises-v0": _suite(
-        "The noise of each episode is drawn from half to 1.25 times the critical one.",
+        "Does one policy work at any noise? Each episode draws it, from half to 1.25 times the "
+        "critical one.",
         3,
         bw_s=(0.155, 0.3875),
     ),
     "flockenv/Misinformed-v0": _suite(
-        "Leader 1 gets the wrong direction; the order counts towards the direction of leader 0. It "
-        "needs two roles: with one policy for both leaders the mean order is 0.",
+        "Can two leaders play two roles? Leader 1 gets the wrong direction, and the order counts "
+        "towards the direction of leader 0. With one policy for both, the mean order is 0.",
         2,
         target=("cw", "ccw"),
     ),
