@@ -110,7 +110,7 @@ class LeadersTaskClass(TaskClass):
         return Composite({GROUP: env.observation_spec_unbatched[GROUP]})
 
     def state_spec(self, env: EnvBase) -> Composite | None:
-        """Return the spec of the flock's state, None where the configuration has none."""
+        """Return the spec of the flock's state, None if the configuration has none."""
         if self.config.get("state", "none") == "none":
             return None
         return Composite({"state": env.observation_spec_unbatched["state"]})
@@ -162,7 +162,7 @@ task_config_registry.update(
 def network_policy(
     experiment: Experiment, provenance: Mapping[str, str] | None = None
 ) -> NetworkPolicy:
-    """Return the policy of an experiment's leaders, which ``save`` writes for every command here.
+    """Return the policy of an experiment's leaders; every command reads the file that it saves.
 
     Parameters
     ----------
@@ -175,8 +175,8 @@ def network_policy(
     Raises
     ------
     ParameterError
-        For another environment or policy: graph networks see other leaders' observations, which a
-        leader here does not.
+        For another environment or policy: graph networks see other leaders' observations, but a
+        leader here sees only its own.
     """
     env = experiment.test_env.base_env
     if not isinstance(env, LeadersEnv):

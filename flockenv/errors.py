@@ -22,8 +22,8 @@ __all__ = [
 class UnknownOptionError(ParameterError, TypeError):
     """An environment was given a keyword argument that is none of its options.
 
-    A `TypeError` too, as of any other function: libraries try out optional arguments and leave out
-    those that are refused so (TorchRL's ``GymEnv``: ``frameskip``).
+    It is a `TypeError`, too, because libraries try out optional arguments and leave out those that
+    raise one (TorchRL's ``GymEnv``: ``frameskip``).
     """
 
 

@@ -134,8 +134,8 @@ class Statistics:
     worst_overlap_cm : float
         Deepest overlap at the start of a substep in cm, positive.
     displaced_angular_momentum_cm2_s : float
-        Angular momentum about the pool's center that came or went where hulls that overlapped
-        deeply were moved apart, in cm²/s for boats of mass 1: its changes, each positive, summed.
+        Sum of the absolute changes of the angular momentum about the pool's center, in cm²/s for
+        boats of mass 1, when deeply overlapping hulls were moved apart.
     """
 
     substeps: int
@@ -189,7 +189,7 @@ class Flock:
 
     @classmethod
     def from_snapshot(cls, snapshot: bytes, noise_seed: int | None = None) -> Self:
-        """Return the flock of a snapshot, with its noise or other noise, as `restore` has it.
+        """Return the flock of a snapshot; `noise_seed` is as for `restore`.
 
         A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
@@ -261,7 +261,7 @@ class Flock:
 
     @property
     def statistics(self) -> Statistics:
-        """What the substeps since the flock was made did."""
+        """Sums and worst cases of the substeps since the flock was made."""
         return Statistics(**self.core.statistics)
 
     def set_state(
@@ -283,8 +283,8 @@ class Flock:
         time_s
             Time in s, 0 to 1e9.
         allow_overlap
-            Accept hulls that overlap each other or a wall by more than a hundredth of their radius,
-            which is more than contacts leave; they are moved apart in the next substeps.
+            Accept hulls that overlap each other or a wall by more than a hundredth of their radius;
+            contacts leave less. The next substeps move them apart.
 
         Raises
         ------
@@ -338,7 +338,7 @@ class Flock:
     def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
         """Return the order parameters of the normal boats, or of all boats, now.
 
-        A ParameterError says so if there is no such boat.
+        If there is no such boat, this is a ParameterError.
         """
         return OrderParameters(*self.core.order_parameters(include_leaders))
 
@@ -363,12 +363,12 @@ class Flock:
         noise_seed
             None: the noise of the snapshot, so that all flocks that continue from it meet the same
             noise. A whole number: other noise from here on, the same for every flock with this
-            number, and never the noise of a flock whose `seed` it is.
+            number, and never the noise of a flock with this `seed`.
 
         Raises
         ------
         ParameterError
-            For bytes that are no whole, unharmed snapshot, or that are one of a flock with other
+            For bytes that are no whole, unharmed snapshot, for the snapshot of a flock with other
             parameters, and for a noise_seed out of range; the flock is unchanged then.
         TypeError
             For a noise_seed that is no whole number.

@@ -111,8 +111,8 @@ class OrderParameters(_Recorded[float]):
 class OrderSeries(_Recorded[NDArray[np.float64]]):
     """Order parameters one after another: the fields of `OrderParameters` as float64 arrays (t,).
 
-    All are NaN if there is no boat to take them of; ``c_o`` and ``c_v`` are NaN for a single boat.
-    Columns that are not given are NaN. Series are equal if their columns are.
+    All are NaN if there is no boat; ``c_o`` and ``c_v`` are NaN for a single boat. Columns that are
+    not given are NaN. Series are equal if their columns are.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        Of a list of targets the first counts. Errors are those of `series`.
+        With a list of targets the first counts. Errors are those of `series`.
         """
         return self.series("signed_order", target)
 
@@ -279,7 +279,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
         """
         pyplot = require("matplotlib.pyplot", "plot")
         if self.time_s is None:
-            raise ParameterError("this series has no times: that of a recording does")
+            raise ParameterError("this series has no times: plot that of a recording")
         if not names:
             names = tuple(each.name for each in RECORDED if each.range and not each.unit)
         columns = {name: self.series(name, target) for name in names}
@@ -312,7 +312,7 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     Raises
     ------
     ParameterError
-        For other shapes, and for what is no number.
+        For other shapes, and for values that are no numbers.
     """
     try:
         states = [np.ma.asarray(each, np.float64).filled(np.nan) for each in (pose, velocity)]

@@ -126,13 +126,12 @@ class FlockParameters:
 
     @classmethod
     def critical_bw_s(cls, preset: str, pool: str | tuple[float, float]) -> float:
-        """Critical noise of 27 boats: where leaderless order is lost.
+        """Critical noise of 27 boats: the bw_s at which leaderless flocks lose their order.
 
-        The length of the backward phase, in s, at which mean Ψ_o of leaderless runs falls through
-        the middle between its ordered and its disordered level; measured by
-        ``baselines/critical_noise.py`` for Table 3's presets in both named pools, and for
-        ``"experiment"`` in ``"narrow"``. A ParameterError refuses an unknown preset or pool, and a
-        pool in which it has not been measured.
+        There the mean Ψ_o of leaderless runs falls through the middle between its ordered and its
+        disordered level. ``baselines/critical_noise.py`` measured it for Table 3's presets in both
+        named pools, and for ``"experiment"`` in ``"narrow"``. A ParameterError refuses other
+        presets and pools.
         """
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
@@ -151,15 +150,15 @@ class FlockParameters:
 
     @property
     def common_target(self) -> str | None:
-        """The direction that all leaders head for; None without leaders and if it is not one."""
+        """The direction that all leaders head for; None if they differ or there are no leaders."""
         targets = self.target if isinstance(self.target, tuple) else (self.target,)
         return targets[0] if self.n_leaders and len(set(targets)) == 1 else None
 
     def replace(self, **changes: Any) -> Self:
         """Return these parameters with some fields changed; see the class for the errors.
 
-        A hull of another size has a radius of gyration in the same ratio to that of a hull of even
-        mass, unless ``gyration_radius_cm`` is among the changes.
+        A hull of another size scales the radius of gyration along, unless ``gyration_radius_cm`` is
+        among the changes.
         """
         return self.of(_changed(self.core, changes))
 

@@ -32,11 +32,10 @@ _LAYERS = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU}
 class LeadersModule(TorchRLModule, ValueFunctionAPI):
     """RLlib's module for ``flockenv/Leaders-v0``: each leader's action from its own observation.
 
-    RLlib steps many environments at once only where each has one agent. `LeadersVectorEnv` is such
-    an environment: its agent observes all leaders and steers all. This module takes the observation
-    apart again, so that all leaders share one network, and gives the value of the whole
-    observation. It is for PPO and other algorithms with a value function, and for continuous
-    actions.
+    RLlib steps many environments at once only if each has one agent. The agent of
+    `LeadersVectorEnv` observes and steers all leaders. This module splits its observation, so that
+    all leaders share one network, and gives the value of the whole observation. It is for PPO and
+    other algorithms with a value function, and for continuous actions.
 
     ``RLModuleSpec(LeadersModule, model_config={"hidden": (64, 64)})``
 
@@ -79,7 +78,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         return values
 
     def network_policy(self, provenance: Mapping[str, str] | None = None) -> NetworkPolicy:
-        """Return the leaders' network as a policy, which ``save`` writes for every command here."""
+        """Return the leaders' network as a policy; every command reads the file that it saves."""
         space = self.observation_space
         return NetworkPolicy.from_module(self.mean, space, provenance=provenance)
 

@@ -61,7 +61,7 @@ def simulate(
 ) -> Recording:
     """Run a flock and record it: a pure function of its arguments.
 
-    Without a policy of its own the run is one call into the core, without the interpreter lock.
+    Under a law the run is one call into the core, which releases the interpreter lock.
 
     Parameters
     ----------
@@ -73,16 +73,16 @@ def simulate(
         Length of the run in s, from 0 s (one sample: the start) to 1e9 s. The run ends with the
         last sample.
     sample_hz
-        Samples per second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples: rates of
-        which 1/dt_s is no multiple change the course of the run within its numerical error.
+        Samples per second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples, so a
+        rate that does not divide 1/dt_s changes the run within its numerical error.
     policy
-        How leaders steer: None for the paper's law, eq. (10), at every substep; the name of
-        another policy, such as "learned" or "damped law", or the path of a policy's file; or an
-        object whose ``predict`` maps observations (k, size) to rudders (k,), clipped
-        to [-1, 1], such as a model of stable-baselines3. It observes the default layout, or that
-        of its attributes ``observation`` and ``mirror_to_target``; a model observes what it was
-        trained on. A dictionary has one of these for each of ``"leader_0"`` to
-        ``"leader_{k-1}"``; the law then acts at every control step.
+        How leaders steer: None for the paper's law, eq. (10), at every substep; the name of another
+        policy, such as "learned" or "damped law", or the path of a policy's file; or an object
+        whose ``predict`` maps observations (k, size) to rudders (k,), clipped to [-1, 1], such as a
+        model of stable-baselines3. It observes the default layout, or what its attributes
+        ``observation`` and ``mirror_to_target`` say; a model observes what it was trained on. A
+        dictionary has one of these for each of ``"leader_0"`` to ``"leader_{k-1}"``; the law then
+        acts at every control step.
     control_hz
         How many times per second policies decide; None: as often as a model was trained with, if
         its observation space says so, and otherwise 10. Policies of a dictionary may then decide at
@@ -102,7 +102,7 @@ def simulate(
         `Flock.set_state`. A recording: its last sample. Boats may not be further than a hull's
         width from the water.
     noise_seed
-        Of a start from a snapshot: other noise from there on, as `Flock.restore` has it.
+        Other noise after a start from a snapshot; see `Flock.restore`.
     schedule
         What changes on the way: pairs of a time in s from the start of the run and a dictionary of
         the parameters' fields that have other values from then on, after the sample at that time:
@@ -125,9 +125,9 @@ def simulate(
         For arguments out of range, unknown names of policies and pools that a policy is not made
         for, policies whose actions are no rudders, boats that do not fit the pool, a start that
         this flock cannot have, a noise_seed without a snapshot, a schedule that changes n_boats or
-        n_leaders or that no sample shows, quantities of another shape or with the name of one that
-        there is, rudders that are NaN, and a recording of more than 16 GiB. An error on the way has
-        an attribute ``recording``: the run until then.
+        n_leaders or that no sample shows, quantities of another shape or with a name that is taken,
+        rudders that are NaN, and a recording of more than 16 GiB. An error during the run has an
+        attribute ``recording``: the run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -366,7 +366,7 @@ def _started(parameters: FlockParameters, seed: int, start: Start, noise_seed: i
         raise ParameterError("start is a snapshot of a flock with other parameters")
     if flock.seed != seed:
         raise ParameterError(
-            f"seed = {shown(seed)} is not accepted: start is a snapshot of {flock.seed}"
+            f"seed = {shown(seed)} is not accepted: start is a snapshot of seed {flock.seed}"
         )
     flock.set_target(parameters.target)
     return flock

@@ -64,7 +64,7 @@ class LeadersEnv(FixedOptions, EnvBase):
         What a centralized critic sees: "boats" (the global state, the boats one after another),
         "set" (the same with a row for each boat, its own entries and then the clock's, for networks
         that take sets), "features" (features of the flock that do not depend on the order of boats,
-        as `LeadersVectorEnv.flock_features`; of several targets leader 0's) or "none".
+        as `LeadersVectorEnv.flock_features`) or "none".
     device
         Where tensors are; the simulator itself runs on the processor.
     options

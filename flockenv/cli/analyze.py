@@ -21,26 +21,23 @@ class AnalyzeOptions(Overwriting, Printing):
     """Options of `flockenv analyze`."""
 
     file: Path = argument("Tracks (.csv, .parquet) or a recording (.npz).")
-    layout: Path | None = option(None, "Columns and units of tracks: TOML. [beside the file]")
-    plot: Path | None = option(
-        None, "Draw the first frame, and order parameters against time, into this picture."
+    layout: Path | None = option(
+        None, "TOML file with the columns and units of tracks. [beside the file]"
     )
-    out: Path | None = option(
-        None, "Write it: a recording (.npz), tables (.csv, .parquet) or .gsd."
-    )
+    plot: Path | None = option(None, "Picture of the first frame and of the order against time.")
+    out: Path | None = option(None, "Write a recording (.npz), a table (.csv, .parquet) or .gsd.")
 
 
 @takes(AnalyzeOptions)
 def analyze(options: AnalyzeOptions) -> None:
     """Print the order parameters of a recording, or of tracked robots or animals.
 
-    The means are those that `flockenv run` prints: over the analysis window after the first tenth,
-    or over all samples after it where the phases of motors are not known. What of the tracks was
-    left out is reported, with `--json` under "tracks" by name. A table without a description gets a
-    guessed one beside it, and the lines to check are named. Compare the first frame, which `--plot`
-    draws, with the video: nothing else shows that a whole experiment is mirrored. `--out` writes
-    the poses for other programs too: tables with their layout beside them, or GSD for OVITO and
-    freud.
+    Prints the means over the analysis window after the first tenth, as `flockenv run` does. If the
+    phases of the motors are unknown, all samples after it count. A report says which rows of the
+    tracks were left out; with `--json` it stands under "tracks". If a table has no description, the
+    command guesses one, writes it beside the table and names the lines to check. Compare the first
+    frame, which `--plot` draws, with the video: no number shows that an experiment is mirrored.
+    `--out` also writes tables with their layout, or GSD for OVITO and freud.
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
     """

@@ -41,24 +41,20 @@ class CompareOptions(Flocks, Printing):
 
     policy: list[str] | None = option(
         None,
-        "Policy of yours, repeatable: a name, the file of a learned one, the .zip file of an SB3 "
+        "Your policy; repeatable. A name, the file of a learned policy, the .zip file of an SB3 "
         "model (with --trust), or one per leader, as in leader_0=a.npz,leader_1=learned.",
     )
-    name: list[str] | None = option(
-        None, "What a policy of yours is called; once for each. [its file's name]"
-    )
+    name: list[str] | None = option(None, "Name of your policy; once for each. [its file's name]")
     only: bool = option(False, f"Leave out {', '.join(REFERENCES)}.", "--only")
     trust: bool = option(False, TRUST, "--trust")
-    pool: list[str] | None = option(
-        None, "Which pool, repeatable. [wide, or that of the parameters]"
-    )
-    bw_s: list[float] | None = option(None, "Noise: backward duration in s, repeatable. [critical]")
+    pool: list[str] | None = option(None, "Pool; repeatable. [wide, or the parameters' pool]")
+    bw_s: list[float] | None = option(None, "Noise: backward duration in s; repeatable. [critical]")
     n_leaders: str | None = option(
-        None, "As in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS"
+        None, "Numbers of leaders, as in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS"
     )
     env: list[str] | None = option(
         None,
-        "Option of the environment, repeatable, as in target=alternate.",
+        "Option of the environment, as in target=alternate; repeatable.",
         metavar="NAME=VALUE",
     )
     episodes: int = option(64, "Seeds for each case.", min=2)
@@ -67,8 +63,8 @@ class CompareOptions(Flocks, Printing):
     )
     seed: int = option(0, "First seed.", min=0)
     suite: str | None = option(None, "Score the policies on the frozen tasks of a suite: v2.")
-    task: list[str] | None = option(None, "Of the suite, one task, repeatable. [every task]")
-    full: bool = option(False, "Print differences and straight lines too.", "--full")
+    task: list[str] | None = option(None, "One task of the suite; repeatable. [every task]")
+    full: bool = option(False, "Also print differences and slopes.", "--full")
     out: Path = option(Path("results/compare"), "Folder for tables and pictures.")
 
 
@@ -83,12 +79,12 @@ def compare(options: CompareOptions) -> None:
     """Print and plot order against the number of leaders, for your policies and others.
 
     Runs each policy on the same seeds: 27 boats in the pool `wide`, at its critical noise, unless
-    the options say otherwise. Differences are those of your first policy from the others.
+    the options say otherwise. Differences are your first policy minus each of the others.
     Writes `runs.csv`, `means.csv`, `differences.csv`, `lines.csv`, `leader_curve.png`, `run.toml`
     (seeds, policies, environment), the parameters of each case, which `--params` reads, and the
     card of your first policy, `card.md`.
 
-    With `--suite v2` policies are scored on frozen tasks: `scores.csv`.
+    `--suite v2` scores policies on frozen tasks, into `scores.csv`.
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
@@ -236,11 +232,11 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     """
     given = options.fields()
     if "n_leaders" in changed_fields(options.changes or ()):
-        raise ParameterError("--set n_leaders is not accepted: numbers of leaders are --n-leaders")
+        raise ParameterError("--set n_leaders is not accepted: use --n-leaders")
     if isinstance(given.get("target"), list):
         raise ParameterError(
-            f"target = {shown(given['target'])} is not accepted: leaders, of which there are "
-            "several numbers here, have one target: cw or ccw"
+            f"target = {shown(given['target'])} is not accepted: here the number of leaders "
+            "varies, so all have one target: cw or ccw"
         )
     base = options.parameters()
     base = base.replace(n_boats=given.get("n_boats", _BOATS))

@@ -24,7 +24,7 @@ class DemoOptions(Printing):
 def demo(options: DemoOptions) -> None:
     """Run the paper's law and the learned leaders side by side, and open the page that plays both.
 
-    Where `make live` has built the live page, that opens instead, with the same two flocks.
+    If `make live` has built the live page, that page opens instead, with the same two flocks.
 
     27 boats in the pool wide, four of them leaders, at bw_s = 0.3 s. Both runs have the same
     initial placement and the same noise.

@@ -53,7 +53,7 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
 class Overwriting:
     """Whether files that are there may be written over."""
 
-    force: bool = option(False, "Overwrite files that are there already.", "--force")
+    force: bool = option(False, "Overwrite existing files.", "--force")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,12 +19,10 @@ class Flocks:
     named: ClassVar[tuple[str, ...]] = ("n_boats",)
 
     preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")
-    params: Path | None = option(
-        None, "TOML file of parameters, such as those saved beside results."
-    )
+    params: Path | None = option(None, "TOML file of parameters, such as the one beside a result.")
     n_boats: int | None = option(None, "Boats, leaders included.")
     changes: list[str] | None = option(
-        None, "Change any other field; may be repeated.", "--set", metavar="FIELD=VALUE"
+        None, "Set any other field; repeatable.", "--set", metavar="FIELD=VALUE"
     )
 
     def parameters(self) -> FlockParameters:
@@ -51,9 +49,7 @@ class Flocks:
         for name in self.named:
             value = getattr(self, name)
             if value is not None and name in changed:
-                raise ParameterError(
-                    f"{option_of(name)} and --set {name} are both given: one of them"
-                )
+                raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
             if value is not None:
                 changed[name] = _value(value) if isinstance(value, str) else value
         return fields | changed
@@ -65,7 +61,7 @@ class OneFlock(Flocks):
 
     named: ClassVar[tuple[str, ...]] = ("n_boats", "pool", "n_leaders", "bw_s")
 
-    pool: str | None = option(None, "wide, narrow or (outer_cm, inner_cm). [that of the preset]")
+    pool: str | None = option(None, "wide, narrow or (outer_cm, inner_cm). [the preset's]")
     n_leaders: int | None = option(None, "How many of the boats lead.")
     bw_s: float | None = option(None, "Noise: backward duration in s.")
 

@@ -22,7 +22,7 @@ ABOUT = {
 class PresetsOptions:
     """Options of `flockenv presets`."""
 
-    as_json: bool = option(False, "Print all of it as JSON.", "--json")
+    as_json: bool = option(False, "Print the presets as JSON.", "--json")
 
 
 @takes(PresetsOptions)

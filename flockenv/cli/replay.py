@@ -21,15 +21,15 @@ class ReplayOptions(Printing):
     """Options of `flockenv replay`."""
 
     first: Path = argument("A recording (.npz), or tracks (.csv, .parquet).", metavar="RUN")
-    second: Path | None = argument("Another one to play beside it.", None, metavar="OTHER")
+    second: Path | None = argument("A second one, to play beside it.", None, metavar="OTHER")
     html: Path | None = option(None, "The page. [the first recording's name]")
-    gif: Path | None = option(None, "A moving picture, in its place.")
-    mp4: Path | None = option(None, "A video, in its place.")
-    colors: str = option("direction", "Of pictures, what color shows: direction or role.")
-    speed: float = option(8.0, "Of pictures: how many times real time.", min=0.1, max=100.0)
-    start: float = option(0.0, "Of pictures: second of the recording that is first.", min=0.0)
-    seconds: float = option(20.0, "Of pictures: how long they last at most.", min=0.1)
-    name: list[str] | None = option(None, "What a recording is called; once for each.")
+    gif: Path | None = option(None, "A moving picture instead of the page.")
+    mp4: Path | None = option(None, "A video instead of the page.")
+    colors: str = option("direction", "What color shows in pictures: direction or role.")
+    speed: float = option(8.0, "Speed of pictures over real time.", min=0.1, max=100.0)
+    start: float = option(0.0, "Second of the recording at which pictures start.", min=0.0)
+    seconds: float = option(20.0, "Longest duration of pictures.", min=0.1)
+    name: list[str] | None = option(None, "Name of a recording; once for each.")
     show: bool = option(False, "Open the page in a browser.", "--open")
 
 
@@ -37,10 +37,10 @@ class ReplayOptions(Printing):
 def replay(options: ReplayOptions) -> None:
     """Write recordings as one page that plays them: in any browser, without a network.
 
-    Tracks of real flocks are described by a TOML file beside them, see `docs/tracks.md`.
-    Play, scrub, change the speed; trails, contact forces, a boat's numbers under the pointer, and
-    order parameters in step with the picture. `--gif` and `--mp4` write a moving picture instead
-    (extras `render`, `video`). Two recordings play side by side in each.
+    The page plays at any speed. It shows trails, contact forces, a boat's numbers,
+    and order parameters in step with the picture. `--gif` and `--mp4` write a moving picture
+    instead (extras `render`, `video`). Two recordings play side by side in each. Tracks of real
+    flocks need a TOML file beside them that describes their table (`docs/tracks.md`).
 
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """
@@ -51,7 +51,7 @@ def replay(options: ReplayOptions) -> None:
     if not pictures:
         _page(options)
     elif options.html is not None:
-        raise ParameterError("--gif and --mp4 are written without --html")
+        raise ParameterError("--html is not accepted with --gif or --mp4")
     else:
         _pictures(options, pictures)
 

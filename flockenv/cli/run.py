@@ -25,8 +25,8 @@ class RunOptions(OneFlock, Overwriting, Printing):
 
     policy: str = option(
         EVERY_SUBSTEP,
-        "How leaders steer. The paper's law at every substep, or at 10 Hz, from what they observe, "
-        "a policy's file, an SB3 model's .zip file (with --trust) or one of: "
+        "How leaders steer: by the paper's law at every substep, or at 10 Hz by a policy's file, "
+        "an SB3 model's .zip file (with --trust) or one of: "
         f"{quoted([*POLICIES, *POOL_POLICIES])}.",
     )
     trust: bool = option(False, TRUST, "--trust")
@@ -34,9 +34,7 @@ class RunOptions(OneFlock, Overwriting, Printing):
     minutes: float = option(8.0, "Length of the run.", min=0.0)
     hz: float = option(10.0, "Samples per second.")
     contacts: bool = option(True, "Record contact forces too.", "--contacts/--no-contacts")
-    out: Path | None = option(
-        None, "The recording. [results/run.npz, numbered where that is taken]"
-    )
+    out: Path | None = option(None, "The recording. [results/run.npz, numbered if that exists]")
 
 
 @takes(RunOptions)

@@ -21,15 +21,15 @@ from flockenv.runs.workload import Shard, measure_workload
 class SweepOptions(Printing):
     """Options of `flockenv sweep`."""
 
-    spec: Path = argument("What to run: a TOML file.")
+    spec: Path = argument("TOML file that says what to run.")
     engine: str = option("local", "Where to run: local or ray.")
     workers: int | None = option(
         None, "Runs at a time. [every core that this process may use]", min=1
     )
-    shard: str | None = option(
-        None, "Make the I-th of N shares of the runs, no more.", metavar="I/N"
+    shard: str | None = option(None, "Make only the I-th of N shares of the runs.", metavar="I/N")
+    dry_run: bool = option(
+        False, "Run nothing; print the number of runs and how long they take.", "--dry-run"
     )
-    dry_run: bool = option(False, "Print how many runs there are and what they take.", "--dry-run")
     out: Path | None = option(None, "Folder for results. [results/sweep/NAME]")
 
 
@@ -37,12 +37,12 @@ class SweepOptions(Printing):
 def sweep(options: SweepOptions) -> None:
     """Run a grid of parameters and seeds, as one table.
 
-    Writes `sweep.csv` and `sweep.parquet`, one row per run, which `flockenv.runs.sweep.load_sweep`
-    reads, and beside them the TOML file as `sweep.toml`.
-    Finished runs are stored in `runs/`, and an interrupted sweep resumes with the same command.
-    Several machines that share a folder make one shard each, with `--shard 1/8` to `--shard 8/8`;
-    the command without `--shard` then writes the table.
-    `docs/sweep.md` describes the TOML file. Runs that fail cost no others: their rows say why, and
+    Writes `sweep.csv` and `sweep.parquet`, one row per run, and beside them the TOML file as
+    `sweep.toml`; `flockenv.runs.sweep.load_sweep` reads the table. Finished runs are stored in
+    `runs/`: give the same command again to resume. Machines that share a folder can make one shard
+    each, with `--shard 1/8` to `--shard 8/8`; afterwards the command without `--shard` writes the
+    table.
+    `docs/sweep.md` describes the TOML file. If a run fails, its row says why, the others go on, and
     the command ends with exit code 1.
 
     Example: `flockenv sweep docs/sweep-example.toml`

@@ -24,14 +24,12 @@ class TrainOptions(Printing):
     n_leaders: int | None = option(None, "Leaders of each flock. [3]")
     bw_s: float | None = option(None, "Noise: backward duration in s. [critical]")
     flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [500]")
-    seed: int | None = option(None, "Number of the training. [0]")
+    seed: int | None = option(None, "Seed of the training. [0]")
     change: list[str] | None = option(
-        None, "Change an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"
+        None, "Set an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"
     )
-    ppo: list[str] | None = option(
-        None, "Change an option of PPO; repeatable.", metavar="NAME=VALUE"
-    )
-    episodes: int = option(64, "Held-out flocks to compare with the laws in.", min=2)
+    ppo: list[str] | None = option(None, "Set an option of PPO; repeatable.", metavar="NAME=VALUE")
+    episodes: int = option(64, "Held-out flocks of the comparison with the laws.", min=2)
     out: Path = option(Path("results/train"), "Folder for the model and the run.")
     resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
 
@@ -40,9 +38,7 @@ class TrainOptions(Printing):
         environment = changed_fields(self.change or [])
         for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):
             if value is not None and environment.setdefault(name, value) is not value:
-                raise ParameterError(
-                    f"{option_of(name)} and --set {name} are both given: one of them"
-                )
+                raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
         given = {
             "pool": self.pool,
             "n_leaders": self.n_leaders,
@@ -58,11 +54,10 @@ class TrainOptions(Printing):
 def train(options: TrainOptions) -> None:
     """Train one policy for all leaders with PPO (extra `train`).
 
-    It is `examples/train_leaders.py` with options. Writes `model.zip`, which
-    `flockenv compare --policy` takes with `--trust`, `settings.toml`, a checkpoint, the episodes of
-    the training, `curve.png`, and `comparison.csv`: the signed order of the trained leaders, the
-    paper's law and the tuned law in held-out flocks. With `--resume` an interrupted training goes
-    on from the checkpoint.
+    This is `examples/train_leaders.py` with options. Writes `model.zip` (for `--policy` of
+    `flockenv compare`, with `--trust`), `settings.toml`, a checkpoint, the training's episodes,
+    `curve.png`, and `comparison.csv`: the signed order of the trained leaders, the paper's law and
+    the tuned law in held-out flocks. `--resume` continues an interrupted training.
 
     Example: `flockenv train --pool wide --n-leaders 3 --flock-hours 60`
     """

@@ -69,7 +69,7 @@ class Case:
         return runs
 
     def described(self) -> dict[str, Any]:
-        """Return all that it consists of but the parameters, as TOML can say it."""
+        """Return everything but the parameters, in types of TOML."""
         return {
             "leaders": list(self.leaders),
             "seeds": {"first": self.seeds[0], "number": len(self.seeds)},

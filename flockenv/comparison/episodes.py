@@ -73,9 +73,9 @@ def compare_leaders(
     leaders
         Numbers of leaders; 0 is run once, whatever the policies, as the policy `NO_LEADERS`.
     policies
-        How leaders steer, by the name to list it under, such as
-        ``{"mine": model, "paper's law": "paper's law"}``; see `Steering`. A function makes a policy
-        for each number of leaders; all else is one object for all of them.
+        How leaders steer, by the name in the table, such as ``{"mine": model, "paper's law":
+        "paper's law"}``; see `Steering`. A function makes a policy for each number of leaders; all
+        else is one object for all of them.
     seeds
         One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s
@@ -84,14 +84,15 @@ def compare_leaders(
         Called with flock-seconds as they are simulated.
     environment
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
-        ``dropout_rate=0.003``. Flocks without leaders, the paper's law at every substep, and a
-        policy for each leader run in `simulate`, which has none of them, and are refused then.
+        ``dropout_rate=0.003``. If there are any, flocks without leaders, the paper's law at every
+        substep and a policy for each leader are refused, because they run in `simulate`, which has
+        no such options.
 
     Returns
     -------
     pandas.DataFrame
         One row per episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
-        `ORDERING_TIMES`; NaN where an episode has no frame in the analysis window.
+        `ORDERING_TIMES`; NaN if an episode has no frame in the analysis window.
 
     Raises
     ------
@@ -109,11 +110,13 @@ def compare_leaders(
     most = max(leaders, default=0)
     if most >= parameters.n_boats:
         raise ParameterError(
-            f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: at least one "
-            "normal boat, as order is theirs (on the command line --n-leaders and --n-boats)"
+            f"{most} leaders among n_boats = {parameters.n_boats} are not accepted: the order is "
+            "measured of normal boats (on the command line --n-leaders and --n-boats)"
         )
     if NO_LEADERS in policies:
-        raise ParameterError(f"{NO_LEADERS!r} is no name for a policy: flocks without one have it")
+        raise ParameterError(
+            f"{NO_LEADERS!r} is no name for a policy: it names flocks without leaders"
+        )
     parameters.replace(n_leaders=most)
     steers: dict[str, Any] = {NO_LEADERS: None} if 0 in leaders else {}
     for name, policy in policies.items():
@@ -121,7 +124,7 @@ def compare_leaders(
     for name, policy in steers.items():
         if environment and _is_outside(policy):
             raise ParameterError(
-                f"{name!r} runs outside of the environment, which is not accepted with its options "
+                f"{name!r} runs outside of the environment and cannot have its options "
                 f"{', '.join(environment)}"
             )
         if "action_mode" in environment:
@@ -149,7 +152,7 @@ def compare_leaders(
 
 
 def steering(policy: Steering, pool: Any) -> Any:
-    """Return what steers: a policy, a dictionary with one per leader, or `EVERY_SUBSTEP`.
+    """Return a policy, a dictionary with one per leader, or `EVERY_SUBSTEP`.
 
     Errors are those of `flockenv.policies.load`, also for unknown names.
     """
@@ -177,7 +180,7 @@ def run_episodes(
     progress: Callable[[float], None] = lambda flock_seconds: None,
     options: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, NDArray[np.float64]]:
-    """Run one episode a seed with leaders that follow a policy, whatever range the seeds are of.
+    """Run one episode per seed with leaders that follow a policy; training seeds are accepted.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ _TABLES = ("runs", "means", "differences", "lines")
 
 @dataclass(frozen=True)
 class ComparisonReport:
-    """What policies reached in some cases (extra ``plot``)."""
+    """Results of policies in some cases (extra ``plot``)."""
 
     cases: Sequence[Case]
     #: Names, those first whose differences from the others are wanted.
@@ -51,7 +51,7 @@ class ComparisonReport:
         """Means with intervals by case, policy and number of leaders.
 
         Beside them ``ordered``, the share of the episodes that ordered, and the median time to it
-        (infinite where none did).
+        (infinite if none did).
         """
         by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
         means = summarize(self.runs, by, list(QUANTITIES))
@@ -63,7 +63,7 @@ class ComparisonReport:
 
     @cached_property
     def differences(self) -> "pd.DataFrame":
-        """How much signed order each policy has beyond each one after it, its ``reference``.
+        """Signed order of each policy minus that of each one after it, its ``reference``.
 
         Seed by seed, for each case and number of leaders; empty for a single policy.
         """
@@ -82,9 +82,10 @@ class ComparisonReport:
 
     @cached_property
     def lines(self) -> "pd.DataFrame":
-        """The line of each quantity over the number of leaders, by case and policy.
+        """A straight line of each quantity over the number of leaders, by case and policy.
 
-        Over all its episodes and those without leaders; empty for a single number of leaders.
+        It is fitted to the policy's episodes and those without leaders; empty for a single number
+        of leaders.
         """
         rows = []
         for case, every in self.runs.groupby("case", sort=False):
@@ -101,10 +102,10 @@ class ComparisonReport:
     def write(self, folder: Path) -> None:
         """Write the comparison into a folder, which is made.
 
-        ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (all that the
-        numbers depend on but the parameters), for each case its parameters in ``NAME.toml``, and
-        ``leader_curve.png`` if a case has several numbers of leaders. Each is whole or as it was
-        before.
+        ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (everything
+        that the numbers depend on, except for the parameters), for each case its parameters in
+        ``NAME.toml``, and ``leader_curve.png`` if a case has several numbers of leaders. Each file
+        is complete, or as it was before.
         """
         folder.mkdir(parents=True, exist_ok=True)
         for name in _TABLES:

@@ -1,6 +1,6 @@
 """Suite v2: six frozen tasks on which policies of any origin are scored against the tuned law.
 
-Another task, or another number in one, is another suite. The seeds follow from the name of the
+If a task or a number in one changes, it is another suite. The seeds follow from the name of the
 release, so that a later release scores all entries again, on flocks that none of them has met.
 """
 
@@ -85,15 +85,15 @@ def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:
 
 
 def aggregate(differences: Sequence[NDArray[np.float64]]) -> dict[str, tuple[float, float, float]]:
-    """Return what differences from `REFERENCE` say together, one array of episodes per task.
+    """Sum up differences from `REFERENCE`, one array of episodes per task.
 
     Returns
     -------
     dict
         Value, lower and upper end: of the ``interquartile mean`` over the episodes of all tasks;
         and of the ``probability of improvement``, that an episode has a higher signed order than
-        with `REFERENCE`, mean over the tasks. The intervals are BCa bootstraps in which episodes
-        are drawn within each task (Agarwal et al. 2021 have runs in the place of episodes).
+        with `REFERENCE`, mean over the tasks. The intervals are BCa bootstraps that draw episodes
+        within each task (Agarwal et al. 2021 draw runs).
     """
     statistics = {
         "interquartile mean": interquartile_mean,

@@ -46,14 +46,14 @@ class ManyFlocks(Resumable):
     def snapshots(self) -> list[bytes]:
         """Return each flock's snapshot, as `Flock.snapshot`, for the `snapshot` option of `reset`.
 
-        They hold the flocks, and not where their episodes are.
+        They hold the flocks, but not how far their episodes are.
         """
         return [self._batch.flock(flock).snapshot() for flock in range(self._batch.num_flocks)]
 
     def order_parameters(self) -> NDArray[np.float64]:
         """Return order parameters of the normal boats now.
 
-        Shape (flocks, quantities): the fields of `OrderParameters`, in its order; NaN where a flock
+        Shape (flocks, quantities): the fields of `OrderParameters`, in its order; NaN if a flock
         has no normal boat.
         """
         return self._batch.core.order_parameters()
@@ -94,9 +94,9 @@ class SingleEnvironmentBase(Resumable):
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of the flock, shape (features,), float32.
 
-        They depend neither on the order of boats nor on absolute angles, and are in the frame of
-        the target, of several targets leader 0's; `envs.observation.flock_feature_entries` lists
-        them.
+        They depend neither on the order of boats nor on absolute angles. They are in the frame of
+        the target; with several targets, of leader 0's. `envs.observation.flock_feature_entries`
+        lists them.
         """
         features: NDArray[np.float32] = self._batch.core.flock_features(each_leader=False)[0]
         return features
@@ -115,7 +115,7 @@ class SingleEnvironmentBase(Resumable):
             self._render_mode.show(self.flock)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Return a frame, (height, width, 3) uint8, where `render_mode` is "rgb_array".
+        """Return a frame, (height, width, 3) uint8, if `render_mode` is "rgb_array".
 
         With "human" every reset and step shows itself in a window, and nothing is returned.
         """

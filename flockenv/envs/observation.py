@@ -61,7 +61,7 @@ def observe(
     observation
         Blocks that differ from the default layout.
     mirror_to_target
-        Whether the view is reflected where the target is counter-clockwise.
+        Whether the view is reflected if the target is counter-clockwise.
     rudder
         The rudders as they stand, shape (k,) in [-1, 1], positive counter-clockwise;
         0 if not given.
@@ -74,6 +74,6 @@ def observe(
     Raises
     ------
     ParameterError
-        For unknown blocks, and where a block needs normal boats that are not there.
+        For unknown blocks, and if a block needs normal boats and there are none.
     """
     return _core.observe(flock.core, dict(observation or {}), mirror_to_target, rudder)

@@ -133,7 +133,7 @@ def _physics(given: dict[str, Any]) -> dict[str, Any]:
     chosen = _core.physics_fields(name)
     for field in chosen:
         if field in given:
-            raise ParameterError(f"physics = {name!r} and {field} are both given: one of them")
+            raise ParameterError(f"physics = {name!r} and {field} are both given: give one")
     return chosen
 
 
@@ -143,7 +143,7 @@ def _parameters(given: dict[str, Any]) -> FlockParameters:
         name = "simulation" if preset is None else preset
         return FlockParameters.from_dict({"preset": name, **_DEFAULTS, **given})
     if preset is not None:
-        raise ParameterError("params and preset are both given: one of them names the parameters")
+        raise ParameterError("params and preset are both given: give one")
     if isinstance(params, Mapping):
         return FlockParameters.from_dict({**params, **given})
     if not isinstance(params, FlockParameters):

@@ -44,9 +44,9 @@ class LeadersParallelEnv(
     An agent's is a `Box` of shape (observation size,), float32.
 
     ## Rewards
-    Each agent gets the weighted sum of the terms, its own where they are a leader's own or towards
-    its own target. Each step's infos have the agent's `"reward_terms"`, the last ones the
-    `"episode_summary"`.
+    Each agent gets the weighted sum of its terms: those of a leader alone are its own, and with
+    several targets all are towards its own target. Each step's infos have the agent's
+    `"reward_terms"`, the last ones the `"episode_summary"`.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -133,7 +133,7 @@ class LeadersParallelEnv(
         Raises
         ------
         ParameterError
-            For NaN, wrong shapes, missing agents and agents that are not there; nothing has moved.
+            For NaN, wrong shapes, missing and unknown agents; nothing has moved then.
         EpisodeError
             Before the first reset and after the end.
         """
@@ -160,7 +160,7 @@ class LeadersParallelEnv(
         if actions.keys() != self._every_agent:
             wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
             raise ParameterError(
-                f"actions are for other agents than {', '.join(self.agents)}: see {wrong}"
+                f"actions must be for {', '.join(self.agents)}; these differ: {wrong}"
             )
         levels = self._levels
         if levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
@@ -214,7 +214,7 @@ class _Turns(FixedOptions, OrderEnforcingWrapper[str, Any, Any]):
 
 
 def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, Any]:
-    """Return `parallel_env` behind PettingZoo's other interface, whose agents act in turn.
+    """Return `parallel_env` as PettingZoo's AEC environment, whose agents act in turn.
 
     The flock moves once all of them have acted.
     """

@@ -22,11 +22,11 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     ``gymnasium.make("flockenv/Leaders-v0", **options)``
 
     This text specifies the task for all interfaces. `LeadersParallelEnv`, `LeadersVectorEnv` and
-    `flockenv.sb3.LeaderVecEnv` say what differs in them, and all take the same options. Every
-    option, reward term, entry of the observation and feature of the flock has its line in
-    docs/environments/tables.md, which `make docs` writes. In Python, `flockenv.envs.options` has
-    `OPTIONS` and `TERMS`, and `flockenv.envs.observation` has `observation_entries()`,
-    `state_entries()` and `flock_feature_entries()`.
+    `flockenv.sb3.LeaderVecEnv` take the same options and say what differs.
+    docs/environments/tables.md, which `make docs` writes, lists every option, reward term, entry of
+    the observation and feature of the flock. In Python, `flockenv.envs.options` has `OPTIONS` and
+    `TERMS`, and `flockenv.envs.observation` has `observation_entries()`, `state_entries()` and
+    `flock_feature_entries()`.
 
     `flockenv/Order-easy-v0` is the environment to start with: ten boats, four of which lead and are
     rewarded for the order of the others. Plain PPO passes the paper's law there within two minutes
@@ -83,14 +83,14 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     `touched_order`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 
     With `target` a list of "cw" and "ccw", one per leader, each leader has a target of its own: its
-    observation, the reflection of `mirror_to_target`, what its actions mean and all its reward
-    terms are towards that one, as if it were everybody's. Leaders with opposite targets play a
-    general-sum game: their `signed_order` sums to zero, the terms of a leader alone do not. The
-    joint reward stays the mean over leaders, so that k1 leaders against k2 are rewarded with
-    (k1 - k2)/k of the signed order towards the k1 leaders' target. What belongs to the whole flock
-    refers to leader 0's target: the `signed_order` and `share_towards_target` of the
-    `"episode_summary"`, the reflection of `state()`, and the flock features (a `LeaderVecEnv` has
-    them in the frame of each slot's target). The `target` of `state()` is the mean over leaders.
+    observation, the reflection by `mirror_to_target`, its actions and all its reward terms refer to
+    that target, as if it were everybody's. Leaders with opposite targets play a general-sum game:
+    their `signed_order` sums to zero, the terms of a leader alone do not. The joint reward stays
+    the mean over leaders, so that k1 leaders against k2 are rewarded with (k1 - k2)/k of the signed
+    order towards the k1 leaders' target. Quantities of the whole flock refer to leader 0's target:
+    the `signed_order` and `share_towards_target` of the `"episode_summary"`, the reflection of
+    `state()`, and the flock features (a `LeaderVecEnv` has them in the frame of each slot's
+    target). The `target` of `state()` is the mean over leaders.
 
     ## Starting state
     Boats start at rest at random positions with random headings, without overlap, in phase fw. The
@@ -114,8 +114,8 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
     - `clip_rate`: share of clipped numbers in the observations
 
     ## Arguments
-    Any field of `FlockParameters`, where `n_boats` is 27 and `n_leaders` 3 unless given, and the
-    options of docs/environments/tables.md. Those that most trainings set:
+    Any field of `FlockParameters` (`n_boats` is 27 and `n_leaders` 3 unless given) and the options
+    of docs/environments/tables.md. Those that most trainings set:
 
     - `preset` or `params`: parameters of the flock by name, or as a `FlockParameters`
     - `physics`: "training" for steps that are coarser and cheaper
@@ -152,7 +152,7 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
 
     @property
     def spec(self) -> EnvSpec | None:
-        """What Gymnasium's registry says of it, and how many steps an episode has."""
+        """Gymnasium's spec, with the number of steps of an episode."""
         return self._spec
 
     @spec.setter

@@ -30,8 +30,8 @@ def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
 class ObservationSpace(_Box):
     """The space of one leader's observation, or of several leaders' one after another.
 
-    Models keep the space that they were trained on, also in their files. This one says how its
-    observations are made, so that a model gets such ones wherever it steers.
+    Models keep the space that they were trained on, also in their files. It says how observations
+    are made, so that a model gets the same ones wherever it steers.
 
     Attributes
     ----------

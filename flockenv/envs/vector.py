@@ -53,15 +53,15 @@ class LeadersVectorEnv(
     refused.
 
     ## Starting state
-    `seed=s` seeds flock i with s + i, a list gives each flock its own, and an option of `reset`
-    that is a list has one entry per flock: a tuple has one target per leader.
+    `seed=s` seeds flock i with s + i; a list gives each flock its own. If an option of `reset` is a
+    list, it has one entry per flock; a tuple of targets has one per leader.
     `reset(options={"reset_mask": mask})` resets some flocks.
 
     ## Episode end
     At the end `infos["episode_summary"]` has means over the episode. With
     `autoreset_mode="next_step"` the next step starts the next episode and ignores its action, with
-    `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` have what was
-    last), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
+    `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` are the last
+    ones), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
     `GymWrapper` needs.
 
     ## Arguments
@@ -121,7 +121,7 @@ class LeadersVectorEnv(
 
     @property
     def spec(self) -> EnvSpec | None:
-        """What Gymnasium's registry says of it, and how many steps an episode has."""
+        """Gymnasium's spec, with the number of steps of an episode."""
         return self._spec
 
     @spec.setter
@@ -142,8 +142,8 @@ class LeadersVectorEnv(
             One for flock 0, each following flock having the next; or one per flock; None continues
             with the next episode.
         options
-            Those of `LeadersEnv.reset` for the episodes that start, where a list has an entry for
-            each flock; ``reset_mask`` (num_envs,) bool.
+            Those of `LeadersEnv.reset` for the episodes that start; a list has an entry for each
+            flock. ``reset_mask`` (num_envs,) bool.
 
         Returns
         -------
@@ -235,8 +235,8 @@ class LeadersVectorEnv(
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of every flock, shape (num_envs, features), float32.
 
-        They depend neither on the order of boats nor on absolute angles, and are in the frame of
-        the target, of several targets leader 0's.
+        They depend neither on the order of boats nor on absolute angles. They are in the frame of
+        the target; with several targets, of leader 0's.
         """
         return self._batch.core.flock_features(each_leader=False)
 
@@ -250,7 +250,7 @@ class LeadersVectorEnv(
     def leader_rewards(self) -> NDArray[np.float64]:
         """Return each leader's own reward of the last step, shape (num_envs, k).
 
-        An EpisodeError says so before the first step.
+        Before the first step this is an EpisodeError.
         """
         if self._rewards is None:
             raise EpisodeError("leader_rewards was called before the first step")

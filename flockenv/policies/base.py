@@ -48,7 +48,7 @@ CONTROL_HZ: float = _core.env_defaults()["control_hz"]
 
 
 def control_rate(policy: Any) -> float:
-    """Return the control steps per second that a policy is made for: 10 where it does not say."""
+    """Return the control steps per second that a policy is made for: 10 if it does not say."""
     rate = getattr(policy, "control_hz", None)
     return CONTROL_HZ if rate is None else float(rate)
 
@@ -65,7 +65,7 @@ def action_mode(policy: Any) -> str:
 
 
 def check_action_mode(policy: Any, mode: str, where: str) -> None:
-    """Refuse a policy whose actions stand for something else than those of a mode."""
+    """Refuse a policy whose actions are for another mode."""
     own = action_mode(policy)
     if own != mode:
         raise ParameterError(
@@ -75,7 +75,7 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
 
 
 def check_pool(policy: Any, pool: Any) -> None:
-    """Refuse a policy that was made for another pool than that of the flock."""
+    """Refuse a policy that was made for another pool than the flock's."""
     own = getattr(policy, "pool", None)
     if own is not None and own != pool:
         raise ParameterError(
@@ -87,7 +87,7 @@ def check_pool(policy: Any, pool: Any) -> None:
 def observed(observation: ArrayLike) -> NDArray[np.float32]:
     """Return an observation as an array, of which nothing may be masked."""
     if np.ma.is_masked(observation):
-        raise ParameterError("observation is masked, which is not accepted: numbers alone")
+        raise ParameterError("observation is masked, which is not accepted: plain numbers")
     return np.ascontiguousarray(observation, np.float32)
 
 

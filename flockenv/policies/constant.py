@@ -21,7 +21,7 @@ class RandomRudders(RowPolicy):
     Parameters
     ----------
     seed
-        Seed of the draws. The object draws on from call to call.
+        Seed of the draws, which continue from call to call.
     layout
         The options of `RowPolicy`.
     """

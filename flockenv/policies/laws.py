@@ -34,7 +34,7 @@ class LawPolicy(RowPolicy):
     Parameters
     ----------
     law
-        The core's law, which runs without Python where nothing but the law steers.
+        The core's law, which runs without Python if nothing but the law steers.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names.
 
@@ -101,7 +101,7 @@ class NamedLaw(LawPolicy):
     Raises
     ------
     ParameterError
-        For other names, and for laws that are others in each pool.
+        For other names, and for laws that depend on the pool.
     """
 
     def __init__(
@@ -179,9 +179,9 @@ class LeaningLaw(LawPolicy):
     Parameters
     ----------
     pool
-        Name of the pool that it is for, as whose usual values its features are standardized.
+        Name of the pool that it is for; its features are standardized by that pool's usual values.
     bias
-        Lean in rad where every feature has its usual value.
+        Lean in rad if every feature has its usual value.
     weights
         Rad per standard deviation of a feature, by its name in `LEAN_FEATURES`; 0 for those left
         out.
@@ -190,9 +190,9 @@ class LeaningLaw(LawPolicy):
     bound
         What keeps a lean within ±1.2 rad: ``"tanh"``, or ``"clip"``.
     decision_period_s
-        For how many s a lean is held, a whole number of control steps; None: one control step. The
-        gains have to be the tuned ones then, and the policy's actions are leans, for environments
-        with ``action_mode="lean"`` and this ``decision_period_s``.
+        For how many s a lean is held, a whole number of control steps; None: one control step. If
+        it is given, the gains have to be the tuned ones, and the policy's actions are leans, for
+        environments with ``action_mode="lean"`` and this ``decision_period_s``.
     judged
         How well it leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
         ``bw_s``, ``episode_s``, and the first and the last of the ``seeds``.
@@ -242,7 +242,7 @@ class LeaningLaw(LawPolicy):
         judged: Mapping[str, Any] | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> Self:
-        """Return the law that a model of stable-baselines3 has learned, which needs no torch.
+        """Return the law that a model of stable-baselines3 has learned; the law needs no torch.
 
         Parameters
         ----------
@@ -297,7 +297,7 @@ class LeaningLaw(LawPolicy):
     def from_json(cls, text: str) -> Self:
         """Return the law of a JSON text, as `to_json` gives it.
 
-        A ParameterError refuses a text that is no whole law.
+        A ParameterError refuses a text that is no complete law.
         """
         law = cls.__new__(cls)
         law._read(text)
@@ -350,7 +350,7 @@ class LeaningLaw(LawPolicy):
 
     @property
     def digest(self) -> str:
-        """The first digits of the SHA-256 of its numbers, whatever made or judged them."""
+        """The first digits of the SHA-256 of its numbers alone."""
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 

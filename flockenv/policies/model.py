@@ -32,20 +32,20 @@ class ModelPolicy:
 
     The model's observation space says what it takes: one leader's observation (trained on
     `LeaderVecEnv`), for any number of leaders, or those of k leaders one after another (trained on
-    ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. Numbers of levels, the
-    actions of environments with `rudder_levels`, become rudders. Where the model's environment is
-    a `VecNormalize`, observations are normalized as there; a file of a model does not hold that.
+    ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. If the model chooses
+    levels (`rudder_levels`), they become rudders. If its environment is a `VecNormalize`,
+    observations are normalized the same way; the file of a model does not hold that.
 
-    What a leader does is independent of how many are steered at once where the network has linear
-    layers with hyperbolic tangents or rectifiers between them, as `MlpPolicy` by default. PyTorch
-    may round the rows of other layers by their place.
+    A leader acts the same however many are steered at once, if the network has linear layers with
+    hyperbolic tangents or rectifiers between them, like the default `MlpPolicy`. In other layers
+    PyTorch may round a row by its place.
 
     Parameters
     ----------
     model
         A model such as ``PPO``, or its ``policy``.
     provenance
-        Where it comes from: any short texts by name.
+        Its origin: any short texts by name.
 
     Attributes
     ----------
@@ -102,8 +102,8 @@ class ModelPolicy:
     ) -> tuple[Any, Any]:
         """Return rudders for observations, as `LeaderPolicy`.
 
-        A model of k leaders takes each k that follow each other for a flock; `deterministic` is the
-        model's. A ParameterError refuses leaders that are no multiple of the model's, too.
+        A model of k leaders takes every k leaders in a row for a flock; `deterministic` is the
+        model's. A ParameterError also refuses numbers of leaders that are no multiple of k.
         """
         if isinstance(observation, Mapping):
             stacked = np.stack([observed(each) for each in observation.values()])
@@ -204,7 +204,7 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
 
 
 def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
-    """Read the policy of a model's ``.zip`` file, which executes code in the file.
+    """Read the policy of a model's ``.zip`` file; this executes code in the file.
 
     The file is what ``model.save`` of stable-baselines3 or sb3-contrib wrote. Errors are those of
     `flockenv.policies.load`; models trained in `VecNormalize` are refused, too.
@@ -217,8 +217,8 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
         if stored.get("_last_original_obs") is not None:
             raise ParameterError(
                 "it was trained in VecNormalize, and its file does not hold how observations were "
-                "normalized: steer with the model in memory, or train without it, as observations "
-                "are scaled already"
+                "normalized: steer with the model in memory, or train without VecNormalize: "
+                "observations are scaled already"
             )
         # Schedules, buffers and the like need not be read, let alone executed.
         skipped = dict.fromkeys(stored.keys() - set(_NEEDED))

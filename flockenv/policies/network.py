@@ -53,13 +53,13 @@ class NetworkPolicy(RowPolicy):
     activation
         A name in `ACTIVATIONS`, between the layers; the last layer's output is clipped to [-1, 1].
     observation, mirror_to_target
-        Layout of the observations, as in the environments' options of those names. Without weights
-        for the whole layout the policy is refused.
+        Layout of the observations, as in the environments' options of those names; the weights have
+        to fit it.
     action_mode, decision_period_s
         What the output stands for, and for how long it is held: the environments' options of those
         names.
     provenance
-        Where it comes from: any short texts by name, such as the command, the seed and the samples.
+        Its origin: any short texts by name, such as the command, the seed and the samples.
 
     Raises
     ------
@@ -109,10 +109,10 @@ class NetworkPolicy(RowPolicy):
         ----------
         module
             A ``torch.nn.Module`` from one leader's observation to its rudder: linear layers in the
-            order in which they follow each other, with one of `ACTIVATIONS` between them. Where
-            the last layer has two outputs, the mean and the spread of a distribution, the mean is
-            the rudder. Layers that change nothing (``Identity``, TorchRL's
-            ``NormalParamExtractor``) are passed over.
+            order in which they follow each other, with one of `ACTIVATIONS` between them. If the
+            last layer has two outputs, the mean and the spread of a distribution, the mean is the
+            rudder. Layers that change nothing (``Identity``, TorchRL's ``NormalParamExtractor``)
+            are passed over.
         space
             The space of the observations that it was trained on, of one leader or of several: it
             holds the options that a policy depends on.
@@ -194,7 +194,7 @@ class NetworkPolicy(RowPolicy):
 
     @property
     def digest(self) -> str:
-        """The first digits of the SHA-256 of layout and numbers, whatever made them."""
+        """The first digits of the SHA-256 of layout and numbers alone."""
         header, arrays = self._contents()
         whole = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
         for name in sorted(arrays):

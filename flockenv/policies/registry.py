@@ -89,8 +89,8 @@ def load(
         return LeaningLaw.learned(_named(pool))
     if pool is not None:
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted with the file {os.fspath(path)!r}: a pool "
-            f"chooses among the policies called {LEARNED!r}"
+            f"pool = {shown(pool)} is not accepted with the file {os.fspath(path)!r}: only "
+            f"{LEARNED!r} takes one"
         )
     if is_model_file(path):
         if not trust:
@@ -108,8 +108,8 @@ def load(
 def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], LeaderPolicy | str]:
     """Return a function that returns a policy, given its name or the path of its file; see `load`.
 
-    Names are those in `POLICIES` and `POOL_POLICIES`, of which the latter need the flock's pool.
-    Unknown names, files that are no policy and pools that a policy is not made for are refused.
+    Names are those in `POLICIES` and `POOL_POLICIES`; the latter need the flock's pool. Unknown
+    names, files that are no policy and pools that a policy is not made for are refused.
     """
     if name in POLICIES:
         return POLICIES[name]
@@ -133,8 +133,8 @@ def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], L
 def policy_name(policy: LeaderPolicy | str | None) -> str:
     """Return the name under which recordings hold a policy.
 
-    That is `EVERY_SUBSTEP` without a policy, and otherwise what the policy prints as, or its class
-    where that is no name. A policy's ``digest`` follows, if it has one.
+    Without a policy it is `EVERY_SUBSTEP`. Otherwise it is the policy's text, or its class if the
+    text is no name, and then the policy's ``digest``, if it has one.
     """
     if policy is None or isinstance(policy, str):
         return policy or EVERY_SUBSTEP

@@ -91,7 +91,7 @@ def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDA
         values = function(recording)
     except Exception as error:  # It is the user's.
         raise ParameterError(
-            f"quantity {name!r} cannot be had: {type(error).__name__}: {error}"
+            f"quantity {name!r} failed: {type(error).__name__}: {error}"
         ) from error
     found = real_numbers(values, f"quantity {name!r}")
     with np.errstate(over="ignore"):

@@ -46,12 +46,12 @@ class Recording:
     time_s : float64 array, shape (t,)
         Times in s, increasing.
     phase : str array, shape (t,)
-        The phase that starts or holds at each time: "fw", "nop1", "bw" or "nop2".
+        The phase that starts or lasts at each time: "fw", "nop1", "bw" or "nop2".
     in_analysis_window : bool array, shape (t,)
         Whether each time lies in the second half of fw or the first half of nop1 (Section 4).
     pose : float64 or float32 array, shape (t, n, 3)
-        [x cm, y cm, heading rad counter-clockwise from x, not wrapped], leaders first. Shape
-        (t, 0, 3) where poses were not kept.
+        [x cm, y cm, heading rad counter-clockwise from x, not wrapped], leaders first. Shape (t, 0,
+        3) if poses were not kept.
     velocity : array of the same dtype and shape
         [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the substep before.
     order : OrderSeries
@@ -64,14 +64,14 @@ class Recording:
         Version of flockenv that ran it.
     rudder : float64 array, shape (t, k), or None
         Rudder commands of the leaders in [-1, 1]: eq. (10) at each pose under the law, otherwise
-        what was held up to each time, 0 at the start. None where they were not recorded, as in
-        files of version 0.1.0 and in stored runs of sweeps.
+        the command that was held up to each time, 0 at the start. None if they were not recorded,
+        as in files of version 0.1.0 and in stored runs of sweeps.
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None
-        What steered the leaders: "paper's law at every substep", otherwise the policy's name,
-        which for a learned one ends in the first digits of its SHA-256; None where that is not
-        known, as in files of version 0.1.0.
+        What steered the leaders: "paper's law at every substep", or the policy's name; a learned
+        policy's name ends in the first digits of its SHA-256. None if that is unknown, as in files
+        of version 0.1.0.
     duration_s : float
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.
@@ -79,8 +79,8 @@ class Recording:
         Quantities of a user's own, by name; see `with_quantities`.
     ids : str array, shape (n,), or None
         Names of tracked boats, leaders first; None for a simulated flock. Only with them rows of
-        `pose` and `velocity` may be NaN, which stand for boats that are not there, the quantities
-        of too few boats are NaN, and `phase` may be empty: not known.
+        `pose` and `velocity` may be NaN, for missing boats, quantities of too few boats are NaN,
+        and `phase` may be empty: unknown.
 
     Raises
     ------
@@ -168,11 +168,11 @@ class Recording:
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def flock_at(self, time_s: float) -> Flock:
-        """Return the flock at the last sample up to a time, as far as it was recorded.
+        """Return the flock at the last sample up to a time, as far as recorded.
 
-        Contacts and the state of the noise are no part of it: such a flock has the poses, the
-        velocities and the time of the sample, and does not move on as the recorded one did. Errors
-        are those of `state_at`.
+        It has the poses, the velocities and the time of the sample, but neither the contacts nor
+        the state of the noise, so it does not move on as the recorded flock did. Errors are those
+        of `state_at`.
         """
         state = self.state_at(time_s)
         there = self._there(self._sample_at(time_s))
@@ -209,7 +209,7 @@ class Recording:
 
     def _sample_at(self, time_s: float) -> int:
         if len(self) == 0 or not self.has_poses:
-            raise ParameterError("this recording holds no poses, of which a flock is made")
+            raise ParameterError("this recording holds no poses to make a flock of")
         start, end = self.time_s[0], self.time_s[-1]
         if not start <= time_s <= end:
             raise ParameterError(
@@ -301,8 +301,8 @@ class Recording:
         ------
         ParameterError
             For functions that fail, results of another shape or of other things than real numbers,
-            and names that are no identifiers or that quantities and columns of recordings have. Its
-            attribute ``recording`` is this one.
+            and names that are no identifiers or are taken. Its attribute ``recording`` is this
+            recording.
         """
         seen = self._read_only()
         try:
@@ -378,7 +378,7 @@ class Recording:
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a recording; nothing in the file is ever executed.
 
-        A quantity that the file lacks is computed from the poses, and is NaN where none were kept.
+        A quantity that the file lacks is computed from the poses; it is NaN if none were kept.
         Arrays and parameters that this flockenv does not know are dropped with a
         `RecordingWarning`.
 

@@ -33,10 +33,9 @@ def frame(
     the bow. Boats that head clockwise are blue, counter-clockwise ones orange, and those that head
     along the radius (outward in a jam) gray; leaders have an amber ring. If leaders have opposite
     targets, those with a counter-clockwise one have a plum ring. The corners show the time and
-    phase, the target and bw, Ψ_o and the order towards the target. Without a common target the
-    rotation Ψ_o·sin φ_o, positive clockwise, stands in its place. Several threads may draw at a
-    time. A ParameterError refuses a size out of range, other colors, and a time outside the
-    recording.
+    phase, the target and bw, Ψ_o and the order towards the target. Without a common target they
+    show the rotation Ψ_o·sin φ_o, positive clockwise, instead. Several threads may draw at a time.
+    A ParameterError refuses a size out of range, other colors, and a time outside the recording.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ def frame(
         What color shows: "direction", or "role": leaders amber (or plum), other boats blue. In
         open water, where boats circle around nothing, it is always the role.
     caption
-        What stands above the time, cut to fit its corner.
+        Text above the time, cut to fit its corner.
 
     Returns
     -------

@@ -15,7 +15,7 @@ def require_pygame() -> Any:
 
 
 class Window:
-    """A window that shows a flock in real time; a second one of the process takes its place.
+    """A window that shows a flock in real time; a process has one, and a new one replaces it.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ def demo_runs(
 
 
 def live_page() -> Traversable | None:
-    """Return the live page, which `make live` builds into the package; None where it has not."""
+    """Return the live page if `make live` has built it into the package; None otherwise."""
     page = resources.files("flockenv.replay").joinpath("live.html")
     return page if page.is_file() else None
 

@@ -82,9 +82,9 @@ def write_replay(
     path
         The file to write.
     recordings
-        A recording, which is named after the file; or one or two recordings by the names they have
-        on the page, where two play side by side. Forces are shown of those that hold contacts
-        (``simulate(..., contacts=True)``).
+        A recording, which is named after the file; or one or two recordings by their names on the
+        page; two play side by side. Forces are shown if a recording holds contacts (``simulate(...,
+        contacts=True)``).
 
     Returns
     -------
@@ -94,8 +94,8 @@ def write_replay(
     Raises
     ------
     ParameterError
-        For recordings without names, for none or more than two, for one without samples or poses,
-        and for one too large to be shown at all.
+        For two recordings without names, for none or more than two, for a recording without samples
+        or poses, and for one too large to be shown at all.
     OSError
         If the file cannot be written; the file from before remains then.
     """

@@ -25,7 +25,7 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
 
     Each has ``key``, its name in the recording; ``words`` and ``unit``; ``range``, the lowest and
     highest value of its chart, None for those of the data; and ``decimals`` that are shown. Order
-    towards the target is among them where in any of the recordings leaders have one.
+    towards the target is among them if in any of the recordings leaders have one.
     """
     recorded = [each.name for each in QUANTITIES if each.kind == "recorded"]
     has_target = any(each.parameters.common_target is not None for each in recordings)

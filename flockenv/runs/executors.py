@@ -1,7 +1,7 @@
-"""Executors: where many independent runs are made. A run goes to each of them unchanged.
+"""Executors: the places at which many independent runs are made.
 
-All have the interface of `concurrent.futures.Executor`, as have those of other libraries. What they
-are given must be pure and, but for threads, picklable: then results do not depend on the executor.
+All have the interface of `concurrent.futures.Executor`, like those of other libraries. Functions
+must be pure and, except for threads, picklable; then results do not depend on the executor.
 """
 
 import functools
@@ -35,11 +35,10 @@ def threads(workers: int | None = None) -> Executor:
 
 
 class RayExecutor(Executor):
-    """Ray tasks of one core each, on any cluster, every node of which needs flockenv.
+    """Ray tasks of one core each, on any cluster whose nodes all have flockenv.
 
-    That is the cluster that is connected already or that ``RAY_ADDRESS`` names; otherwise a local
-    Ray, which is started and stopped here. What a node that dies was working on is done again on
-    another one.
+    It is the cluster that is connected already or that ``RAY_ADDRESS`` names; otherwise a local Ray
+    is started, and stopped again. If a node dies, other nodes repeat its tasks.
 
     Parameters
     ----------
@@ -71,7 +70,7 @@ class RayExecutor(Executor):
     def submit(
         self, function: Callable[..., Value], /, *arguments: Any, **named: Any
     ) -> "Future[Value]":
-        """Start a task, which is repeated where its node is lost, without end."""
+        """Start a task; whenever its node is lost, it is repeated."""
         future: Future[Value] = self._remote(function).remote(*arguments, **named).future()
         return future
 
@@ -99,8 +98,8 @@ def finished(
 ) -> Generator[tuple[int, Value], None, None]:
     """Yield the place of each item and the function's value of it, as they are finished.
 
-    Once Ctrl-C was noted no further item is started, and those under way end. An error of the
-    function ends the work, too.
+    After Ctrl-C no further item is started, and those in progress end. An error of the function
+    ends the work, too.
     """
     waiting = itertools.takewhile(lambda _: not interrupted(), enumerate(items))
     places: dict[Future[Value], int] = {}

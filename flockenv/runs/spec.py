@@ -67,7 +67,7 @@ class RunSpec:
     def to_json(self) -> str:
         """Return the spec as JSON: equal specs, equal text.
 
-        What has its default is left out, so that one field more gives no run another text.
+        Defaults are left out, so that a new field changes no run's text.
         """
         given = {each.name: (getattr(self, each.name), each.default) for each in fields(self)}
         plain = {name: value for name, (value, default) in given.items() if value != default}

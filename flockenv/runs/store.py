@@ -66,7 +66,7 @@ class RunStore:
     def save(self, spec: RunSpec, run: Recording) -> None:
         """Keep the finished run of a spec.
 
-        A StorageError says that it cannot be written, for example to a full disk.
+        If it cannot be written, for example to a full disk, this is a StorageError.
         """
         path = self.path(spec)
         try:
@@ -139,8 +139,8 @@ def run_missing(
     specs
         The runs; repeated ones are made once. Expensive ones start first.
     store
-        Where finished runs are stored. A full disk ends the work, and costs only the runs under
-        way; so does Ctrl-C outside of a command, which itself waits for them.
+        Where finished runs are stored. A full disk ends the work and loses only the runs in
+        progress. So does Ctrl-C, except in a command, which waits for them.
     engine
         Where to run, one of `flockenv.runs.executors.ENGINES`, or another function that makes an
         executor. The results are the same on each.

@@ -1,7 +1,7 @@
 """Sweeps: any grid of parameters and seeds, resumable, as one table.
 
-`docs/sweep.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`, a
-field in a grid is a list, also of one value, and all grids name the same fields.
+`docs/sweep.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`. In a
+grid even a single value is a list, and all grids name the same fields.
 """
 
 import itertools
@@ -49,7 +49,7 @@ class SweepSpec:
     axes : tuple of str
         The fields that vary, in the file's order.
     runs : tuple of RunSpec
-        For each combination one run a seed, in the order of combinations, then seeds.
+        One run per combination and seed, in the order of combinations, then seeds.
     """
 
     axes: tuple[str, ...]
@@ -245,7 +245,7 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     Raises
     ------
     ParameterError
-        If it is not there or not whole.
+        If it is missing or incomplete.
     MissingExtraError
         Without the extra ``plot``.
     """
@@ -265,7 +265,7 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
 def to_xarray(table: "pd.DataFrame") -> Any:
     """Return the table of a sweep as an `xarray.Dataset` over its fields and seeds.
 
-    Combinations that no grid has are NaN. A MissingExtraError says so without the extra ``sweep``.
+    Combinations that no grid has are NaN. Without the extra ``sweep`` this is a MissingExtraError.
     """
     require("xarray", "sweep")
     axes = [*table.columns[: table.columns.get_loc("seed")], "seed"]

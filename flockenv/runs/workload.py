@@ -1,4 +1,4 @@
-"""What of many runs is to be made where: shards of them, what is stored already, what it takes."""
+"""Shares of many runs for several machines, and how much work is left."""
 
 import re
 import time
@@ -14,7 +14,7 @@ _TRIAL_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of several shares of many runs, for machines that know nothing of each other.
+    """One of several shares of many runs, for machines that do not talk to each other.
 
     The hash of a run's spec decides which shard makes it. Shards never overlap, hold about equally
     many runs, and are the same at each call and on each machine. A ParameterError refuses a number
@@ -39,7 +39,7 @@ class Shard:
     def parse(cls, text: str) -> "Shard":
         """Return the shard that a text such as "3/8" names.
 
-        A ParameterError refuses any other text, and as the class does.
+        A ParameterError refuses any other text and number.
         """
         found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
         if found is None:
@@ -65,13 +65,12 @@ class Workload:
     runs : int
         Different runs.
     stored : int
-        Those of them that have a file in the store. Whether the file is whole shows when it is
-        read.
+        Runs that have a file in the store. Whether a file is whole shows when it is read.
     flock_hours : float
         Simulated hours of the runs that have none.
     core_hours : float or None
-        What these take on one core of this machine, extrapolated from trial runs of a minute; None
-        where those of a policy could not be made.
+        Time that these take on one core of this machine, extrapolated from trial runs of a minute;
+        None if a trial run failed.
     """
 
     runs: int

@@ -21,9 +21,9 @@ from flockenv.statistics import mean_interval
 class PerFlock(VecEnvWrapper):
     """A `LeaderVecEnv` whose rewards, ends and infos come once per flock; for evaluation only.
 
-    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. Those of a flock's
-    leaders are one episode with one order. Here `num_envs` is the number of flocks, a reward is the
-    mean over a flock's leaders, and an info is that of its first leader, with the ``"episode"``.
+    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. A flock's leaders
+    have one episode with one order. Here `num_envs` is the number of flocks, a reward is the mean
+    over a flock's leaders, and an info is that of its first leader, with the ``"episode"``.
     Observations and actions still have a row per leader, so that the model sees what it was trained
     on.
 
@@ -35,7 +35,7 @@ class PerFlock(VecEnvWrapper):
     Raises
     ------
     TypeError
-        If there is none.
+        If it wraps none.
     """
 
     def __init__(self, venv: VecEnv) -> None:
@@ -48,7 +48,7 @@ class PerFlock(VecEnvWrapper):
         self.num_envs = leaders.num_flocks
 
     def check_action_mode(self, model: Any) -> None:
-        """Refuse a model that was trained with another action mode than that of the flocks.
+        """Refuse a model that was trained with another action mode than the flocks have.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class PerFlock(VecEnvWrapper):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlockEvaluation:
-    """What episodes of flocks gave; it prints as the mean signed order with its interval.
+    """Results of flocks' episodes; it prints as the mean signed order with its interval.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class FlockEvaluation:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Its interval at level `flockenv.statistics.CONFIDENCE`, that of `mean_interval`."""
+        """Its interval, as of `mean_interval`, at level `flockenv.statistics.CONFIDENCE`."""
         _, low, high = mean_interval(self.signed_order)
         return low, high
 

@@ -34,7 +34,7 @@ class LeaderSlot:
     """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
 
     ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
-    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the episodes that are to come.
+    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the next episodes.
     """
 
     _env: "LeaderVecEnv"
@@ -46,13 +46,13 @@ class LeaderSlot:
 
     @property
     def bw_s(self) -> float | tuple[float, float]:
-        """Backward duration in s of the flock's episodes that are to come, or its range."""
+        """Backward duration in s of the flock's next episodes, or its range."""
         upcoming: float | tuple[float, float] = self._upcoming("bw_s")
         return upcoming
 
     @property
     def target(self) -> str | tuple[str, ...]:
-        """Target of the flock's episodes that are to come."""
+        """Target of the flock's next episodes."""
         upcoming: str | tuple[str, ...] = self._upcoming("target")
         return upcoming
 
@@ -108,13 +108,13 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     state of its flock, `flock_features()` the features of its flock in the frame of its own target.
 
     ## Rewards
-    Each slot gets the weighted sum of the terms, its own where they are a leader's own.
+    Each slot gets the weighted sum of its terms; those of a leader alone are its own.
     `reward_terms()` returns those of the last step.
 
-    `reward` may also be a function of this environment, which is called once the flocks have moved,
-    before those that ended start again, and which returns rewards (slots,), or (flocks,) for all
-    leaders of a flock. It looks at `poses()`, `velocities()`, `order_parameters()`,
-    `reward_terms()` and the like.
+    `reward` may also be a function of this environment, called once the flocks have moved, before
+    those that ended start again. It returns rewards (slots,), or (flocks,) for all leaders of a
+    flock. It looks at `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the
+    like.
 
     ## Starting state
     `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
@@ -128,8 +128,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     `"terminal_flock_features"` and the `"episode_summary"`.
 
     ## Arguments
-    `num_flocks`: number of flocks; `n_leaders`: leaders of each flock, where a list is dealt out to
-    the flocks in turn, so that one policy can learn all of them; and those of `LeadersEnv`.
+    `num_flocks`: number of flocks; `n_leaders`: leaders of each flock (a list is dealt out to the
+    flocks in turn, so that one policy can learn all of them); and those of `LeadersEnv`.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -233,8 +233,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         Raises
         ------
         ParameterError
-            For unknown options, and such as differ between the leaders of a flock or name other
-            things in different flocks; those that were set before are dropped then.
+            For unknown options, for options that differ between the leaders of a flock, and for
+            flocks with different options; those that were set before are dropped then.
         TypeError
             For options that are no dictionaries.
         """
@@ -275,7 +275,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         Returns
         -------
         observations, rewards, dones, infos
-            Shapes (slots, observation size), (slots,), (slots,) and a dictionary a slot. Where an
+            Shapes (slots, observation size), (slots,), (slots,) and a dictionary a slot. If an
             episode has ended, the observation is the first of the next one.
 
         Raises
@@ -339,7 +339,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Set ``bw_s`` or ``target`` of the slots' flocks for the episodes that are to come.
+        """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
         They hold until they are set again, within `learn` too. Values are those of `reset`: a range
         (low, high) of bw_s is drawn from, a list of targets has one for each leader.
@@ -349,13 +349,13 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         AttributeError
             For any other name.
         ParameterError
-            For a value that is not accepted, and for slots that are a part of a flock's.
+            For a value that is not accepted, and for only some of a flock's slots.
         """
         if attr_name not in UPCOMING_OPTIONS:
             names = " and ".join(UPCOMING_OPTIONS)
             raise AttributeError(
-                f"{attr_name!r} cannot be set: set_attr takes {names}, which hold for the episodes "
-                "that are to come; set_options takes all options of a reset"
+                f"{attr_name!r} cannot be set: set_attr takes {names}, for the next "
+                "episodes; set_options takes all options of a reset"
             )
         chosen = np.zeros(self.num_envs, np.bool_)
         chosen[list(self._get_indices(indices))] = True
@@ -363,8 +363,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         for flock in flocks:
             if not chosen[self.flock_of_slot == flock].all():
                 raise ParameterError(
-                    f"set_attr: {attr_name} is one for all leaders of flock {flock}, and indices "
-                    "name only some of them"
+                    f"set_attr: {attr_name} is the same for all leaders of flock {flock}, but "
+                    "indices name only some of them"
                 )
         value = once(value)
         value = tuple(value) if isinstance(value, list | np.ndarray) else value
@@ -388,7 +388,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of each slot's flock, shape (slots, features), float32.
 
-        They depend neither on the order of boats nor on absolute angles, and are in the frame of
+        They depend neither on the order of boats nor on absolute angles. They are in the frame of
         the slot's own target.
         """
         return self._batch.core.flock_features(each_leader=True)
@@ -403,7 +403,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         return self._batch.core.observe()
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return a frame of each flock; nothing to see where `render_mode` is None."""
+        """Return a frame of each flock; none if `render_mode` is None."""
         if self.render_mode is None:
             return [None for _ in self.slots]
         flocks = map(self._batch.flock, range(self.num_flocks))

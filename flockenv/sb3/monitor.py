@@ -23,7 +23,7 @@ class FlockMonitor(VecEnvWrapper):
     venv
         A `LeaderVecEnv`, also inside other wrappers.
     filename
-        The file; ``.monitor.csv`` is appended where it is missing.
+        The file; ``.monitor.csv`` is appended if it is missing.
     summary_keywords
         Numbers of the ``"episode_summary"`` to write too, such as ``"signed_order"``; those that an
         episode does not have are left empty.

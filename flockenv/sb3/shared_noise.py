@@ -68,7 +68,7 @@ class HeldNoise:
     def next(self, slots: int, device: torch.device) -> torch.Tensor:
         """Return the rows of the next decision, shape (slots, size).
 
-        Another number of slots than that of the training has independent rows.
+        If the number of slots is not the training's, rows are independent.
         """
         if slots != len(self._flock_of_slot):
             return torch.randn(slots, self._noise.shape[1], device=device)
@@ -82,8 +82,8 @@ class HeldNoise:
 class SharedNoiseDistribution(DiagGaussianDistribution):
     """Gaussian actions whose deviations from the mean are one number per flock, held for a time.
 
-    Each action is distributed as with independent noise, which is what its probability says.
-    Samples of another number of slots than that of the training have independent noise.
+    Each action, taken alone, has the distribution of independent noise, and its probability is that
+    one's. If the number of slots is not the training's, the noise is independent.
     """
 
     def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
@@ -148,9 +148,8 @@ class SharedNoisePolicy(ActorCriticPolicy):
 
     ``PPO(SharedNoisePolicy, venv, policy_kwargs=shared_noise(venv, hold_s=24.0))``
 
-    The order of a flock answers a common deviation of its leaders that lasts, and hardly those that
-    cancel each other. The noise is drawn from torch's generator, so that the seed of the algorithm
-    fixes it.
+    A flock's order answers a lasting common deviation of its leaders, and hardly deviations that
+    cancel. The noise is drawn from torch's generator, so that the seed of the algorithm fixes it.
 
     With ``use_sde=True`` of the algorithm the noise is that of gSDE: it perturbs the weights of the
     last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It

@@ -1,4 +1,4 @@
-"""What differences in several tasks say together (Agarwal et al. 2021)."""
+"""Differences in several tasks, summed up (Agarwal et al. 2021)."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
 
 
 def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
-    """Return how often a difference is positive, equal ones by half; the mean over the tasks.
+    """Return how often a difference is positive (equal ones count half), mean over the tasks.
 
     Parameters and the axis are those of `interquartile_mean`, for paired differences.
     """

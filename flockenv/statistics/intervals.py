@@ -36,7 +36,7 @@ class Difference:
     Attributes
     ----------
     mean, low, high : float
-        Mean difference and its interval at level `CONFIDENCE`, that of `mean_interval`.
+        Mean difference and its interval, as of `mean_interval`, at level `CONFIDENCE`.
     effect : float
         Cohen's d of paired differences: mean over standard deviation; NaN without spread.
     n : int
@@ -81,7 +81,8 @@ def mean_interval(values: Iterable[float], seed: int = 0) -> tuple[float, float,
     Returns
     -------
     tuple of float
-        Mean, lower and upper end; the ends are NaN for a single value, all are where a value is.
+        Mean, lower and upper end; the ends are NaN for a single value, and all three if a value is
+        NaN.
 
     Raises
     ------
@@ -110,14 +111,14 @@ def bootstrap_interval(
     Parameters
     ----------
     samples
-        One array or more of values, one value per run.
+        One or more arrays of values, one value per run.
     statistic
         A function of as many arrays that takes ``axis``, such as `numpy.mean`.
     seed
         Of the draws, 9999 of them.
     paired
         Whether values at the same place of several arrays belong to one run, and are drawn
-        together; otherwise runs are drawn out of each array apart.
+        together; otherwise runs are drawn from each array by itself.
 
     Returns
     -------

@@ -18,8 +18,8 @@ class Line:
     slope, intercept : float
         In units of y over x, and of y.
     f : float
-        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN where
-        all y are the same. It does not know whether the line rises.
+        F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN if all y
+        are the same. It is blind to the sign of the slope.
     p : float
         Probability of such an F or a larger one if y did not depend on x; NaN likewise.
     n : int

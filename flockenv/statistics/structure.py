@@ -11,18 +11,17 @@ from flockenv.parameters import FlockParameters
 def structure_series(
     name: str, parameters: FlockParameters, pose: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return a quantity of structure at each time, shape (t,); NaN where no boat is there.
+    """Return a quantity of structure at each time, shape (t,); NaN if no boat is there.
 
     Parameters
     ----------
     name
         Of the table of quantities: ``"largest_cluster"``, ``"on_outer_wall"`` or
-        ``"polarization"``, which is 1 where all boats point the same way in the axes of the world,
-        wherever they are, and some 0.886/√n where n headings are independent (Vicsek et al. 1995).
-        Unlike Ψ_o, whose orientations are relative to the pool, it is small where boats go around
-        the pool.
+        ``"polarization"``, which is 1 if all boats point the same way in the axes of the world, and
+        some 0.886/√n if n headings are independent (Vicsek et al. 1995). Unlike Ψ_o, whose
+        orientations are relative to the pool, it is small if boats go around the pool.
     parameters
-        Of the flock: hull and pool are taken from them.
+        Of the flock; hull and pool count.
     pose
         Shape (t, n, 3), as in a `Recording`.
 

@@ -1,7 +1,7 @@
 """Times of events that did not come to every run, such as ordering times (Kaplan and Meier 1958).
 
-A run without the event says that its time is longer than the run, no more: its time is censored.
-To leave such runs out, or to count them with the length of the run, makes all times too short.
+A run without the event only says that its time is longer than the run: its time is censored. If you
+leave such runs out, or count them with the length of the run, all times come out too short.
 """
 
 import warnings
@@ -26,8 +26,8 @@ class Survival:
     share : float64 array, shape (m,)
         Share of the runs that wait longer than that, as Kaplan and Meier estimate it.
     low, high : float64 array, shape (m,)
-        Its pointwise interval at level `CONFIDENCE` (exponential Greenwood, which is the log-log
-        transform); the ends are those of [0, 1] where it is undefined.
+        Its pointwise interval at level `CONFIDENCE` (exponential Greenwood, the log-log transform);
+        0 and 1 if it is undefined.
     runs, events : int
         Number of runs, and of those to which the event came.
     """
@@ -51,8 +51,8 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
     Parameters
     ----------
     times_s
-        Shape (n,): when the event came to each run, in s; infinite if it did not, as ordering times
-        have it.
+        Shape (n,): when the event came to each run, in s; infinite if it did not, like ordering
+        times.
     until_s
         How long each run was watched, in s: one number, or one per run.
 

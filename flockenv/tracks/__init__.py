@@ -1,4 +1,4 @@
-"""Doors for data: tracks of real flocks in, recordings out to tables and GSD."""
+"""Tracks of real flocks read as recordings, and recordings written as tables and GSD."""
 
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.guess import guess_layout

@@ -35,7 +35,7 @@ def recording_of(
     discs: Any = (),
     walls: Any = (),
 ) -> Recording:
-    """Return tracks of real boats, or of anything else that heads somewhere, as a recording.
+    """Return tracks of real boats, or of anything else with a heading, as a recording.
 
     It is analyzed, replayed and exported like a simulated one. Quantities at a time are those
     of the normal boats that have a pose and a velocity then.
@@ -45,23 +45,23 @@ def recording_of(
     time_s
         Times in s, increasing, shape (t,).
     pose
-        Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from
-        x]. Rows of NaN where a boat is not there.
+        Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from x].
+        Rows of NaN if a boat is missing.
     pool
         "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
     hull
         Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
     velocity
-        Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central ones
-        where a boat is there before and after, weighted by the steps in time; none across gaps,
-        and none for a boat that is there for one sample.
+        Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central if there is
+        a pose before and after, weighted by the steps in time. There are none across gaps, and none
+        for a boat with a single pose.
     phase
-        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: not known, and all samples
-        count as analyzed.
+        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: they are unknown, and all
+        samples count as analyzed.
     ids
         A name for each boat, shape (n,); "0", "1", … by default.
     leaders
-        Those of the names that lead. They come first in the recording.
+        Names of the leaders. They come first in the recording.
     target
         Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
     discs, walls
@@ -70,9 +70,9 @@ def recording_of(
     Raises
     ------
     ParameterError
-        For shapes that do not match, rows of which a part is NaN, no pose at all, speeds above
-        10 m/s (in the median of a boat) or so low that times are in no s, centers in no water (a
-        hull's width beyond a wall), and for names that are unknown or there twice.
+        For shapes that do not match, rows with only some NaN, no pose at all, median speeds of a
+        boat above 10 m/s or so low that times cannot be in s, centers more than a hull's width
+        outside the water, and unknown or repeated names.
     """
     times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)

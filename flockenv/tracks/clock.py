@@ -26,7 +26,7 @@ def times_of(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
         times = numbers(table, layout.frame, layout)
         _check_kind(times, layout)
     elif layout.fps is not None:
-        raise ParameterError(f"column {layout.frame!r} holds times, so that fps is left out")
+        raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
     if not np.isfinite(times).all():
         line = found.index[~np.isfinite(times)][0]
         raise ParameterError(
@@ -72,8 +72,8 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
         )
     if layout.fps is not None and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
-            f"fps = {layout.fps:g} is said, and column {layout.frame!r} has steps of "
-            f"{np.median(steps):.4g}, which are no frames: without fps it holds times in s"
+            f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
+            f"{np.median(steps):.4g}, which are no frames: leave fps out if it holds times in s"
         )
 
 
@@ -91,9 +91,9 @@ def check_order(rows: "pd.DataFrame", layout: TrackLayout) -> None:
     typical = steps[steps > 0.0].median()
     if typical < _STEPS_S[0] or typical > _STEPS_S[1]:
         raise ParameterError(
-            f"a boat's samples are {typical:.3g} s apart (median), where {_STEPS_S[0]:g} to "
-            f"{_STEPS_S[1]:g} s are accepted: are times in s? fps says how many units of column "
-            f"{layout.frame!r} a second has"
+            f"a boat's samples are {typical:.3g} s apart (median), and {_STEPS_S[0]:g} to "
+            f"{_STEPS_S[1]:g} s are accepted: are times in s? fps is the number of units of column "
+            f"{layout.frame!r} in a second"
         )
 
 

@@ -41,9 +41,9 @@ _MIDDLE = "cent(er|re|roid)|body|thorax|mid(dle)?"
 def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     """Write a description of tracks beside their table, guessed from the table.
 
-    The description is the TOML file of the table's name. Returned are its lines that nothing in the
-    table says, each with what to check or to fill in. A ParameterError names a file that is no
-    table, and a description that is there already.
+    The description is a TOML file with the table's name. The function returns the lines that it
+    could not read from the table, each with what to check or to fill in. A ParameterError names a
+    file that is no table, and a description that exists already.
     """
     path = Path(path)
     beside = path.with_suffix(".toml")

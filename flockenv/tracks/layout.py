@@ -77,29 +77,29 @@ _KINDS: dict[Any, Rule] = {
 class TrackLayout:
     r"""How tracks lie in a table with one row per frame and animal, robot or boat.
 
-    Names of columns match without regard to case. In a table with one row per frame, names hold
-    ``{id}`` where the boat's name stands: ``x = "x{id}"`` takes x1, x2 and so on. A ParameterError
-    refuses a value out of range or of another kind.
+    Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
+    boat's name: ``x = "x{id}"`` takes x1, x2 and so on. A ParameterError refuses a value out of
+    range or of another kind.
 
     Attributes
     ----------
     pool, hull, target
         As for `recording_of`.
     leaders : tuple of str
-        Names of those that lead.
+        Names of the leaders.
     frame : str
         Column of frame numbers, or of times in s if `fps` is None. Dates, clock times and
         durations are converted.
     fps : float or None
-        How many units of that column a second has: frames, or 1000 if it counts ms.
+        Units of that column per second: frames, or 1000 if it counts ms.
     id : str or None
-        Column of names; None if the table is of one boat, or names its boats in its columns.
+        Column of names; None if the table has one boat, or names its boats in its columns.
     x, y : str or tuple of str
         Column of the center, or several whose mean it is.
     heading : str, or tuple of four str, or None
         Column of headings; or the columns x, y of the tail and x, y of the head, two key points
-        that the heading joins; or None for the direction of motion, which is no heading of
-        something that is pushed sideways.
+        that the heading joins; or None for the direction of motion, which is wrong for what is
+        pushed sideways.
     heading_unit : str
         "rad" or "deg".
     heading_zero : str
@@ -108,26 +108,26 @@ class TrackLayout:
         "cw" or "ccw", the way in which headings grow in the picture. None: from x to y of the file,
         clockwise if y points down.
     axis : bool
-        Whether headings are axes without a bow, such as of ellipses. The bow is then where a boat
-        mostly moves to, so that it must not move backwards for longer than forwards.
+        Whether headings are axes without a bow, such as of ellipses. The bow is then at the end to
+        which a boat mostly moves, so it must not move backward for longer than forward.
     wrapped : bool
         Whether headings are within a full turn.
     cm_per_unit : float
-        How many cm a unit of length in the file has, such as a pixel.
+        Length in cm of a unit in the file, such as a pixel.
     center : tuple of float
         Center of the pool in units of the file.
     y_down : bool
         Whether y points down, as in pictures.
     max_speed_cm_s : float
-        Nothing moves faster: no velocity is taken across a step that does.
+        Highest speed: no velocity is taken across a faster step.
     confidence : str or tuple of str, and least_confidence : float
         Columns, and the least value with which a row counts.
     unassigned : tuple of str
-        Names of those that are no boat, without regard to case.
+        Names of detections that are no boat, in any case.
     lost : tuple of points
-        Points, in units of the file, that stand for a boat that is not there.
+        Points, in units of the file, that stand for a missing boat.
     missing : tuple of str
-        What stands for no number, besides what usually does.
+        Further texts and numbers that stand for a missing value.
     separator, decimal : str
         Of a CSV file: ",", ";", "\\t", " " or "|", and "." or ",".
     skip : int
@@ -198,7 +198,7 @@ def columns_of(value: str | tuple[str, ...] | None) -> tuple[str, ...]:
 
 
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
-    """Return the layout in a TOML file: its fields, where "" is none and a pool is needed.
+    """Return the layout in a TOML file, in which "" means None and a pool is needed.
 
     A ParameterError names a file that cannot be read, or is no layout.
     """

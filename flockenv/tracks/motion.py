@@ -86,8 +86,8 @@ class Motion:
         if self.broken > _MOST_BROKEN * steps.sum():
             raise ParameterError(
                 f"{self.broken} of {steps.sum()} steps are faster than max_speed_cm_s = "
-                f"{layout.max_speed_cm_s:g}: are cm_per_unit, fps and times those of this table, "
-                "and is it of one film?"
+                f"{layout.max_speed_cm_s:g}: do cm_per_unit, fps and times fit this table, and "
+                "is it one film?"
             )
         turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
         said_deg = isinstance(layout.heading, str) and layout.heading_unit == "deg"
@@ -104,8 +104,8 @@ class Motion:
         may_be_axes = isinstance(layout.heading, str) and not layout.axis
         if may_be_axes and jumps.sum() >= 3 and _is_half(pose[..., 2]):
             raise ParameterError(
-                "headings lie within half a turn and jump from one end of it to the other: if they "
-                "are axes without a bow, such as of ellipses, axis = true"
+                "headings lie within half a turn and jump from one end of it to the other: set "
+                "axis = true if they are axes without a bow, as of ellipses"
             )
 
 

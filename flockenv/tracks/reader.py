@@ -28,33 +28,33 @@ def read_tracks(
     layout: TrackLayout | None = None,
     report: Callable[[TrackReport], object] = lambda found: None,
 ) -> Recording:
-    """Read tracks as a recording, which is analyzed and replayed like a simulated one.
+    """Read tracks as a recording, to analyze and replay it like a simulated one.
 
-    Rows that cannot be a boat are left out and counted: without a name, a position or a heading,
-    in no water, with too little confidence, there twice.
+    Rows without a name, a position or a heading, in no water, with too little confidence, or twice
+    in the table are left out and counted.
 
     Parameters
     ----------
     source
-        A table with one row per frame and boat, or one per frame (extra ``plot``), or the CSV or
-        Parquet file of one, in which nothing is executed.
+        A table with one row per frame and boat, or one per frame (extra ``plot``), or its CSV or
+        Parquet file, in which nothing is executed.
     layout
         How tracks lie in it; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
     report
-        Called with what was used and left out, which prints as a few lines.
+        Called with a report of what was used and left out; it prints as a few lines.
 
     Raises
     ------
     ParameterError
         If the file cannot be read, a column is missing or holds other things than numbers, a boat
-        is in two places in a frame, times go back, units do not fit what is said, everything is
-        missing, the arrays would be too large, there is no layout, and as for `recording_of`.
+        is in two places in a frame, times go back, units contradict the layout, everything is
+        missing, the arrays would be too large or there is no layout, and as for `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
     """
     if not isinstance(source, str | os.PathLike):
         if layout is None:
-            raise ParameterError("layout is missing: a table has no file beside it")
+            raise ParameterError("layout is missing: a table in memory has no file beside it")
         return _recording(plain_table(source), layout, report)
     path = Path(source)
     layout = layout or read_layout(path.with_suffix(".toml"))
@@ -125,8 +125,8 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
             raise ParameterError("id is missing: several rows have one time, so boats have names")
         same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
         raise ParameterError(
-            f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
-            f", at other places, the second time in {rows.index.name} {row.name}"
+            f"{row['id']!r} is {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
+            f", at different places, the second time in {rows.index.name} {row.name}"
         )
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))

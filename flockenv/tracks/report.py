@@ -16,23 +16,24 @@ class TrackReport:
     frames, boats, samples : int
         Different times, different names, and poses that are used.
     missing : int
-        Boat-frames without a pose: times at which a boat is not there, summed over boats; frames
-        that nobody is in count too.
+        Boat-frames without a pose: times at which a boat is missing, summed over boats; empty
+        frames count, too.
     left_out : dict of dict of int
         Rows that are left out, by reason and boat; "" for no boat.
     gaps : int, and longest_gap_s : float
-        How often a boat is away between two of its poses, and the longest of these times.
+        How often a boat is missing between two of its poses, and the longest of these times.
     broken : int
         Steps above the greatest speed, such as of wrong detections and of names that were
         exchanged: both samples are used, and no velocity is taken across.
     lone : int
         Samples without a neighbor in time. They have no velocity, and no quantity counts them.
     cosine : float
-        Mean cosine between heading and motion, weighted by the way. It is near 1 for what moves
-        ahead, and small or negative if axes, units or directions are wrong; NaN if nothing moves.
+        Mean cosine between heading and motion, weighted by the way. It is near 1 for boats that
+        move ahead, and small or negative if axes, units or directions are wrong; NaN if nothing
+        moves.
     stuck : dict of (float, float, int)
-        Boats that are at one point in at least 20 samples and a tenth of them: x and y in units of
-        the file, and in how many.
+        Boats that are at one point in at least 20 samples and a tenth of theirs: x and y in units
+        of the file, and the number of samples.
     """
 
     frames: int

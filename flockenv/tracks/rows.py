@@ -160,5 +160,5 @@ def _check_water(rows: "pd.DataFrame", why: Any) -> None:
     if others > _MOST_OUTSIDE * max(1, placed):
         raise ParameterError(
             f"{others / placed:.0%} of the centers lie outside the pool, or in the obstacle in its "
-            "middle: are cm_per_unit, center and pool those of this table?"
+            "middle: do cm_per_unit, center and pool fit this table?"
         )

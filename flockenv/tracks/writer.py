@@ -34,15 +34,14 @@ def export(
     Parameters
     ----------
     recording, path
-        What is written, and where; a table or a GSD file that is there is written over.
+        What to write, and where; an existing table or GSD file is replaced.
     overwrite
-        Whether a layout beside the table is written over too, though it says something else: it may
-        be written by hand.
+        Whether to replace another layout beside the table, too. It may be written by hand.
 
     Raises
     ------
     ParameterError
-        For another ending, a recording without poses, and another layout that is there.
+        For another ending, a recording without poses, and another layout beside the table.
     MissingExtraError
         Without the extra.
     OSError

@@ -1,4 +1,4 @@
-"""What a training gave: its learning curve, and its leaders beside the laws."""
+"""Results of a training: its learning curve, and its leaders beside the laws."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +28,7 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     folder
         Of a `FlockMonitor`'s file with the ``signed_order`` of each episode.
     decisions_hz
-        Decisions per second, by which lengths of episodes are hours.
+        Decisions per second, which turns lengths of episodes into hours.
     points
         Number of means, each of equally many episodes.
 
@@ -47,7 +47,7 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
 
 
 def draw_curve(curve: "pd.DataFrame", laws: dict[str, float], path: Path) -> None:
-    """Draw a learning curve, and what laws reach as level lines.
+    """Draw a learning curve, with the laws' orders as level lines.
 
     Parameters
     ----------

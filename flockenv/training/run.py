@@ -1,4 +1,4 @@
-"""The training run: PPO of stable-baselines3, checkpoints, and going on after a kill."""
+"""The training run: PPO of stable-baselines3, checkpoints, and resuming after a kill."""
 
 import json
 import zipfile
@@ -50,7 +50,7 @@ class Progress:
     samples, total
         Leaders' decisions now and at the end.
     signed_order
-        Mean of the episodes that ended last, while leaders explore; None before the first end.
+        Mean of the last episodes, in which leaders explore; None before the first end.
     """
 
     samples: int
@@ -65,8 +65,8 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
     """Train into an empty folder, and return the model.
 
     The folder gets ``model.zip``, ``checkpoint.zip``, ``settings.toml``, ``0.monitor.csv`` with the
-    order of each flock's episodes, and stable-baselines3's log in ``log-0``. Files of a training
-    that was resumed have the samples before in their names instead of 0.
+    order of each flock's episodes, and stable-baselines3's log in ``log-0``. After a resume, names
+    have the samples so far instead of 0.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def resume(
     Raises
     ------
     ParameterError
-        If there is no checkpoint, or a damaged one or one of other settings.
+        If there is no checkpoint, or it is damaged or of other settings.
     InUseError, TrainingError
         As `train`.
     """

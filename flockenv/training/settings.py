@@ -40,8 +40,8 @@ _OWN = ("policy", "env", "seed", "_init_setup_model")
 class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
-    Leaders lean by a linear function of the lean features, and all leaders of a flock explore by
-    the same perturbed weights, which are held for minutes (`flockenv.sb3.SharedNoisePolicy`).
+    Leaders lean by a linear function of the lean features. All leaders of a flock explore with the
+    same perturbed weights, held for minutes (`flockenv.sb3.SharedNoisePolicy`).
 
     Attributes
     ----------
@@ -50,11 +50,11 @@ class TrainingSettings:
     n_leaders
         Leaders of each flock.
     flock_hours
-        When to stop: hours that all flocks together are simulated for.
+        When to stop: simulated hours of all flocks together.
     num_flocks
         Flocks that are stepped together.
     seed
-        Number of the training, from 0 to 2³² - 1.
+        Seed of the training, from 0 to 2³² - 1.
     environment
         Options of `flockenv.sb3.LeaderVecEnv` that differ from those of this training.
     ppo

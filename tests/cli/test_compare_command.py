@@ -155,7 +155,7 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
     [
         (["--set", "n_boats=2000"], "do not fit"),
         (["--set", "n_boats=2"], "--n-leaders and --n-boats"),
-        (["--set", "n_leaders=3"], "numbers of leaders are --n-leaders"),
+        (["--set", "n_leaders=3"], "--set n_leaders is not accepted: use --n-leaders"),
         (["--set", "target=cw,ccw"], "one target"),
         (["--set", "pool=[90, 10]"], "bw_s=1.0`"),
         (["--policy", "damped law", "--policy", "damped law"], "given twice"),
