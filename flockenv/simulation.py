@@ -142,8 +142,7 @@ def simulate(
     functions = checked_functions({} if quantities is None else quantities)
     if noise_seed is not None and not isinstance(start, bytes):
         raise ParameterError(
-            f"noise_seed = {shown(noise_seed)} is not accepted: it goes with a snapshot as start, "
-            "which it continues with other noise"
+            f"noise_seed = {shown(noise_seed)} is not accepted: it needs a snapshot as start"
         )
     flock = (
         Flock(parameters, seed) if start is None else _started(parameters, seed, start, noise_seed)

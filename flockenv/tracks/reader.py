@@ -125,7 +125,7 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
             raise ParameterError("id is missing: several rows have one time, so boats have names")
         same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
         raise ParameterError(
-            f"{row['id']!r} is {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
+            f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
             f", at different places, the second time in {rows.index.name} {row.name}"
         )
     # By their length, then alphabet, so that 2 comes before 10.
