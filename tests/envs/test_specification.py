@@ -57,6 +57,7 @@ def test_the_tables_list_everything_once_and_in_order(tables):
     every_block = {block: type(default)(1) for block, default in BLOCKS.items()}
     features = dict.fromkeys(entry.name for entry in flock_feature_entries())
     assert tables == {
+        "Parameters": [*flockenv.FlockParameters.__dataclass_fields__],
         "Options": [*OPTIONS],
         "Reward terms": [*TERMS],
         "Observation": [entry.name for entry in observation_entries(every_block)],

@@ -115,7 +115,7 @@ def test_two_films_and_clocks_that_are_set_back_are_refused(seen, table):
 
 def test_two_films_that_were_sorted_into_each_other_are_refused(seen):
     table = two_films(seen, 0.5).sort_values("frame", kind="stable")
-    with pytest.raises(flockenv.ParameterError, match="is it of one film"):
+    with pytest.raises(flockenv.ParameterError, match="is it one film"):
         read_tracks(table, LAYOUT)
 
 
