@@ -14,7 +14,8 @@ from flockenv.sb3.evaluation import (
     PerFlock,
     evaluate_flocks,
 )
-from flockenv.sb3.leader_vec_env import LeaderSlot, LeaderVecEnv
+from flockenv.sb3.leader_slot import LeaderSlot
+from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.sb3.monitor import FlockMonitor
 from flockenv.sb3.shared_noise import SharedNoisePolicy, shared_noise
 

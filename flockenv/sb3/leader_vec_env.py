@@ -1,11 +1,9 @@
 """`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-import gymnasium
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
@@ -25,58 +23,8 @@ from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
-from flockenv.parameters import FlockParameters
 from flockenv.rendering.frames import DEFAULT_SIZE
-
-
-@dataclass(frozen=True, eq=False)
-class LeaderSlot:
-    """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
-
-    ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
-    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the next episodes.
-    """
-
-    _env: "LeaderVecEnv"
-    flock_index: int
-    leader_index: int
-    observation_space: ObservationSpace
-    action_space: gymnasium.Space[Any]
-    render_mode: str | None
-
-    @property
-    def bw_s(self) -> float | tuple[float, float]:
-        """Backward duration in s of the flock's next episodes, or its range."""
-        upcoming: float | tuple[float, float] = self._upcoming("bw_s")
-        return upcoming
-
-    @property
-    def target(self) -> str | tuple[str, ...]:
-        """Target of the flock's next episodes."""
-        upcoming: str | tuple[str, ...] = self._upcoming("target")
-        return upcoming
-
-    def _upcoming(self, name: str) -> Any:
-        return self._env._batch.core.upcoming(self.flock_index)[name]
-
-    @property
-    def spec(self) -> EnvSpec | None:
-        """The registered environment whose options these are; None for options of one's own."""
-        return self._env.spec
-
-    @property
-    def parameters(self) -> FlockParameters:
-        """Parameters of the slot's flock; an episode may have its own target and bw_s."""
-        return self._env._batch.parameters(self.flock_index)
-
-    def episode(self) -> dict[str, Any]:
-        """Return target, backward duration, seed and step of the slot's flock."""
-        return self._env._batch.core.episode(self.flock_index)
-
-    def state(self) -> NDArray[np.float32]:
-        """Return the global state of the slot's flock, shape (state size,)."""
-        state: NDArray[np.float32] = self._env._batch.core.states()[self.flock_index]
-        return state
+from flockenv.sb3.leader_slot import LeaderSlot
 
 
 class LeaderVecEnv(ManyFlocks, VecEnv):

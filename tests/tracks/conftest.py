@@ -13,19 +13,9 @@ from flockenv.tracks import TrackLayout, read_tracks
 PIXEL_CM = 0.25
 CENTER = (812.0, 604.5)
 PARAMETERS = flockenv.FlockParameters(n_boats=20, n_leaders=2, pool="narrow", bw_s=0.3)
-LAYOUT = TrackLayout(
-    pool="narrow",
-    leaders=("boat1", "boat2"),
-    fps=10.0,
-    id="track",
-    x="x_px",
-    y="y_px",
-    heading="angle",
-    heading_unit="deg",
-    cm_per_unit=PIXEL_CM,
-    center=CENTER,
-    y_down=True,
-)
+FIELDS = {"pool": "narrow", "leaders": ("boat1", "boat2"), "cm_per_unit": PIXEL_CM}
+FIELDS |= {"center": CENTER, "y_down": True, "heading_unit": "deg"}
+LAYOUT = TrackLayout(**FIELDS, fps=10.0, id="track", x="x_px", y="y_px", heading="angle")
 
 
 @dataclass
@@ -66,3 +56,12 @@ def read_and_counted(source, layout=None):
 def but(layout, **changes):
     """Return a layout with other values in some of its fields."""
     return dataclasses.replace(layout, **changes)
+
+
+def check(seen, found, report, tolerance=1e-6):
+    expected = read_tracks(seen.table, LAYOUT)
+    order = [expected.ids.tolist().index(name) for name in found.ids]
+    there = ~np.isnan(found.pose[..., 0])
+    assert (report.samples, report.missing) == (len(seen.table), seen.missing)
+    assert np.abs((found.pose - expected.pose[:, order])[there][:, :2]).max() < tolerance
+    assert np.allclose(found.order.psi_o, expected.order.psi_o, atol=1e-5, equal_nan=True)

@@ -1,0 +1,72 @@
+"""`LeaderSlot`: what stands for one environment in a `LeaderVecEnv`."""
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import gymnasium
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+from numpy.typing import NDArray
+
+from flockenv.envs.batch import LeaderBatch
+from flockenv.envs.spaces import ObservationSpace
+from flockenv.parameters import FlockParameters
+
+
+class _Flocks(Protocol):
+    """What a slot needs of the environment that it is a part of."""
+
+    _batch: LeaderBatch
+
+    @property
+    def spec(self) -> EnvSpec | None: ...
+
+
+@dataclass(frozen=True, eq=False)
+class LeaderSlot:
+    """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
+
+    ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
+    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the next episodes.
+    """
+
+    _env: _Flocks
+    flock_index: int
+    leader_index: int
+    observation_space: ObservationSpace
+    action_space: gymnasium.Space[Any]
+    render_mode: str | None
+
+    @property
+    def bw_s(self) -> float | tuple[float, float]:
+        """Backward duration in s of the flock's next episodes, or its range."""
+        upcoming: float | tuple[float, float] = self._upcoming("bw_s")
+        return upcoming
+
+    @property
+    def target(self) -> str | tuple[str, ...]:
+        """Target of the flock's next episodes."""
+        upcoming: str | tuple[str, ...] = self._upcoming("target")
+        return upcoming
+
+    def _upcoming(self, name: str) -> Any:
+        return self._env._batch.core.upcoming(self.flock_index)[name]
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """The registered environment whose options these are; None for options of one's own."""
+        return self._env.spec
+
+    @property
+    def parameters(self) -> FlockParameters:
+        """Parameters of the slot's flock; an episode may have its own target and bw_s."""
+        return self._env._batch.parameters(self.flock_index)
+
+    def episode(self) -> dict[str, Any]:
+        """Return target, backward duration, seed and step of the slot's flock."""
+        return self._env._batch.core.episode(self.flock_index)
+
+    def state(self) -> NDArray[np.float32]:
+        """Return the global state of the slot's flock, shape (state size,)."""
+        state: NDArray[np.float32] = self._env._batch.core.states()[self.flock_index]
+        return state

@@ -1,0 +1,76 @@
+"""Law: a layout is guessed from the header of a table; what is not found is to be filled in."""
+
+import pytest
+
+import flockenv
+from flockenv.tracks import guess_layout, read_layout, read_tracks
+
+from .conftest import CENTER, FIELDS, but, check, read_and_counted
+
+LAB = ("Frame", "RobotID", "X [px]", "Y [px]", "Theta [deg]")
+
+
+@pytest.mark.parametrize(
+    ("separator", "decimal", "encoding", "before"),
+    [
+        (",", ".", "utf-8", ""),
+        (",", ".", "utf-8-sig", ""),
+        (";", ",", "utf-8", ""),
+        (";", ",", "cp1252", ""),
+        (";", ".", "utf-16", "Experiment: 7\n\n"),
+        ("\t", ",", "utf-8", "Kamera: oben links\nMaßstab: 2,5 mm\n"),
+        ("|", ".", "utf-8", ""),
+    ],
+)
+def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encoding, before):
+    table = seen.table.set_axis(LAB, axis=1).astype({"X [px]": float, "Y [px]": float})
+    if encoding == "cp1252":
+        table = table.rename(columns={"Theta [deg]": "Theta [°]"})
+    text = before + table.to_csv(index=False, sep=separator, decimal=decimal)
+    (tmp_path / "lab.csv").write_bytes(text.encode(encoding))
+    checks = guess_layout(tmp_path / "lab.csv")
+    assert any("cm_per_unit = 1.0  # fill in" in line for line in checks)
+    guessed = read_layout(tmp_path / "lab.toml")
+    assert (guessed.frame, guessed.id, guessed.x, guessed.y) == LAB[:4]
+    assert (guessed.separator, guessed.decimal, guessed.heading_unit) == (separator, decimal, "deg")
+    assert guessed.center == pytest.approx(CENTER, abs=40)
+    layout = but(guessed, **FIELDS, fps=10.0)
+    check(seen, *read_and_counted(tmp_path / "lab.csv", layout))
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        ("time [ms];Robot;x (mm);y (mm);yaw [rad]", {"fps": 1000.0, "cm_per_unit": 0.1}),
+        ("time_s;robot_no;x_m;y_m;heading_deg", {"cm_per_unit": 100.0, "heading_unit": "deg"}),
+        ("Timestamp;Tag ID;X;Y;Orientation", {"id": "Tag ID", "heading": "Orientation"}),
+        ("step;fish;pos_x;pos_y;theta", {"frame": "step", "id": "fish", "x": "pos_x"}),
+        ("Time (Seconds);Body;X (m);Y (m);Yaw", {"fps": None, "id": "Body", "cm_per_unit": 100.0}),
+    ],
+)
+def test_units_in_a_header_are_taken(tmp_path, names, expected):
+    rows = [f"{40 * k};{k % 2};{k % 7 + 0.5};{k % 5 + 1.5};0.1" for k in range(40)]
+    (tmp_path / "lab.csv").write_text("\n".join([names, *rows]))
+    guess_layout(tmp_path / "lab.csv")
+    found = read_layout(tmp_path / "lab.toml")
+    assert {name: getattr(found, name) for name in expected} == expected
+
+
+def test_what_is_not_found_is_to_be_filled_in(tmp_path):
+    (tmp_path / "odd.csv").write_text("frame,who,east,north\n0,a,1,2\n0,b,3,4\n")
+    checks = guess_layout(tmp_path / "odd.csv")
+    assert [line.split()[0] for line in checks if "fill in" in line] == ["x", "y", "id", "pool"]
+    with pytest.raises(flockenv.ParameterError, match="x = '' is not accepted"):
+        read_tracks(tmp_path / "odd.csv")
+    with pytest.raises(flockenv.ParameterError, match="there already"):
+        guess_layout(tmp_path / "odd.csv")
+
+
+def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):
+    table = seen.table.set_axis(LAB, axis=1)
+    table.loc[::9, ["X [px]", "Y [px]"]] = -1
+    table.to_csv(tmp_path / "lab.csv", index=False)
+    guess_layout(tmp_path / "lab.csv")
+    guessed = read_layout(tmp_path / "lab.toml")
+    assert guessed.center == pytest.approx(CENTER, abs=40)
+    assert guessed.lost == ((-1.0, -1.0),)
