@@ -1,18 +1,11 @@
 # Two front doors: `make compare` and `make test`. Both need a Rust toolchain, Python >= 3.11 and make, and set
 # up the rest themselves in .venv. `make help` lists the others.
 
-# The interpreter, others that `make test-wheel` tries the wheel on, parallel pytest workers, and options that are
-# passed on.
+# The interpreter, parallel pytest workers, and how many of each kind of hostile input. Empty unless they are given:
+# PYTHONS, on which `make test-wheel` tries the wheel too, PAGE, the one page that `make extend` follows, and PYTEST_ARGS,
+# COMPARE_ARGS, PAPER_ARGS, PRETRAINED_ARGS and INSTRUCTIONS, which are passed on.
 PYTHON ?= python3
-PYTHONS ?=
 JOBS ?= 2
-PYTEST_ARGS ?=
-COMPARE_ARGS ?=
-PAPER_ARGS ?=
-PRETRAINED_ARGS ?=
-INSTRUCTIONS ?=
-# The page of docs/extend that `make extend` follows, if not all; how many of each kind of hostile input.
-PAGE ?=
 FUZZ_EXAMPLES ?= 2000
 
 BIN := .venv/bin
@@ -60,7 +53,7 @@ setup: $(STAMPS)/test
 build: $(STAMPS)/compare $(CORE) ## build the simulator and install the package, editable, into .venv
 
 lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling
-	cargo fmt --check
+	cargo fmt --check && cargo fmt --check --manifest-path web/Cargo.toml
 	$(BIN)/ruff format --check
 	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
 	$(BIN)/python tests/modules/cycles.py src
@@ -71,7 +64,7 @@ lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, im
 	git ls-files -z | xargs -0 $(BIN)/codespell
 
 format: $(STAMPS)/test ## format the Rust and Python sources
-	cargo fmt
+	cargo fmt && cargo fmt --manifest-path web/Cargo.toml
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 

@@ -11,8 +11,8 @@ mod live;
 mod request;
 
 use flockenv::analysis::quantities::Formula;
-use flockenv::parameters::Target;
 use flockenv::geometry::{Pose, Velocity};
+use flockenv::parameters::Target;
 use flockenv::{Flock, FlockError, OrderParameters};
 use live::{Columns, Live};
 use serde_json::{Value as Json, json};
@@ -129,14 +129,23 @@ impl Page {
         let State { pose, velocity } = serde_json::from_str(self.request()?)
             .map_err(|error| FlockError::parameter("state", error, "JSON"))?;
         let flock = self.checked.as_mut();
-        let flock = flock.ok_or_else(|| FlockError::parameter("flock", "none", "a checked flock"))?;
-        let poses: Vec<_> = pose.iter().map(|&[x, y, heading]| Pose::new(x, y, heading)).collect();
+        let flock =
+            flock.ok_or_else(|| FlockError::parameter("flock", "none", "a checked flock"))?;
+        let poses: Vec<_> = pose
+            .iter()
+            .map(|&[x, y, heading]| Pose::new(x, y, heading))
+            .collect();
         let velocities: Vec<_> = velocity
             .iter()
-            .map(|&[x, y, angular]| Velocity { linear: [x, y].into(), angular })
+            .map(|&[x, y, angular]| Velocity {
+                linear: [x, y].into(),
+                angular,
+            })
             .collect();
         flock.set_state(&poses, &velocities, 0.0, true)?;
-        Ok(flock.recorded(false).map_or(Json::Null, |values| values.to_vec().into()))
+        Ok(flock
+            .recorded(false)
+            .map_or(Json::Null, |values| values.to_vec().into()))
     }
 }
 

@@ -51,7 +51,9 @@ impl Request {
                 let outcome = (field.set)(&mut parameters, &read(field.kind, json));
                 outcome.map_err(|error| match error {
                     FlockError::Kind { .. } => {
-                        let given = json.as_str().map_or_else(|| json.to_string(), str::to_owned);
+                        let given = json
+                            .as_str()
+                            .map_or_else(|| json.to_string(), str::to_owned);
                         FlockError::parameter(field.name, shown(&given), field.accepted())
                     }
                     other => other,
