@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.policies.names import LAWS
 
 pytestmark = pytest.mark.live
 
@@ -34,9 +35,7 @@ def numbers(text: str) -> np.ndarray:
 @pytest.mark.parametrize(
     ("policy", "changes"),
     [
-        ("paper's law at every substep", {}),
-        ("tuned law", {}),
-        ("learned", {}),
+        *((name, {}) for name in LAWS),
         # A policy of its own for each leader; one of them mirrors a counter-clockwise target.
         ("learned,paper's law,tuned law", {"target": "ccw"}),
         ("paper's law at every substep", {"scheme": "moreau", "noise_scheme": "per-step"}),
