@@ -64,8 +64,8 @@ lists what the installed version has.
 
 ## Parameters
 
-The fields of `FlockParameters`, each with its value in the presets. [The model](../model.md) says \
-what they do to a flock.
+The fields of `FlockParameters`, with their values in the presets: one value if all presets have \
+it. [The model](../model.md) says what they do to a flock.
 
 {_parameters()}
 
@@ -106,17 +106,14 @@ their sign if `mirror_to_target` reflects the view.
 
 def _parameters() -> str:
     presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
-    body = [
-        [
-            f"`{each.name}`",
-            each.metadata["unit"],
-            *(str(values[each.name]) for values in presets.values()),
-            each.metadata["accepted"],
-            each.metadata["doc"],
-        ]
-        for each in fields(FlockParameters)
-    ]
-    return markdown(["field", "unit", *presets, "accepted", "meaning"], body)
+    body = []
+    for each in fields(FlockParameters):
+        values = [str(values[each.name]) for values in presets.values()]
+        preset = values[0] if len({*values}) == 1 else ", ".join(values)
+        unit = each.metadata["unit"]
+        meaning = each.metadata["doc"] + (f" [{unit}]" if unit else "")
+        body.append([f"`{each.name}`", meaning, preset, each.metadata["accepted"]])
+    return markdown(["field", "meaning", ", ".join(presets), "accepted"], body)
 
 
 def _by_block(entries: Iterable[Entry]) -> str:

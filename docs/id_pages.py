@@ -250,7 +250,8 @@ def _plot(
     label: str = "signed order",
     reference: float | None = None,
 ) -> Plot:
-    colors = policy_colors([_policy(name) for name in intervals])
+    # The laws first, so that each has its color on all pages.
+    colors = policy_colors(dict.fromkeys([*LADDER, *map(_policy, intervals)]))
 
     def draw_intervals(figure: Figure) -> None:
         axes = figure.subplots()
