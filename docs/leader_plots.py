@@ -12,6 +12,7 @@ from flockenv.statistics import student_interval
 LADDER = (LEARNED, TUNED, "damped law", "paper's law")
 COUNT = "leaders/leader_count.csv"
 MOTION = "leaders/motion.csv"
+BEYOND = "leaders/beyond.csv"
 GAINS = "leaders/tuned_laws/gains.csv"
 PLANS = {"planner, noise known": "known", "planner, noise unknown": "fresh"}
 
@@ -51,6 +52,17 @@ def tuned_laws(figure: Figure) -> None:
         pool: {k: _ends(row, *ends) for k, row in each.items()} for pool, each in found.items()
     }
     _by_leaders(figure, shown, "searched gains")
+
+
+def beyond(figure: Figure) -> None:
+    """Draw what learned leaders add to the tuned law in other flocks than those of the training."""
+    axes = figure.subplots()
+    found = {
+        " ".join({row["what"]: 0, row["value"]: 0}): _ends(row, "gain", "gain_low", "gain_high")
+        for row in rows(BEYOND)
+    }
+    listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
+    axes.set(xlabel="learned minus tuned law")
 
 
 def _added(case: str) -> dict[str, Interval]:
@@ -115,6 +127,7 @@ PLOTS = {
     "leaders/leader_count.png": Plot([COUNT], leader_count),
     "leaders/both_pools.png": Plot([MEANS], both_pools, (8.4, 4.2)),
     "leaders/learned_minus_tuned.png": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (8.4, 2.6)),
+    "leaders/beyond.png": Plot([BEYOND], beyond, (6.8, 2.2)),
     "leaders/tuned_laws.png": Plot([GAINS], tuned_laws, (8.4, 2.6)),
     "leaders/plans.png": Plot(
         ["leaders/plan_known.csv", "leaders/plan_fresh.csv"], plans, (8.4, 2.2)
