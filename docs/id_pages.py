@@ -12,13 +12,12 @@ from typing import Any
 
 import gymnasium
 from committed_data import MEANS, Row, markdown, rows
-from interval_plots import Plot, listed
+from interval_plots import Plot, colors_of, listed
 from leader_plots import LADDER
 from loops import HEIGHT, SHOWN, draw, shown
 from matplotlib.figure import Figure
 from PIL import Image
 
-from flockenv.comparison.figure import policy_colors
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries
@@ -250,8 +249,7 @@ def _plot(
     label: str = "signed order",
     reference: float | None = None,
 ) -> Plot:
-    # The laws first, so that each has its color on all pages.
-    colors = policy_colors(dict.fromkeys([*LADDER, *map(_policy, intervals)]))
+    colors = colors_of(dict.fromkeys(map(_policy, intervals)))
 
     def draw_intervals(figure: Figure) -> None:
         axes = figure.subplots()

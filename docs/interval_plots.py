@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flockenv.comparison.episodes import NO_LEADERS
-from flockenv.comparison.figure import policy_colors
+from flockenv.comparison.figure import OWN_COLORS, policy_colors
 
 Interval = tuple[float, float, float]
 """A mean and the ends of its interval."""
@@ -67,6 +67,13 @@ class Plot:
             figure.savefig(DOCS / name, format="png", dpi=150, metadata=stamp)
 
 
+def colors_of(names: Iterable[str]) -> dict[str, str]:
+    """Return a color for each policy: as in every figure, and the damped law's own on the pages."""
+    every = [*names]
+    others = policy_colors(name for name in every if name != "damped law")
+    return {name: others.get(name, OWN_COLORS[3]) for name in every}
+
+
 def across(
     axes: Axes,
     rows: Iterable[Row],
@@ -84,7 +91,7 @@ def across(
     for row in rows:
         point = (float(row[x]), *(float(row[name]) for name in columns))
         lines.setdefault(row[by], []).append(point)
-    colors = policy_colors(lines)
+    colors = colors_of(lines)
     colors.update({name: "0.4" for name in lines if name == NO_LEADERS})
     for place, name in enumerate(lines):
         at, mean, low, high = zip(*sorted(lines[name]), strict=True)
@@ -113,7 +120,7 @@ def listed(
     """
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
-    colors = policy_colors(intervals) if colors is None else colors
+    colors = colors_of(intervals) if colors is None else colors
     for line, (name, interval) in enumerate(intervals.items()):
         _bars(axes, [line], [interval], color=colors[name])
     _lines(axes, intervals)
@@ -132,7 +139,7 @@ def grouped(
     """
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
-    colors = policy_colors(series) if colors is None else colors
+    colors = colors_of(series) if colors is None else colors
     names = [*dict.fromkeys(name for intervals in series.values() for name in intervals)]
     for place, (own, intervals) in enumerate(series.items()):
         off = shift * (place - (len(series) - 1) / 2)

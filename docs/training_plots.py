@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 from committed_data import Row, rows
-from interval_plots import Plot, across, listed
+from interval_plots import Plot, across, colors_of, listed
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-
-from flockenv.comparison.figure import policy_colors
 
 EASY = "easy/curve.csv"
 SIGNALS = "results/signals.csv"
@@ -32,7 +30,7 @@ ALGORITHMS = {
     "evolution strategy, 500": ("training/algorithms", "evolution"),
 }
 """Folders of algorithms and their names there."""
-COLORS = policy_colors(["mine", "damped law", "paper's law", "tuned law"])
+COLORS = colors_of(["mine", "damped law", "paper's law", "tuned law"])
 OWN = COLORS["mine"]
 """The color of what a reader trains."""
 
