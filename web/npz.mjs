@@ -96,14 +96,14 @@ function* entries(view) {
   if (end < 0 || view.getUint32(end, true) !== 0x06054b50) {
     throw new Error("it is no .npz file");
   }
-  const [count, size, first, comment] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true), view.getUint16(end + 20, true)];
+  const [count, size, first] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true)];
   let place = first;
   for (let left = count; left > 0; left -= 1) {
     const entry = directoryEntry(view, place);
     yield entry;
     place = entry.next;
   }
-  if (place !== end || first + size !== end || end + 22 + comment !== view.byteLength) {
+  if (place !== end || first + size !== end) {
     throw new Error("Bad magic number for central directory");
   }
 }

@@ -50,6 +50,12 @@ def test_a_noise_seed_changes_the_noise_and_nothing_else():
     assert len({end.tobytes() for end in ends}) == 3
 
 
+def test_a_branch_of_a_branch_has_the_noise_that_it_is_given():
+    blob = after(5, seconds=0.0).snapshot()
+    assert after(6, blob).snapshot() == after(6).snapshot()
+    assert after(None, blob).snapshot() == after(5).snapshot()
+
+
 def test_the_noise_is_never_that_of_a_flock_with_this_seed():
     """A planner that counts its branches from 0 must not meet the future that it plans for."""
     assert not np.array_equal(after(7).pose, after(None).pose)

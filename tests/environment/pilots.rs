@@ -78,3 +78,24 @@ fn a_law_is_stored_to_the_bit() {
         assert_eq!(law, again);
     }
 }
+
+#[test]
+fn laws_whose_gains_are_no_numbers_lead_nobody() {
+    let Ok(Law::Damped(gains)) = Law::named("tuned law", Some("narrow")) else {
+        panic!("the law is tuned in this pool");
+    };
+    let layout = ObservationLayout::of(&[Block::Own, Block::LeanFeatures]);
+    for wrong in [f64::NAN, f64::INFINITY, 1e10] {
+        for place in 0..3 {
+            let mut own = gains;
+            *[&mut own.gain, &mut own.backward_gain, &mut own.damping][place] = wrong;
+            let mut leaning = LeaningLaw::learned(Some("narrow")).unwrap();
+            leaning.gains = own;
+            for law in [Law::Damped(own), Law::Leaning(Box::new(leaning))] {
+                assert!(law.check().is_err(), "{law:?}");
+                assert!(ObservedLaw::new(law.clone(), &layout).is_err());
+                assert!(Pilot::new(law, &parameters(1), 10.0).is_err());
+            }
+        }
+    }
+}

@@ -3,7 +3,8 @@
 use crate::support::{batch, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{
-    Autoreset, EnvBatch, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice, Weights,
+    Autoreset, Drawn, EnvBatch, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice,
+    Upcoming, Weights,
 };
 use flockenv::parameters::Target::{Clockwise, CounterClockwise};
 use flockenv::parameters::{FlockParameters, Targets};
@@ -20,14 +21,20 @@ fn rich_settings() -> EnvSettings {
 
 #[test]
 fn a_restored_batch_goes_on_bit_for_bit() {
-    let mut original = batch(rich_settings(), &[1, 3], 0);
-    for time in 0..40 {
-        let bytes = original.to_bytes();
-        let mut copy = EnvBatch::from_bytes(&bytes).unwrap();
-        assert_eq!(copy.to_bytes(), bytes);
-        let actions = [f64::from(time).sin(), 0.2, -0.7, 1.0];
-        assert_eq!(step(&mut original, &actions), step(&mut copy, &actions));
-        assert_eq!(original.to_bytes(), copy.to_bytes());
+    for autoreset_mode in [Autoreset::NextStep, Autoreset::SameStep] {
+        let settings = EnvSettings {
+            autoreset_mode,
+            ..rich_settings()
+        };
+        let mut original = batch(settings, &[1, 3], 0);
+        for time in 0..40 {
+            let bytes = original.to_bytes();
+            let mut copy = EnvBatch::from_bytes(&bytes).unwrap();
+            assert_eq!(copy.to_bytes(), bytes);
+            let actions = [f64::from(time).sin(), 0.2, -0.7, 1.0];
+            assert_eq!(step(&mut original, &actions), step(&mut copy, &actions));
+            assert_eq!(original.to_bytes(), copy.to_bytes());
+        }
     }
 }
 
@@ -217,10 +224,36 @@ fn states_with_numbers_that_no_boat_has_are_refused() {
             assert_eq!(moved.snapshot(), snapshot);
         }
     }
+    // A rudder beyond its stop.
+    let mut steered = flock.clone();
+    steered.advance(0.5, Some(&[0.625])).unwrap();
+    let bytes = steered.snapshot();
+    assert!(Flock::from_snapshot(&forged(&bytes, 0.625, 0.5), None).is_ok());
+    assert!(Flock::from_snapshot(&forged(&bytes, 0.625, 1.5), None).is_err());
     let own = batch.to_bytes();
     for number in [flock.poses()[2].position.x, flock.poses()[2].heading] {
         let bytes = forged(&own, number, f64::NAN);
         assert!(EnvBatch::from_bytes(&bytes).is_err());
+    }
+}
+
+#[test]
+fn states_with_numbers_that_no_episode_has_are_refused() {
+    let mut own = batch(rich_settings(), &[1], 0);
+    step(&mut own, &[0.5]).unwrap();
+    // A late camera still has what is past for the flock.
+    let past = own.envs()[0].episode().unwrap().flock().poses()[4].heading;
+    step(&mut own, &[0.5]).unwrap();
+    let bw_s = 0.6180339;
+    let upcoming = Upcoming {
+        bw_s: Some(Drawn::Fixed(bw_s)),
+        ..Upcoming::default()
+    };
+    own.set_upcoming(&[0], &upcoming).unwrap();
+    let bytes = own.to_bytes();
+    for (number, other) in [(past, f64::NAN), (bw_s, f64::NAN), (bw_s, -1.0)] {
+        assert!(EnvBatch::from_bytes(&forged(&bytes, number, number)).is_ok());
+        assert!(EnvBatch::from_bytes(&forged(&bytes, number, other)).is_err());
     }
 }
 

@@ -80,6 +80,29 @@ def test_alignment_and_order_follow_the_spin_that_the_hit_gave(target):
     assert abs(seen[-1][1]) > 0.01
 
 
+@pytest.mark.parametrize(("c1", "c3"), [(0.0, 1.0), (5.0, 0.0)])
+def test_a_spin_that_was_given_decays_as_eq_9_has_a_small_change_decay(c1, c3):
+    """At the rate 3·c1·α̇² + c3·u·ẋ, which is its linearization."""
+    env = LeadersEnv(params=floating().replace(c1=c1, c3=c3), target="cw", reward=CREDIT)
+    # From behind, and beside the middle: one hit that sends the boat ahead, turning.
+    pose = [[145.0, 24.0, -np.pi / 2], [140.0, 0.0, -np.pi / 2]]
+    state = {"pose": pose, "velocity": [[0.0, -12.0, 0.0], [0.0, 0.0, 0.0]]}
+    env.reset(seed=0, options={"state": state})
+    spin, angle, seen = 0.0, 0.0, []
+    for _ in range(15):
+        terms = env.step([0.0])[4]["reward_terms"]
+        (_, _, heading), (vx, vy, turning) = env.flock.pose[1], env.flock.velocity[1]
+        spin = spin or turning
+        angle = np.exp(-STEP_S / 4.0) * (angle + spin * STEP_S)
+        rate = 3 * c1 * turning**2 + c3 * (vx * np.cos(heading) + vy * np.sin(heading))
+        spin *= np.exp(-rate * STEP_S)
+        delta = misalignment(env.flock, 1, "cw")
+        seen.append((terms["touched_order"], np.cos(delta) - np.cos(delta + angle)))
+    found, expected = np.array(seen).T
+    assert found == pytest.approx(expected, abs=4e-4)
+    assert abs(found).max() > 2e-3
+
+
 def test_a_credit_changes_no_bits_and_survives_a_stored_state():
     options = {"n_boats": 20, "n_leaders": 3, "pool": "narrow", "action_mode": "lean"}
     plain = LeadersVectorEnv(2, **options)

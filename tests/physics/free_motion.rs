@@ -240,3 +240,23 @@ fn no_spin_grows_at_the_longest_step() {
         }
     }
 }
+
+#[test]
+fn a_rudder_that_is_put_over_keeps_the_order_of_leapfrog() {
+    // A kick across the change has half of each rudder: with the later one alone, errors are of first order.
+    let end = |dt_s: f64| {
+        let p = FlockParameters {
+            n_leaders: 1,
+            dt_s,
+            ..driven(Scheme::Leapfrog)
+        };
+        let mut flock = flock_of(&p, &[([0.0; 3], [15.0, 0.0, 0.0])]);
+        for rudder in [0.8, -0.8, 0.2, 1.0] {
+            flock.advance(0.4, Some(&[rudder])).expect("finite motion");
+        }
+        flock.poses()[0].heading
+    };
+    let [coarse, fine, finer] = [0.02, 0.01, 0.005].map(end);
+    let order = ((coarse - fine) / (fine - finer)).abs().log2();
+    assert!((order - 2.0).abs() < 0.25, "{order}");
+}

@@ -301,6 +301,28 @@ fn increments_over_parts_of_a_cell_have_their_own_variance() {
 }
 
 #[test]
+fn bridges_of_different_leaves_are_independent() {
+    // A leaf is 1/1024 of a cell: the middle of one is off the mean of its ends by N(0, length/4).
+    let (leaf, boats) = (2000, 300);
+    let mut paths = BrownianPaths::new(5, boats, 1024 * leaf, 0);
+    let mut bridge = |leaf_number: u64| {
+        let start = leaf * leaf_number;
+        let first = increments(&mut paths, start, start + leaf / 2);
+        let second = increments(&mut paths, start + leaf / 2, start + leaf);
+        let ends = first.iter().zip(&second);
+        ends.map(|(a, b)| 0.5 * (a - b)).collect::<Vec<_>>()
+    };
+    let (one, other) = (bridge(3), bridge(700));
+    let variance = leaf as f64 * 0.5e-9 / 4.0;
+    let products = one.iter().zip(&other).map(|(a, b)| a * b / variance);
+    let correlation = products.sum::<f64>() / boats as f64;
+    assert!(
+        correlation.abs() < 5.0 / (boats as f64).sqrt(),
+        "{correlation}"
+    );
+}
+
+#[test]
 fn an_increment_does_not_depend_on_the_number_of_boats() {
     let mut few = BrownianPaths::new(4, 3, 40_000_000, 0);
     let mut many = BrownianPaths::new(4, 300, 40_000_000, 0);

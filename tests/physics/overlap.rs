@@ -173,3 +173,29 @@ fn a_full_pool_with_its_engines_off_never_gains_energy() {
         }
     }
 }
+
+#[test]
+fn part_of_a_substep_opens_its_part_of_an_overlap() {
+    // An overlap has a whole substep to close in, however short the one at hand is: relinearization does not hurry it.
+    for relinearizations in [0, 1, 2] {
+        for scheme in VELOCITY_SCHEMES {
+            let p = FlockParameters {
+                relinearizations,
+                ..inert(scheme)
+            };
+            let overlap = 0.004;
+            let states = [
+                ([0.0, 0.0, 0.0], [0.0; 3]),
+                ([15.0 - overlap, 0.0, 0.0], [0.0; 3]),
+            ];
+            let mut flock = crowded(&p, &states);
+            flock.advance(0.005, None).expect("finite motion");
+            let speed = 0.5 * overlap / 0.02;
+            let found = flock.velocities()[1].linear.x;
+            assert!((found - speed).abs() < 1e-9, "{scheme:?}: {found}");
+            assert!((deepest_overlap(&flock) - 0.75 * overlap).abs() < 1e-9);
+            // Hurried, it would be taken back, in ever shorter substeps.
+            assert_eq!(flock.statistics().substeps, 1);
+        }
+    }
+}

@@ -103,6 +103,9 @@ fn the_analysis_window_of_sampled_phases() {
     let expected = [false, false, true, true, true, false, false, false];
     assert_eq!(analyzed, expected);
     assert!(sampled_analysis_window(&[], &[]).is_empty());
+    // A phase lasts until the next one's first sample, not its own last: fw to 4 s, with its middle at 2 s.
+    let irregular = sampled_analysis_window(&[0.0, 1.75, 3.0, 4.0, 5.0], &phases[1..6]);
+    assert_eq!(irregular, [false, false, true, true, false]);
 
     // Samples of a flock's own schedule, taken where every phase has a middle.
     let schedule = PhaseSchedule::new(&FlockParameters::preset(Preset::Simulation));

@@ -8,6 +8,8 @@ use crate::support::{SCHEMES, driven};
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 const SPREAD: f64 = 5.0;
 
@@ -103,5 +105,17 @@ fn the_width_is_the_parameter() {
     };
     for (wide, narrow) in factors(15.0).iter().zip(factors(0.5)) {
         assert!((wide - narrow).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn factors_are_drawn_from_a_stream_of_their_own() {
+    let mut key = [0; 32];
+    key[0] = 3;
+    key[8..20].copy_from_slice(b"speed-spread");
+    let mut words = ChaCha8Rng::from_seed(key);
+    for speed in final_speeds(&spread(Scheme::Leapfrog), 20, 3) {
+        let expected = 15.0 + SPREAD * words.random_range(-1.0..=1.0);
+        assert!((speed - expected).abs() < 1e-9, "{speed} {expected}");
     }
 }

@@ -63,6 +63,13 @@ fn no_difference_crosses_a_gap_a_long_step_or_a_jump() {
 }
 
 #[test]
+fn a_step_of_just_the_longest_time_counts() {
+    let times = [0.0, 0.5, 1.0];
+    let (found, _) = accelerated(&times).velocities(&times, 0.5, 1e9);
+    assert!((found.rows()[1].position.x - 1.0).abs() < 1e-12);
+}
+
+#[test]
 fn boats_may_have_clocks_of_their_own() {
     let rows = vec![
         Pose::new(0.0, 0.0, 0.0),

@@ -76,3 +76,24 @@ test("contacts are those of the latest look, for half a second", () => {
   run.append({ ...samples([1], [0], [false]), contacts: new Float64Array(0) });
   assert.deepEqual(run.contacts(2), []);
 });
+
+test("more samples at once than half of it push out as many as they need", () => {
+  const run = grown(4);
+  run.append(samples([0, 1, 2, 3], [0, 0.1, 0.2, 0.3], [false, false, false, false]));
+  run.append(samples([4, 5, 6], [0.4, 0.5, 0.6], [false, false, false]));
+  assert.deepEqual([...run.time], [3, 4, 5, 6]);
+  assert.equal(run.value("psi_o", 0), 0.3);
+});
+
+test("each analysis window has a mean of its own", () => {
+  const [run, cycles] = [grown(), []];
+  run.append(samples([0, 1, 2, 3], [0.25, 1, 0.75, 1], [true, false, true, false]), (order) => cycles.push(order));
+  assert.deepEqual(cycles, [0.25, 0.75]);
+});
+
+test("contacts that nobody has looked at for half a second are not known", () => {
+  const run = grown();
+  run.append(samples([0, 0.1], [0, 0], [false, false]));
+  run.append(samples([0.4, 0.7, 1], [0, 0, 0], [false, false, false]));
+  assert.deepEqual([1, 2, 3, 4].map((sample) => run.contacts(sample).length), [1, 1, 0, 1]);
+});

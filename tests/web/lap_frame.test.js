@@ -5,11 +5,24 @@ import { test } from "node:test";
 import { drawLapFrame } from "../../web/lap_frame.mjs";
 import { canvas } from "./pictures.js";
 
+test("the arc goes from the outward axis to the heading, the short way", () => {
+  // A canvas turns clockwise, with y downward, unless it is told otherwise.
+  for (const [heading, isCounter] of [[0.6, true], [-0.6, false]]) {
+    const [, , , from, to, flag] = drawn([70, 0, heading]).find(({ name }) => name === "arc").words;
+    assert.ok(Math.abs(from) < 1e-9 && Math.abs(to + heading) < 1e-9);
+    assert.equal(flag, isCounter);
+  }
+});
+
 /** Where words stand, from the boat in the middle of a large canvas, with y upward. */
 function words(pose) {
+  return Object.fromEntries(drawn(pose).filter(({ name }) => name === "fillText").map(({ words: [text, x, y] }) => [text, [x, -y]]));
+}
+
+function drawn(pose) {
   const picture = canvas(800, 800);
   drawLapFrame({ context: picture.getContext(), canvas: picture, palette: {}, scale: 10, poses: [pose], place: () => [400, 400], run: { lengths: { hull_radius_cm: 5 } } }, 0);
-  return Object.fromEntries(picture.calls.filter(({ name }) => name === "fillText").map(({ words: [text, x, y] }) => [text, [x, -y]]));
+  return picture.calls;
 }
 
 test("east of the middle outward is east, and clockwise is south", () => {

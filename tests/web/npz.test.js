@@ -71,3 +71,14 @@ test("objects are refused", async () => {
   const bytes = writeNpz({ pose: { shape: [1], descr: "|O", bytes: new Uint8Array(8) } });
   await assert.rejects(readNpz(bytes.buffer), { message: "an array of |O is not accepted" });
 });
+
+test("texts keep their zeros, but for those at the end, which NumPy leaves out", async () => {
+  const { names } = await readNpz(writeNpz({ names: array.texts(["a\0b", "c\0"], [2]) }).buffer);
+  assert.deepEqual(names.values, ["a\0b", "c"]);
+});
+
+test("bytes after the archive are no part of it, as for NumPy", async () => {
+  const whole = writeNpz({ numbers: array.reals([1, 2], [2]) });
+  const { numbers } = await readNpz(Uint8Array.of(...whole, 1, 2, 3).buffer);
+  assert.deepEqual([...numbers.values], [1, 2]);
+});

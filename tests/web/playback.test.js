@@ -91,3 +91,31 @@ test("a simulator without an answer is named, and pausing stops it", async () =>
   playback.toggle();
   assert.match(noted.said.at(-1), /you stopped it/);
 });
+
+test("time is sought within what there is", () => {
+  const { playback, page } = played({ end: 5 });
+  page.runs[0].time = [2];
+  assert.deepEqual([-1, 3, 9].map((time) => { playback.seek(time); return playback.time; }), [2, 3, 5]);
+});
+
+test("an answer about flocks that are no longer shown is dropped", async () => {
+  const { playback, page, noted, tick } = played({ end: 0 });
+  page.simulator.ask = async () => {
+    page.runs = [...page.runs];
+    return { taken: [{ observation: [1] }, {}], milliseconds: 1, memory: 2 };
+  };
+  playback.toggle();
+  await tick(0);
+  assert.deepEqual(noted.appended, []);
+  assert.equal(page.view.observed, null);
+});
+
+test("other flocks start another round", async () => {
+  const { playback, noted, tick } = played({ end: 130, lesson: "steer" });
+  for (const round of [1, 2]) {
+    playback.restart();
+    playback.toggle();
+    await tick(0);
+    assert.equal(noted.said.length, round);
+  }
+});

@@ -14,6 +14,12 @@ test("parameters of one flock, of a second beside it, and the rest", () => {
   assert.deepEqual(wanted.ignored, []);
 });
 
+test("a second flock may differ in several fields, up to the limits", () => {
+  const { beside, ignored } = readLink("#beside.n_boats=300&beside.n_leaders=8&n_boats=2", FIELDS);
+  assert.deepEqual(beside, { n_boats: "300", n_leaders: "8" });
+  assert.deepEqual(ignored, []);
+});
+
 test("an empty link asks for nothing", () => {
   assert.deepEqual(readLink("", FIELDS), { flock: {}, beside: null, other: {}, ignored: [] });
 });
@@ -109,4 +115,8 @@ test("lists over several lines, as Python writes them", () => {
   assert.deepEqual(valuesOfToml('pool = [\n    180.0,\n    inf,\n]\nscheme = "leapfrog"\n'), { pool: [180, "inf"], scheme: "leapfrog" });
   assert.deepEqual(valuesOfToml("discs = [\n    [\n        1.0,\n        2.0,\n        3.0,\n    ],\n]\nwalls = []\n"), { discs: [[1, 2, 3]], walls: [] });
   assert.deepEqual(valuesOfToml("bw_s = nan\n"), { bw_s: "nan" });
+});
+
+test("infinity in TOML may have a sign", () => {
+  assert.deepEqual(valuesOfToml("pool = [+inf, 0.0]\nbw_s = inf\n"), { pool: ["inf", 0], bw_s: "inf" });
 });

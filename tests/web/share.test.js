@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { GrowingRun } from "../../web/growing_run.mjs";
 import { readNpz } from "../../web/npz.mjs";
-import { recordingOf } from "../../web/share.mjs";
+import { derivedOf, recordingOf } from "../../web/share.mjs";
 
 const samples = (times) => ({
   time_s: Float64Array.from(times), phase: new Float64Array(times.length), in_analysis_window: new Float64Array(times.length),
@@ -23,5 +23,15 @@ test("samples before the change are left out", async () => {
   assert.deepEqual([...arrays.order_psi_o.values], [0.2, 0.3, 0.4]);
   assert.deepEqual(arrays.rudder.shape, [3, 1]);
   assert.equal(arrays.duration_s.values[0], 4);
+  assert.equal(arrays.seed.values[0], "7");
   assert.equal(arrays.parameters.values[0], "n_boats = 2\n");
+});
+
+test("what is asked of a recording has the sign of its target, and states where it holds no order", () => {
+  const arrays = { time_s: { values: [0, 1] }, pose: { values: Float64Array.from({ length: 6 }, (_, k) => k) }, velocity: { values: new Float64Array(6) } };
+  const asked = ["cw", "ccw", null].map((target) => derivedOf(arrays, { target, boats: 1 }, ["psi_o", "phi_o"]));
+  assert.deepEqual(asked.map(({ sign }) => sign), [1, -1, 1]);
+  assert.deepEqual(asked[0].states.map(({ pose }) => pose), [[[0, 1, 2]], [[3, 4, 5]]]);
+  const ordered = { ...arrays, order_psi_o: { values: [1, 1] }, order_phi_o: { values: [0, 0] } };
+  assert.equal(derivedOf(ordered, { target: "cw", boats: 1 }, ["psi_o", "phi_o"]).states, null);
 });

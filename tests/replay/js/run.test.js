@@ -11,6 +11,14 @@ test("the last sample at or before a time", () => {
   assert.deepEqual([-1, 0, 0.4, 0.5, 0.9, 1, 7].map((time) => run.sampleAt(time)), [0, 0, 0, 1, 1, 2, 2]);
 });
 
+test("a time that is a rounding before a sample is that sample", () => {
+  assert.equal(runOf().sampleAt(0.5 - 1e-12), 1);
+});
+
+test("before the first sample poses are those of the first", () => {
+  assert.deepEqual(runOf().posesAt(-1), runOf().posesAt(0));
+});
+
 test("poses between samples lie on straight lines", () => {
   const run = runOf();
   assert.deepEqual(run.posesAt(0), [[0, 0, 0], [30, 0, 1]]);

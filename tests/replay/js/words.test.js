@@ -34,4 +34,6 @@ test("a quantity with and without a unit", () => {
 
 test("the next of 1, 2, 5 and 10 times a power of ten", () => {
   assert.deepEqual([0.3, 1, 1.1, 3, 6, 10, 99].map(roundNumber), [0.5, 1, 2, 5, 10, 10, 100]);
+  // A rounding above a round number is that number.
+  assert.equal(roundNumber(2 * (1 + 1e-12)), 2);
 });
