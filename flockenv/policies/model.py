@@ -199,7 +199,8 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
     with open_plain(path) as file:
         try:
             return _WEIGHTS in zipfile.ZipFile(file).namelist()
-        except zipfile.BadZipFile:
+        except (zipfile.BadZipFile, NotImplementedError, ValueError):
+            # Damage may name a version that there is not, or letters that are none.
             return False
 
 

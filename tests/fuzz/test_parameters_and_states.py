@@ -87,7 +87,7 @@ def test_toml(data):
         text = TOML[:start] + data.draw(st.text(max_size=20)) + TOML[end:]
     try:
         same_after_a_round_trip(FlockParameters.from_toml(text))
-    except FlockError:
+    except NAMED:
         return
 
 

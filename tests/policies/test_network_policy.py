@@ -210,6 +210,21 @@ def test_damaged_and_foreign_files(tmp_path):
         load(tmp_path / "run.npz")
 
 
+@pytest.mark.parametrize(("place", "byte"), [(6, 109), (9, 8)])
+def test_damage_in_the_directory_of_an_archive_is_named(tmp_path, place, byte):
+    """A version of the format that there is not, or names in UTF-8 that are none."""
+    path = tmp_path / "damaged.npz"
+    policy = NetworkPolicy([np.zeros((SIZE, 1))], [[0.0]])
+    policy.save(path)
+    content = bytearray(path.read_bytes())
+    entry = content.index(b"PK\1\2")
+    content[entry + place] = byte
+    content[entry + 46] = 0xFF
+    path.write_bytes(content)
+    with pytest.raises(flockenv.ParameterError, match=r"damaged\.npz"):
+        load(path)
+
+
 def test_a_file_that_inflates_is_refused_unread(tmp_path, monkeypatch):
     network().save(tmp_path / "policy.npz")
     monkeypatch.setattr("flockenv.policies.network._LARGEST_FILE", 1000)
