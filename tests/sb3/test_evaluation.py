@@ -73,6 +73,20 @@ def test_returns_are_means_over_the_flocks_leaders():
     np.testing.assert_allclose(found.returns, expected[0], rtol=1e-5)
 
 
+def test_a_reward_of_a_flock_is_the_mean_over_its_leaders():
+    options = {"n_leaders": [1, 3], "reward": {"leader_velocity": 1.0}}
+    flocks, leaders = PerFlock(make(**options)), make(**options)
+    for venv in (flocks, leaders):
+        venv.seed(7)
+        venv.reset()
+    actions = np.linspace(-1.0, 1.0, leaders.num_envs)[:, None]
+    for _ in range(5):
+        found, each = flocks.step(actions)[1], leaders.step(actions)[1]
+        expected = [each[leaders.flock_of_slot == flock].mean() for flock in range(4)]
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+    assert not np.allclose(found, each[[0, 1, 4, 5]])
+
+
 def test_the_order_is_that_of_a_comparison_and_has_an_interval():
     venv = make(n_leaders=2, episode_s=60.0)
     found = evaluate_flocks(SteeringLaw(), venv, n_eval_episodes=4, seed=7)
@@ -111,6 +125,8 @@ def test_callback_evaluates_flocks_and_keeps_the_best(tmp_path):
     model.learn(3 * 8 * 12, callback=callback)
     stored = np.load(tmp_path / "evaluations.npz")
     assert stored["results"].shape == (3, 4)
+    # Each evaluation has its own episodes alone.
+    np.testing.assert_allclose(callback.evaluation.returns, stored["results"][-1], rtol=1e-6)
     # The last evaluation, by hand, before the update that followed it.
     assert (tmp_path / "best_model.zip").is_file()
     best = PPO.load(tmp_path / "best_model", device="cpu")
