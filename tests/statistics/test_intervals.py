@@ -7,12 +7,26 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from flockenv.statistics import FEW, bootstrap_interval, mean_interval, paired_difference, summarize
+from flockenv.statistics import (
+    FEW,
+    bootstrap_interval,
+    mean_interval,
+    paired_difference,
+    student_interval,
+    summarize,
+)
 
 
 def test_few_values_have_students_interval() -> None:
     mean, low, high = mean_interval([1.0, 2.0, 3.0])
     assert (mean, high - mean, mean - low) == pytest.approx((2.0, *[4.302653 / 3**0.5] * 2))
+
+
+def test_from_a_dozen_on_an_interval_is_a_bootstrap() -> None:
+    values = np.random.default_rng(2).exponential(size=FEW)
+    found = [mean_interval(values), mean_interval(values[1:])]
+    assert found[0] == bootstrap_interval([values], np.mean, 0)
+    assert found[1] == student_interval(values[1:])
 
 
 @pytest.mark.parametrize("count", [3, FEW, 40])

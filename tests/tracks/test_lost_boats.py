@@ -111,6 +111,29 @@ def test_boats_with_too_little_confidence_are_left_out(seen):
         but(LAYOUT, confidence="score")
 
 
+def test_the_least_confidence_is_enough(seen):
+    table = seen.table.assign(score=0.6)
+    layout = but(LAYOUT, confidence="score", least_confidence=0.6)
+    found, report = read_and_counted(table, layout)
+    assert report.left_out == {}
+    assert found == read_tracks(seen.table, LAYOUT)
+
+
+def test_one_frame_that_nobody_is_in_is_a_gap(seen):
+    frames = seen.table["frame"].unique()
+    found, report = read_and_counted(seen.table[seen.table["frame"] != frames[50]], LAYOUT)
+    _, before = read_and_counted(seen.table, LAYOUT)
+    # Of each boat that is there on both sides of it.
+    there = ~np.isnan(found.pose[49:51, :, 0]).any(axis=0)
+    assert report.gaps == before.gaps + there.sum() > before.gaps
+    # No velocity is taken across: at both sides it is that towards the other one.
+    pose, velocity = found.pose[..., :2], found.velocity[..., :2]
+    for sample, (early, late) in ((49, (48, 49)), (50, (50, 51))):
+        expected = (pose[late] - pose[early]) / (found.time_s[late] - found.time_s[early])
+        known = ~np.isnan(expected).any(axis=-1) & there
+        np.testing.assert_allclose(velocity[sample][known], expected[known], rtol=1e-9)
+
+
 def test_boat_frames_without_a_pose_are_counted(seen):
     lost = lost_rows(seen.table)
     _, report = read_and_counted(seen.table[~lost], LAYOUT)
