@@ -195,6 +195,17 @@ fn forged(bytes: &[u8], number: f64, other: f64) -> Vec<u8> {
     forged
 }
 
+/// A whole number as states hold it: 7 bits a byte, the lowest first, of which all but the last have the eighth bit.
+fn in_parts_of_7_bits(mut number: u64) -> Vec<u8> {
+    let mut parts = Vec::new();
+    while number >= 128 {
+        parts.push(number as u8 | 128);
+        number >>= 7;
+    }
+    parts.push(number as u8);
+    parts
+}
+
 #[test]
 fn states_with_numbers_that_no_boat_has_are_refused() {
     let batch = batch(settings(12), &[1], 0);
@@ -230,6 +241,18 @@ fn states_with_numbers_that_no_boat_has_are_refused() {
     let bytes = steered.snapshot();
     assert!(Flock::from_snapshot(&forged(&bytes, 0.625, 0.5), None).is_ok());
     assert!(Flock::from_snapshot(&forged(&bytes, 0.625, 1.5), None).is_err());
+    // A time beyond the last one that a flock may have, 1e9 s, in ns.
+    let mut late = flock.clone();
+    late.set_state(flock.poses(), flock.velocities(), 9e8, false)
+        .unwrap();
+    let bytes = late.snapshot();
+    let [time, beyond] = [9e17 as u64, 9e18 as u64].map(in_parts_of_7_bits);
+    let place = (16..).find(|&place| bytes[place..].starts_with(&time));
+    let mut forged_time = bytes.clone();
+    forged_time[place.unwrap()..][..beyond.len()].copy_from_slice(&beyond);
+    reseal(&mut forged_time);
+    assert!(Flock::from_snapshot(&bytes, None).is_ok());
+    assert!(Flock::from_snapshot(&forged_time, None).is_err());
     let own = batch.to_bytes();
     for number in [flock.poses()[2].position.x, flock.poses()[2].heading] {
         let bytes = forged(&own, number, f64::NAN);
