@@ -9,14 +9,14 @@ import { derivedOf, runOfFile } from "../../web/share.mjs";
 
 const { wasm, format, paths } = JSON.parse(readFileSync(0, "utf8"));
 const core = await Core.load(readFileSync(wasm));
-const { fields, phases, quantities } = core.describe();
+const { fields, laws, phases, quantities } = core.describe();
 // The thread's own answer, without its thread.
 globalThis.addEventListener = () => undefined;
 const { ANSWERS } = await import("../../web/worker.mjs");
 await ANSWERS.start({ bytes: readFileSync(wasm) });
 const known = quantities.filter(({ kind }) => kind !== "structure").map(({ name, ...rest }) => ({ key: name, ...rest }));
 const series = known.map(({ key }) => key);
-const flocks = new Flocks(null, { kinds: Object.fromEntries(fields.map(({ name, kind }) => [name, kind])), series, phases, version: "" });
+const flocks = new Flocks(null, { kinds: Object.fromEntries(fields.map(({ name, kind }) => [name, kind])), laws, series, phases, version: "" });
 
 async function said(path) {
   const file = { name: basename(path), arrayBuffer: async () => Uint8Array.from(readFileSync(path)).buffer };
