@@ -15,7 +15,7 @@ UV := VIRTUAL_ENV="$(CURDIR)/.venv" UV_COMPILE_BYTECODE=1 $(BIN)/uv pip install
 # One thread for each worker's linear algebra, or the workers fight over the cores.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
-# This machine's own build may use AVX2, which alters no bit. Wheels run on every processor.
+# This machine's own build may use AVX2, which alters no bit.
 CODEGEN := $(if $(findstring avx2,$(shell rustc --print cfg -C target-cpu=native 2> /dev/null)),-- -C target-feature=+avx2)
 # One stamp a kind: where a checkout is moved to a machine without AVX2, the core is compiled again.
 CORE := $(STAMPS)/core$(if $(CODEGEN),-avx2)
@@ -104,10 +104,12 @@ live: ## the live page: the simulator compiled to WebAssembly, in one file that 
 	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
 	$(PYTHON) web/build.py
 
-# The wheel and the source distribution, into dist.
+# The wheel and the source distribution, into dist. Where the processor may have AVX2, the wheel holds the core twice.
 wheel: $(STAMPS)/venv
 	rm -rf dist
 	$(BIN)/maturin build --release --locked --out dist
+	$(if $(findstring target_arch="x86_64",$(shell rustc --print cfg)),$(BIN)/maturin build --release --locked --out dist/avx2 \
+		-- -C target-feature=+avx2 && $(BIN)/python .github/add_avx2.py)
 	$(BIN)/maturin sdist --out dist
 
 test-wheel: $(STAMPS)/test wheel ## wheel, source distribution and `pip install .`, each in an empty environment

@@ -4,6 +4,7 @@ import importlib
 import importlib.util
 from typing import TYPE_CHECKING, Any
 
+from flockenv import _avx2
 from flockenv._core import __version__
 from flockenv.envs.registration import register
 
@@ -62,6 +63,7 @@ _NAMES = {
     "simulation": ("simulate",),
 }
 
+_avx2.choose()  # Before anything uses the core.
 register()
 
 

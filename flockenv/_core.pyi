@@ -9,6 +9,7 @@ __all__ = [
     "COLLECTIVE_STATES",
     "COLORINGS",
     "FLOCK_FEATURES",
+    "HAS_AVX2",
     "JAM_ANGLE",
     "LARGEST_LEAN",
     "LAWS",
@@ -64,7 +65,9 @@ __version__: str
 TOWARDS_TARGET: float
 JAM_ANGLE: float
 LARGEST_LEAN: float
+# Whether this build does, and whether the processor could.
 USES_AVX2: bool
+HAS_AVX2: bool
 ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]

@@ -87,6 +87,19 @@ mod _core {
         module.add("JAM_ANGLE", JAM_ANGLE)?;
         module.add("LARGEST_LEAN", LARGEST_LEAN)?;
         module.add("USES_AVX2", cfg!(target_feature = "avx2"))?;
+        module.add("HAS_AVX2", has_avx2())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
+
+/// Whether this processor has AVX2.
+fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        std::is_x86_feature_detected!("avx2")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
     }
 }

@@ -5,6 +5,7 @@
 
 import json
 import os
+import platform
 import subprocess
 import sys
 import zipfile
@@ -12,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from flockenv import _core
 
 pytestmark = [pytest.mark.wheel, pytest.mark.timeout(1800)]
 
@@ -120,6 +123,21 @@ def test_simulates_and_draws_as_here(installed):
     assert installed.run("python", "-I", "-c", SIMULATION) == here.stdout
 
 
+@pytest.mark.skipif(not _core.HAS_AVX2, reason="needs AVX2")
+def test_a_wheel_uses_avx2_where_it_can_and_gives_the_same_bits(tmp_path):
+    installed = Installed(tmp_path, sys.executable, only("*.whl"))
+    look = "import flockenv; print(flockenv._core.USES_AVX2)"
+    (fast,) = tmp_path.rglob("_core_avx2.abi3.so")
+    assert installed.run("python", "-I", "-c", look) == "True\n"
+    with_avx2 = installed.run("python", "-I", "-c", SIMULATION)
+    fast.unlink()
+    assert installed.run("python", "-I", "-c", look) == "False\n"
+    assert installed.run("python", "-I", "-c", SIMULATION) == with_avx2
+    # What was added is in the list of files: without it the wheel would not be uninstalled.
+    installed.run("python", "-m", "pip", "uninstall", "--quiet", "--yes", "flockenv")
+    assert not [*tmp_path.rglob("flockenv/*.so")]
+
+
 def test_command_line_works(installed, page_runs):
     assert "compare" in installed.run("flockenv", "--help")
     version = installed.run("python", "-c", "import flockenv; print(flockenv.__version__)")
@@ -145,7 +163,10 @@ def test_wheel_holds_all_that_it_should():
     )
     assert set(tracked.stdout.split()) <= set(names)
     assert {"flockenv/py.typed", "flockenv/_core.pyi"} <= set(names)
-    assert len([name for name in names if name.endswith((".so", ".pyd", ".dylib"))]) == 1
+    cores = {"flockenv/_core.abi3.so"}
+    if platform.machine() == "x86_64":
+        cores.add("flockenv/_core_avx2.abi3.so")
+    assert {name for name in names if name.endswith((".so", ".pyd", ".dylib"))} == cores
     licenses = [name.partition("/licenses/")[2] for name in names if "/licenses/" in name]
     wanted = {"LICENSE", *(f"LICENSES/{path.name}" for path in REPOSITORY.glob("LICENSES/*"))}
     assert set(licenses) == wanted

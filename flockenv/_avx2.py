@@ -1,0 +1,24 @@
+"""The simulator compiled for AVX2, which wheels hold beside the one for every processor."""
+
+import sys
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from importlib.util import module_from_spec
+from pathlib import Path
+
+from flockenv import _core
+
+
+def choose() -> None:
+    """Let it take the place of `flockenv._core`, with the same bits, if this processor has AVX2."""
+    if _core.USES_AVX2 or not _core.HAS_AVX2:
+        return
+    name, file = _core.__name__, Path(str(_core.__file__))
+    path = file.with_name(file.name.replace("_core", "_core_avx2", 1))
+    if path.exists():
+        loader = ExtensionFileLoader(name, str(path))
+        spec = ModuleSpec(name, loader, origin=str(path))
+        spec.has_location = True
+        module = module_from_spec(spec)
+        loader.exec_module(module)
+        sys.modules[name] = module
+        vars(sys.modules["flockenv"])["_core"] = module
