@@ -41,7 +41,6 @@ __all__ = [
     "critical_bw_s",
     "decisions_in",
     "derived_series",
-    "env_defaults",
     "flat_actions",
     "jam_sizes",
     "lap_orientation",
@@ -77,8 +76,8 @@ LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]
 OBSERVATION_VERSION: int
-# What is declared of each: of fields name, kind, unit, accepted and doc; of others the fields of
-# `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
+# What is declared of each: of fields name, kind, unit, default, accepted and doc; of others the
+# fields of `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
 PARAMETERS: tuple[dict[str, Any], ...]
 OPTIONS: tuple[dict[str, Any], ...]
 QUANTITIES: tuple[dict[str, Any], ...]
@@ -126,7 +125,6 @@ def flat_actions(
 def linear(
     rows: NDArray[np.float32], weight: NDArray[np.float32], bias: NDArray[np.float32]
 ) -> NDArray[np.float32]: ...
-def env_defaults() -> dict[str, Any]: ...
 def rudders_of_levels(levels: list[float], rudder_levels: int) -> list[float]: ...
 def observation_table(blocks: dict[str, Any]) -> list[dict[str, Any]]: ...
 def state_table(n_boats: int) -> list[dict[str, Any]]: ...

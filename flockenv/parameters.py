@@ -13,12 +13,11 @@ from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError, refuse_unknown, shown
 
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
-_DEFAULTS = _core.Parameters("simulation", {}).values
 
 
 def _declared(name: str) -> Any:
     """Return the field that the core declares under this name: default, unit, range and meaning."""
-    return field(default=_DEFAULTS[name], metadata=_TABLE[name])
+    return field(default=_TABLE[name]["default"], metadata=_TABLE[name])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -322,7 +322,7 @@ def _changes(
                 raise ParameterError(f"{twice.pop()} changes twice at this time")
             times[time_s] |= fields.keys()
             before, now = now, now.replace(**fields)
-            if before.pool != now.pool and math.inf in _radii_cm(before) | _radii_cm(now):
+            if before.pool != now.pool and math.inf in before.pool_radii_cm + now.pool_radii_cm:
                 raise ParameterError("open water and a pool do not change into each other")
             if any(getattr(before, name) != getattr(now, name) for name in _PLACED):
                 Flock(now, seed)
@@ -344,10 +344,6 @@ def _change(entry: Any) -> tuple[float, dict[str, Any]]:
                 return time_s, {str(name): value for name, value in fields.items()}
             words = f"{sized.pop()} does not change on the way" if sized else words
     raise ParameterError(f"schedule = {shown(entry)} is not accepted: {words}")
-
-
-def _radii_cm(parameters: FlockParameters) -> set[float]:
-    return {*_core.pool_radii_cm(parameters.pool)}
 
 
 def _started(parameters: FlockParameters, seed: int, start: Start, noise_seed: int | None) -> Flock:

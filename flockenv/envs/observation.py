@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv.envs.options import OPTIONS
 from flockenv.flock import Flock
 
 #: Version of the observation: of its entries, their order, scales and bounds.
 OBSERVATION_VERSION: int = _core.OBSERVATION_VERSION
 
 #: The blocks with their defaults: on or off, and how many neighbors or obstacles.
-BLOCKS: dict[str, Any] = _core.env_defaults()["observation"]
+BLOCKS: dict[str, Any] = OPTIONS["observation"].default
 
 
 class Entry(NamedTuple):

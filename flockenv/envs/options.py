@@ -38,10 +38,7 @@ OPTIONS: dict[str, Option] = {
         '"training" steps the flock by dt_s = 0.1 s with one relinearization, coarser and cheaper; '
         '"default" as the parameters have it',
     ),
-    **{
-        each["name"]: Option(_core.env_defaults()[each["name"]], each["doc"])
-        for each in _core.OPTIONS
-    },
+    **{each["name"]: Option(each["default"], each["doc"]) for each in _core.OPTIONS},
     "bw_s": Option(
         {each.name: each.default for each in fields(FlockParameters)}["bw_s"],
         "duration of the backward phase in s, the source of disorder; a pair (low, high) draws it "
@@ -63,7 +60,9 @@ RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")
 UPCOMING_OPTIONS = ("bw_s", "target")
 
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
-_SETTINGS = tuple(name for name in _core.env_defaults() if name not in ("bw_s", "autoreset_mode"))
+_SETTINGS = tuple(
+    each["name"] for each in _core.OPTIONS if each["name"] not in ("bw_s", "autoreset_mode")
+)
 _NAMES = (
     "preset",
     "params",

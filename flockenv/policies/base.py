@@ -7,8 +7,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv import _core
 from flockenv.envs.observation import observation_entries
+from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, shown
 
 
@@ -43,7 +43,7 @@ class LeaderPolicy(Protocol):
         """
 
 
-CONTROL_HZ: float = _core.env_defaults()["control_hz"]
+CONTROL_HZ: float = OPTIONS["control_hz"].default
 """Control steps per second, unless the environment or the policy has others."""
 
 

@@ -97,7 +97,10 @@ impl<S> Field<S> {
 
     /// What is declared of it by name; its type in Python's words.
     #[cfg(feature = "python")]
-    pub(crate) fn named(&self) -> Value {
+    pub(crate) fn named(&self) -> Value
+    where
+        S: Default,
+    {
         let kind = match self.kind {
             Kind::Count => "int".to_owned(),
             Kind::Real => "float".to_owned(),
@@ -112,6 +115,7 @@ impl<S> Field<S> {
         };
         let own = [
             ("kind", kind.into()),
+            ("default", (self.get)(&S::default())),
             ("accepted", self.accepted().into()),
             ("doc", self.doc.trim().into()),
         ];

@@ -52,7 +52,7 @@ mod _core {
     use super::recording::record;
     #[pymodule_export]
     use super::tables::{
-        critical_bw_s, decisions_in, env_defaults, physics_fields, pool_radii_cm, preset_sources,
+        critical_bw_s, decisions_in, physics_fields, pool_radii_cm, preset_sources,
         rudders_of_levels,
     };
 

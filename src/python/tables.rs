@@ -4,7 +4,7 @@ use super::value::given;
 use crate::clock::whole_steps;
 use crate::environment::EnvSettings;
 use crate::error::Result;
-use crate::parameters::{Field, FlockParameters, Physics, Pool, Preset, Value};
+use crate::parameters::{FlockParameters, Physics, Pool, Preset, Value};
 use pyo3::prelude::*;
 
 /// Where each field of a preset comes from.
@@ -43,12 +43,6 @@ pub(super) fn critical_bw_s(
 pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     let pool: Pool = given(pool, "pool")?;
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
-}
-
-/// The options of environments with their defaults.
-#[pyfunction]
-pub(super) fn env_defaults() -> Value {
-    Field::values(EnvSettings::FIELDS, &EnvSettings::default())
 }
 
 /// How many decisions of a rate a time in s has, which must be a whole number.

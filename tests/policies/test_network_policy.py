@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv._core import env_defaults
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.envs.observation import OBSERVATION_VERSION, observation_entries
+from flockenv.envs.options import OPTIONS
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.policies import NetworkPolicy, RandomRudders, StraightAhead, load
 
 SIZE = len(observation_entries())
+DEFAULTS = {name: each.default for name, each in OPTIONS.items()}
 
 
 def network(hidden: int = 8, seed: int = 0, **kwargs) -> NetworkPolicy:
@@ -52,7 +53,7 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
     torch = pytest.importorskip("torch")
     module = torch_network(activation, outputs)
     options = {"observation": {}, "mirror_to_target": True, "action_mode": "lean"}
-    space = ObservationSpace({**env_defaults(), **options, "decision_period_s": 2.0})
+    space = ObservationSpace({**DEFAULTS, **options, "decision_period_s": 2.0})
     policy = NetworkPolicy.from_module(module, space, squashed=bool(squashed))
     policy.save(tmp_path / "policy.npz")
     loaded = load(tmp_path / "policy.npz")
@@ -93,7 +94,7 @@ def test_other_torch_networks_are_refused(layers, options, message):
     nn = pytest.importorskip("torch").nn
     module = nn.Sequential(*layers(nn))
     with pytest.raises(flockenv.ParameterError, match=message):
-        NetworkPolicy.from_module(module, ObservationSpace(env_defaults()), **options)
+        NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS), **options)
 
 
 def test_a_torch_network_of_all_leaders_at_once_is_refused():
