@@ -27,7 +27,7 @@ export const LESSONS = [
     title: "Dense flocks need noise to move",
     link: `${NOISE}&bw_s=0`,
     before: `Boats that [never back up](${NOISE}&bw_s=0) jam at the wall. Let them back up [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8).`,
-    after: "Some noise frees the jam and lets this dense flock circle; too much ends the order. Sparse flocks circle without noise.",
+    after: "Some noise frees the jam of this dense flock; too much ends the order. Sparse flocks circle without noise.",
   },
   {
     name: "leaders",
