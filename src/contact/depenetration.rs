@@ -6,7 +6,7 @@
 
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
-use crate::geometry::{HullPose, Pose, Velocity};
+use crate::geometry::{HullPose, Pose, Velocity, cross};
 
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
@@ -125,6 +125,14 @@ fn wide_margin(detector: &ContactDetector) -> f64 {
 fn smallest_gap(contacts: &[Contact]) -> f64 {
     let gaps = contacts.iter().map(|contact| contact.gap.gap);
     gaps.fold(f64::INFINITY, f64::min)
+}
+
+/// Σx×v about the pool's center: what moving poses alone changes of the angular momentum, in cm²/s.
+pub(super) fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) -> f64 {
+    let pairs = poses.iter().zip(velocities);
+    pairs
+        .map(|(pose, velocity)| cross(pose.position, velocity.linear))
+        .sum()
 }
 
 /// Moves hulls apart, for placement, until none overlaps, `most_passes` are made or `keep_going` says no.

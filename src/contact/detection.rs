@@ -11,9 +11,6 @@ use std::ops::RangeInclusive;
 
 /// Part of a radius that the fastest boat moves by in a substep beyond which it pays to look which contacts close.
 const LONG: f64 = 0.1;
-/// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
-/// are left out, with less more have to be taken back.
-const ADDED: f64 = 0.125;
 /// Pairs per boat that one substep looks at where boats move by more than half their length in it: in the densest flock
 /// each can then reach what lies within a few lengths. Beyond it a linearized gap means nothing, and memory and time grow
 /// with the square of the number of boats.
@@ -25,7 +22,7 @@ const SHORTEST_SHARE: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct ContactDetector {
     hull: Hull,
-    pool: Pool,
+    pub(super) pool: Pool,
     /// Candidate pairs.
     pub(crate) neighbors: NeighborList,
     pub(super) obstacles: NearObstacles,
@@ -37,7 +34,7 @@ pub struct ContactDetector {
     /// How near something has to be to each boat to count: two boats that are nearer than both together.
     reaches: Vec<f64>,
     /// How far the fastest boat moves in the substep at hand, in cm.
-    farthest: f64,
+    pub(super) farthest: f64,
 }
 
 impl ContactDetector {
@@ -117,66 +114,6 @@ impl ContactDetector {
     /// Whether boats moved so far in the substep of the last detection that it pays to look which contacts may close.
     pub(super) fn is_far(&self) -> bool {
         self.farthest > LONG * self.hull.radius
-    }
-
-    /// Moves to `parting` what boats with these velocities do not close within `dt`. The normal of the nearer touch of
-    /// two bodies separates them: along it their cores close no faster than their centers do, and than turning swings
-    /// their ends. Both touches of a pair stay or go, since closing one swings the other.
-    pub(super) fn set_parting_apart(
-        &self,
-        velocities: &[Velocity],
-        dt: f64,
-        contacts: &mut Vec<Contact>,
-        parting: &mut Vec<Contact>,
-    ) {
-        let room = ADDED * (self.farthest + 1e-3 * self.hull.radius);
-        let (mut kept, mut next) = (0, 0);
-        while next < contacts.len() {
-            let touches = &contacts[next..(next + 2).min(contacts.len())];
-            let count = match touches {
-                [first, second] if first.is_twin(second) => 2,
-                _ => 1,
-            };
-            let may_close = match &touches[..count] {
-                // Ends at a wall that curves around them: no normal separates the other one.
-                [a, b] if a.partner == Partner::OuterWall => {
-                    self.may_close(a, velocities, dt, room)
-                        || self.may_close(b, velocities, dt, room)
-                }
-                [a, b] if b.gap.gap < a.gap.gap => self.may_close(b, velocities, dt, room),
-                touches => self.may_close(&touches[0], velocities, dt, room),
-            };
-            if may_close {
-                contacts.copy_within(next..next + count, kept);
-                kept += count;
-            } else {
-                parting.extend_from_slice(&contacts[next..next + count]);
-            }
-            next += count;
-        }
-        contacts.truncate(kept);
-    }
-
-    #[inline]
-    fn may_close(&self, contact: &Contact, velocities: &[Velocity], dt: f64, room: f64) -> bool {
-        let gap = &contact.gap;
-        let first = &velocities[contact.boat as usize];
-        let (linear, spin, room) = match contact.second() {
-            Some(second) => {
-                let second = &velocities[second];
-                let spin = first.angular.abs() + second.angular.abs();
-                (first.linear - second.linear, spin, 2.0 * room)
-            }
-            None => (first.linear, first.angular.abs(), room),
-        };
-        let swing = self.hull.half_length * spin * dt;
-        let curve = if contact.partner == Partner::OuterWall {
-            let way = linear.norm() * dt + swing;
-            0.5 * way * way / (self.pool.outer_radius_cm - self.hull.radius - gap.gap)
-        } else {
-            0.0
-        };
-        gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + room
     }
 
     /// Whether what was found as a contact overlaps at other poses by more than `allowed`.

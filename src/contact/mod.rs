@@ -12,6 +12,7 @@ mod depenetration;
 mod detection;
 mod island;
 mod near_obstacles;
+mod parting;
 mod passivity;
 mod problem;
 mod resolver;

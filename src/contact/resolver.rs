@@ -1,7 +1,10 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solution,
 //! relinearization, and what to do where the constraints contradict each other.
 
-use super::depenetration::{Depenetration, PENETRATION_SLOP};
+mod relinearization;
+
+use super::depenetration::{Depenetration, PENETRATION_SLOP, orbital_angular_momentum};
+use super::parting::Parting;
 use super::passivity::{self, Passivity};
 use super::solver::ContactSolver;
 use super::trial::Trial;
@@ -9,11 +12,9 @@ use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
-use crate::geometry::{HullPose, Pose, Vec2, Velocity, cross};
+use crate::geometry::{HullPose, Pose, Vec2, Velocity};
 use crate::parameters::{FlockParameters, Scheme, Solver};
-
-/// Relinearization passes after which a substep is taken as it is.
-const MOST_PASSES: u32 = 20;
+use relinearization::Relinearization;
 
 /// What the contacts of a substep came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,8 +36,8 @@ pub(crate) struct ContactResolver {
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
-    /// Those that boats do not close at their free velocities: left out while the solution leaves them apart.
-    parting: Vec<Contact>,
+    /// Those that are left out while the solution leaves them apart.
+    parting: Parting,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
     persistent: Vec<bool>,
@@ -47,12 +48,7 @@ pub(crate) struct ContactResolver {
     pub(crate) is_exhausted: bool,
     passivity: Passivity,
     trial: Trial,
-    /// Islands that overlap at the substep's end.
-    overlapping: Vec<u32>,
-    /// Contacts of one island that may close, and their gaps at the substep's end in cm.
-    end_gaps: Vec<(u32, f64)>,
-    /// Overlap in cm at a substep's end that relinearization stops at; `None` without it.
-    allowed_overlap: Option<f64>,
+    relinearization: Relinearization,
     boat_radius: f64,
     gyration_radius: f64,
     /// Overlaps beyond this (cm) are undone by moving poses.
@@ -70,7 +66,7 @@ impl ContactResolver {
             solver: ContactSolver::new(parameters.solver)
                 .keeping_factors(parameters.relinearizations > 0),
             contacts: Vec::new(),
-            parting: Vec::new(),
+            parting: Parting::default(),
             biases: Vec::new(),
             persistent: Vec::new(),
             warm_start_cache: WarmStartCache::default(),
@@ -78,12 +74,7 @@ impl ContactResolver {
             is_exhausted: false,
             passivity: Passivity::default(),
             trial: Trial::default(),
-            overlapping: Vec::new(),
-            end_gaps: Vec::new(),
-            allowed_overlap: [None, Some(1e-6), Some(1e-9)]
-                .get(parameters.relinearizations)
-                .copied()
-                .flatten(),
+            relinearization: Relinearization::new(parameters),
             boat_radius: parameters.boat_radius_cm,
             gyration_radius: parameters.gyration_radius_cm,
             // Overlaps that the paper's scheme accepts are left alone.
@@ -140,9 +131,9 @@ impl ContactResolver {
             self.depenetrate(poses, boats, velocities, margin, statistics);
         }
         self.parting.clear();
-        if self.allowed_overlap.is_some() && self.detector.is_far() {
-            self.detector
-                .set_parting_apart(velocities, dt, &mut self.contacts, &mut self.parting);
+        if self.relinearization.allowed_overlap.is_some() && self.detector.is_far() {
+            self.parting
+                .set_apart(&self.detector, velocities, dt, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
@@ -224,17 +215,12 @@ impl ContactResolver {
             return ContactOutcome::TooLong;
         }
         self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
-        let is_apart = |allowed| {
-            let Self {
-                trial,
-                detector,
-                parting,
-                ..
-            } = &*self;
-            trial.is_end() && !trial.overlaps(detector, parting, allowed)
-        };
+        let Self {
+            trial, detector, ..
+        } = &*self;
+        let is_apart = |allowed| self.parting.is_apart(trial, detector, allowed);
         let is_short = !self.is_exhausted && !self.parting.is_empty();
-        if is_short && !self.allowed_overlap.is_some_and(is_apart) {
+        if is_short && !self.relinearization.allowed_overlap.is_some_and(is_apart) {
             self.take_parting_back(poses.len(), statistics);
             self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
         }
@@ -265,8 +251,7 @@ impl ContactResolver {
 
     /// Has the contacts that were left out solved for as well.
     fn take_parting_back(&mut self, boats: usize, statistics: &mut Statistics) {
-        statistics.contacts += self.parting.len() as u64;
-        self.contacts.append(&mut self.parting);
+        statistics.contacts += self.parting.give_back(&mut self.contacts);
         self.warm_start(boats);
     }
 
@@ -290,7 +275,7 @@ impl ContactResolver {
             self.solver.give_up_early();
         }
         let solved = self.solve(None, free, inertia, statistics);
-        if let Some(allowed) = self.allowed_overlap
+        if let Some(allowed) = self.relinearization.allowed_overlap
             && solved
         {
             self.relinearize(poses, free, inertia, bias.dt, allowed, statistics);
@@ -376,81 +361,6 @@ impl ContactResolver {
         false
     }
 
-    /// Solves islands again until no gap at the substep's end, evaluated where the last solve moves the boats, overlaps
-    /// by more than `allowed`: with biases for which those gaps open to zero. The normals stay those of the substep's
-    /// start, along which forces act, and so does the factor.
-    fn relinearize(
-        &mut self,
-        poses: &[Pose],
-        free: &[Velocity],
-        inertia: &[InverseInertia],
-        dt: f64,
-        allowed: f64,
-        statistics: &mut Statistics,
-    ) {
-        let hull = self.detector.hull();
-        self.trial.place(poses, &self.solver.velocities, dt, hull);
-        let mut left = std::mem::take(&mut self.overlapping);
-        left.clear();
-        left.extend(0..self.solver.islands().count() as u32);
-        let has_islands = self.solver.has_islands();
-        let least = if has_islands {
-            allowed
-        } else {
-            f64::NEG_INFINITY
-        };
-        for _ in 0..MOST_PASSES {
-            let mut deepest = 0.0_f64;
-            left.retain(|&island| {
-                let overlap = self.aim(island, dt, least);
-                deepest = deepest.max(overlap);
-                overlap > least
-            });
-            if deepest <= allowed || !self.solve(Some(&left), free, inertia, statistics) {
-                break;
-            }
-            if has_islands {
-                let (contacts, solver) = (&self.contacts, &self.solver);
-                let islands = left
-                    .iter()
-                    .map(|&island| solver.islands().contacts(island as usize));
-                let velocities = &solver.velocities;
-                self.trial
-                    .move_islands(contacts, islands, poses, velocities, dt, hull);
-            } else {
-                self.trial.place(poses, &self.solver.velocities, dt, hull);
-            }
-        }
-        self.overlapping = left;
-    }
-
-    /// Sets the biases of an island so that its gaps at the substep's end open to zero, if one of them overlaps by more
-    /// than `least`. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's
-    /// end in cm. A shortened substep leaves its share of an overlap from before, which does not count.
-    fn aim(&mut self, island: u32, dt: f64, least: f64) -> f64 {
-        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
-        let velocities = &self.solver.velocities;
-        let mut deepest = 0.0_f64;
-        self.end_gaps.clear();
-        for &k in self.solver.islands().contacts(island as usize) {
-            let contact = &self.contacts[k as usize];
-            if self.trial.may_close(contact) && contact.gap.gap >= -self.penetration_slop {
-                let end_gap = self.trial.gap(&self.detector, &self.contacts, k as usize)
-                    - left_over * contact.gap.gap.min(0.0);
-                deepest = deepest.max(-end_gap);
-                self.end_gaps.push((k, end_gap));
-            }
-        }
-        // Elsewhere biases stay those that were solved for: whether contacts drive boats is judged by them.
-        if deepest > least {
-            for &(k, end_gap) in &self.end_gaps {
-                let rate = self.contacts[k as usize].gap_rate(velocities);
-                self.biases[k as usize] = end_gap / dt - rate;
-            }
-        }
-        deepest
-    }
-
     /// Moves the boats to the end of a substep that was solved, if a trial has put them there.
     pub(crate) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         self.trial.take_end(poses, hulls)
@@ -483,12 +393,4 @@ impl ContactResolver {
             }
         }
     }
-}
-
-/// Σx×v about the pool's center: what moving poses alone changes of the angular momentum, in cm²/s.
-fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) -> f64 {
-    let pairs = poses.iter().zip(velocities);
-    pairs
-        .map(|(pose, velocity)| cross(pose.position, velocity.linear))
-        .sum()
 }

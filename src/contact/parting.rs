@@ -1,0 +1,106 @@
+//! Contacts that boats do not close at their free velocities: left out while the solution leaves them apart.
+
+use super::trial::Trial;
+use super::{Contact, ContactDetector, Partner};
+use crate::geometry::Velocity;
+
+/// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
+/// are left out, with less more have to be taken back.
+const ADDED: f64 = 0.125;
+
+/// The contacts that are left out.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Parting {
+    contacts: Vec<Contact>,
+}
+
+impl Parting {
+    /// Forgets them.
+    pub(super) fn clear(&mut self) {
+        self.contacts.clear();
+    }
+
+    /// Whether none is left out.
+    pub(super) fn is_empty(&self) -> bool {
+        self.contacts.is_empty()
+    }
+
+    /// Moves here what boats with these velocities do not close within `dt`. The normal of the nearer touch of
+    /// two bodies separates them: along it their cores close no faster than their centers do, and than turning swings
+    /// their ends. Both touches of a pair stay or go, since closing one swings the other.
+    pub(super) fn set_apart(
+        &mut self,
+        detector: &ContactDetector,
+        velocities: &[Velocity],
+        dt: f64,
+        contacts: &mut Vec<Contact>,
+    ) {
+        let room = ADDED * (detector.farthest + 1e-3 * detector.hull().radius);
+        let may_close = |contact: &Contact| may_close(detector, contact, velocities, dt, room);
+        let (mut kept, mut next) = (0, 0);
+        while next < contacts.len() {
+            let touches = &contacts[next..(next + 2).min(contacts.len())];
+            let count = match touches {
+                [first, second] if first.is_twin(second) => 2,
+                _ => 1,
+            };
+            let stays = match &touches[..count] {
+                // Ends at a wall that curves around them: no normal separates the other one.
+                [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
+                [a, b] if b.gap.gap < a.gap.gap => may_close(b),
+                touches => may_close(&touches[0]),
+            };
+            if stays {
+                contacts.copy_within(next..next + count, kept);
+                kept += count;
+            } else {
+                self.contacts
+                    .extend_from_slice(&contacts[next..next + count]);
+            }
+            next += count;
+        }
+        contacts.truncate(kept);
+    }
+
+    /// Whether none overlaps by more than `allowed` where the boats end that a trial has moved.
+    pub(super) fn is_apart(&self, trial: &Trial, detector: &ContactDetector, allowed: f64) -> bool {
+        trial.is_end() && !trial.overlaps(detector, &self.contacts, allowed)
+    }
+
+    /// Hands them back to the others; returns how many.
+    pub(super) fn give_back(&mut self, contacts: &mut Vec<Contact>) -> u64 {
+        let count = self.contacts.len() as u64;
+        contacts.append(&mut self.contacts);
+        count
+    }
+}
+
+/// Whether boats with these velocities may close a contact within `dt`, with some room for what others add.
+#[inline]
+fn may_close(
+    detector: &ContactDetector,
+    contact: &Contact,
+    velocities: &[Velocity],
+    dt: f64,
+    room: f64,
+) -> bool {
+    let hull = detector.hull();
+    let gap = &contact.gap;
+    let first = &velocities[contact.boat as usize];
+    let (linear, spin, room) = match contact.second() {
+        Some(second) => {
+            let second = &velocities[second];
+            let spin = first.angular.abs() + second.angular.abs();
+            (first.linear - second.linear, spin, 2.0 * room)
+        }
+        None => (first.linear, first.angular.abs(), room),
+    };
+    let swing = hull.half_length * spin * dt;
+    let curve = if contact.partner == Partner::OuterWall {
+        let way = linear.norm() * dt + swing;
+        0.5 * way * way / (detector.pool.outer_radius_cm - hull.radius - gap.gap)
+    } else {
+        0.0
+    };
+    gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + room
+}
