@@ -120,10 +120,13 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
         return frames
     order = np.argsort(rows["time"].to_numpy(), kind="stable")
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
-    within, number, start, there = 0.9 * float(own.median()), -1, -np.inf, set[str]()
+    within, number, start, there = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
     for place in order:
-        if names[place] in there or times[place] - start > within:
-            number, start, there = number + 1, times[place], set()
-        there.add(names[place])
+        name, time = names[place], times[place]
+        # A row that is there twice is in one frame, and one without a name is nobody's.
+        if there.get(name, time) < time or time - start > within:
+            number, start, there = number + 1, time, {}
+        if isinstance(name, str):
+            there[name] = time
         frames[place] = number
     return frames

@@ -130,6 +130,8 @@ def quantities(found):
 
 
 @FUZZ
+@example("absent", "as said", "stamps of each boat", "rows twice", (",", "."), False, 0)
+@example("absent", "as said", "stamps of each boat", "unassigned", (",", "."), False, 0)
 @example("absent", "as said", "stamps of each boat", "two in each other", (",", "."), True, 0)
 @given(
     st.sampled_from(sorted(LOST)),

@@ -181,6 +181,17 @@ def test_boats_with_time_stamps_of_their_own_share_frames(seen):
     )
 
 
+def test_rows_that_count_for_nothing_make_no_frames_on_clocks_of_each_boat(seen):
+    number = seen.table["track"].str.removeprefix("boat").astype(int)
+    table = seen.table.assign(t=seen.table["frame"] / 10 + number * 0.004)
+    expected, _ = read_and_counted(table, TIMED)
+    for more in (table[::9], table[::9].assign(track="unassigned", x_px=700.0)):
+        both = pd.concat([table, more]).sort_index(kind="stable")
+        found, report = read_and_counted(both, TIMED)
+        assert found == expected
+        assert sum(map(len, report.left_out.values())) > 0
+
+
 def test_two_places_at_one_time_are_refused_on_clocks_of_each_boat(seen):
     number = seen.table["track"].str.removeprefix("boat").astype(int)
     table = seen.table.assign(t=seen.table["frame"] / 10 + number * 0.004)
