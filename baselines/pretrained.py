@@ -197,7 +197,8 @@ def make(given: Settings, pool: str, out: Path, command: str) -> LeaningLaw:
             MAKERS[pool](given, seed, folder, command).save(path)
         laws[f"seed {seed}"] = LeaningLaw.load(path)
     mean = mean_of(list(laws.values()))
-    candidates = {"tuned law": DampedLaw.tuned(pool), "mean": mean, **laws}
+    others = {"tuned law": DampedLaw.tuned(pool), "ships": LeaningLaw.learned(pool)}
+    candidates = {**others, "mean": mean, **laws}
     scores = validated(given, pool, candidates)
     scores.round(4).to_csv(out / f"validation-{pool}.csv", index=False)
     print(f"{pool}, validation flocks\n{scores.round(3).to_string(index=False)}", flush=True)
