@@ -11,7 +11,7 @@ from pathlib import Path
 from floors import floors
 from leader_words import plans, summary, verdict
 from readme_numbers import figures, findings, speed
-from training_words import example
+from training_words import example, pretrained
 
 DOCS = Path(__file__).parent
 PAGES = (
@@ -46,6 +46,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "leaders-plans": plans,
     "speed": speed,
     "training-example": example,
+    "training-pretrained": pretrained,
 }
 """How each table is made."""
 

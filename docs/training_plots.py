@@ -19,6 +19,8 @@ BUDGETS = {
     2000: "training/wide/evaluation.csv",
 }
 """Evaluations of trainings by the example, by their flock-hours."""
+MIXED = "training/pretrained/evaluation.csv"
+"""The evaluation of trainings with one to four leaders, 1101 flock-hours each."""
 NOTHING = {
     pool: [f"training/from_nothing/{pool}_{seed}/curve.csv" for seed in seeds]
     for pool, seeds in {"wide": (0, 1, 2), "narrow": (2, 3, 4)}.items()
@@ -55,6 +57,9 @@ def budgets(figure: Figure) -> None:
         for place, row in enumerate(found):
             at = hours + 22.0 * (place - (len(found) - 1) / 2)
             _seed(axes, [{**row, "at": str(at)}], "at", fmt="o")
+    mixed = [each for each in rows(MIXED) if each["policy"].startswith("seed")]
+    for place, row in enumerate(mixed):
+        _seed(axes, [{**row, "at": str(1160 + 22 * place)}], "at", fmt="s", mfc="white")
     _levels(axes, rows(BUDGETS[2000])[:2])
     axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(300, 2350))
 
@@ -146,7 +151,7 @@ def _levels(axes: Axes, laws: Sequence[Row]) -> None:
 
 PLOTS = {
     "easy/curve.png": Plot([EASY], easy),
-    "training/budgets.png": Plot([*BUDGETS.values()], budgets),
+    "training/budgets.png": Plot([*BUDGETS.values(), MIXED], budgets),
     "training/algorithms/gains.png": Plot(
         [
             f"training/{each}/{file}.csv"
