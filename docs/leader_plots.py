@@ -127,7 +127,7 @@ PLOTS = {
     "leaders/leader_count.png": Plot([COUNT], leader_count),
     "leaders/both_pools.png": Plot([MEANS], both_pools, (8.4, 4.2)),
     "leaders/learned_minus_tuned.png": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (8.4, 2.6)),
-    "leaders/beyond.png": Plot([BEYOND], beyond, (6.8, 2.6)),
+    "leaders/beyond.png": Plot([BEYOND], beyond, (6.8, 6.2)),
     "leaders/tuned_laws.png": Plot([GAINS], tuned_laws, (8.4, 2.6)),
     "leaders/plans.png": Plot(
         ["leaders/plan_known.csv", "leaders/plan_fresh.csv"], plans, (8.4, 2.2)
