@@ -15,7 +15,7 @@ signed order. `MINARI_DATASETS_PATH` says where files go; 500 flock-hours have 4
         episode.observations, episode.actions, episode.rewards, episode.truncations
 
 Episodes are simulated by the package's results version, which each data set names; `checked` reads
-one and refuses those of another version.
+one, and refuses a set of another version.
 """
 
 import argparse
@@ -126,7 +126,7 @@ def make(name: str, flock_hours: float, episode_s: float, command: str) -> minar
 
 
 def checked(dataset_id: str) -> minari.MinariDataset:
-    """Return a data set whose flocks move as those of this version of flockenv.
+    """Return a data set of this results version: its flocks move as flocks do now.
 
     A ParameterError refuses others.
     """

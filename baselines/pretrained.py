@@ -1,12 +1,12 @@
 """Make the pretrained leaders of both pools from nothing but these settings.
 
-    make pretrained                              # two hours of one core
+    make pretrained                              # an hour and a half of one core
     python baselines/pretrained.py --trial       # all of it with little of everything, a minute
     python baselines/pretrained.py --ship        # copies what it made to baselines/policies
 
-The design was fixed before the first training. In `wide` eight trainings are those of
-`flockenv train` but for the number of leaders: flocks with one, two, three and four are dealt out,
-equally many. In `narrow`, where PPO does not pass the tuned law, eight searches compare paired
+The design was fixed before the first training. In `wide` eight trainings differ from
+`flockenv train` in the number of leaders alone: flocks with one, two, three and four are dealt
+out, equally many. In `narrow`, where PPO does not pass the tuned law, eight searches compare paired
 branches (paired_branches.py) with three leaders. Each has 1100 or 400 flock-hours, and no setting
 was searched for.
 
@@ -16,7 +16,7 @@ one is otherwise. The score is the mean signed order with one to four leaders, i
 flocks each, at the default physics. Flocks that nobody has used then judge the policy with three
 leaders, and the file has that order beside the command, the seeds and the flock-hours.
 
-A training whose policy stands in `--out` is not made again, so that an interrupted command goes on.
+A training whose policy stands in `--out` is not made again, so that an interrupted command resumes.
 PPO also keeps its policy after 500 flock-hours. This compares all seeds:
 
     python baselines/judge_trainings.py results/pretrained/wide/* results/pretrained/wide-500/* \\
@@ -164,7 +164,7 @@ def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -
 
 
 def mean_of(laws: list[LeaningLaw]) -> LeaningLaw:
-    """Return the law whose numbers are the means of those of laws of one pool."""
+    """Return the mean of laws of one pool, number by number."""
     pool = laws[0].pool
     weights = {
         name: float(np.mean([each.weights[name] for each in laws])) for name in laws[0].weights

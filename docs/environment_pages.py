@@ -1,7 +1,7 @@
 """The pages of the environments, written whenever the pages are built.
 
-A class's page is its docstring, and id_pages.py makes those of the ids. `tables.md` lists what the
-core declares: parameters, options, terms of the reward, entries of the observation and of the
+A class's page is its docstring, and id_pages.py makes a page for each id. `tables.md` lists what
+the core declares: parameters, options, terms of the reward, entries of the observation and of the
 global state, features of the flock.
 """
 

@@ -86,6 +86,7 @@ def _root(
 
 
 def _not_imported() -> None:
+    # A command that runs is named on the command line, and so imported.
     raise NotImplementedError
 
 
