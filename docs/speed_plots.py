@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 ENGINES = "speed_vs_error/short_engines.csv"
 IMPACT = "speed_vs_error/impact.csv"
 LEARNERS = "throughput/learners.csv"
+MANY_AGENTS = "throughput/many_agents.csv"
 SHOWN = {
     "leapfrog": "leapfrog / exact / r0",
     "leapfrog, 1 relinearization": "leapfrog / exact / r1",
@@ -85,9 +86,33 @@ def learners(figure: Figure) -> None:
     axes.set(xlim=(0, 1.05), xlabel="samples per second, over the batch alone")
 
 
+def many_agents(figure: Figure) -> None:
+    """Draw the steps per second of each environment, a point for each size of a batch."""
+    axes = figure.subplots()
+    found = rows(MANY_AGENTS)
+    lines = [*dict.fromkeys(row["environment"] for row in found)]
+    for environments, marker in (("64", "o"), ("1024", "s"), ("8192", "^")):
+        batches = [row for row in found if row["environments"] == environments]
+        at = [lines.index(row["environment"]) for row in batches]
+        axes.scatter(
+            [float(row["steps per second of one core"]) for row in batches],
+            at,
+            45,
+            color=[OURS if line == 0 else THEIRS for line in at],
+            marker=marker,
+            zorder=3,
+        )
+        axes.scatter([], [], 45, color=THEIRS, marker=marker, label=environments)
+    axes.set(xscale="log", xlabel="environment steps per second of one core")
+    axes.set_yticks(range(len(lines)), lines)
+    axes.invert_yaxis()
+    axes.legend(title="batch", loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
 PLOTS = {
     "speed_vs_error/engines.png": Plot([ENGINES], engines, (9.0, 4.2)),
     "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
     "throughput/learners.png": Plot([LEARNERS], learners, (8.4, 3.8)),
+    "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (9.0, 3.2)),
 }
 """How each is drawn, by its file below docs."""
