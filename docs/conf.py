@@ -32,7 +32,7 @@ for _notebook in (_notebooks.parents[1] / "examples").glob("*.ipynb"):
     shutil.copy2(_notebook, _notebooks)
 
 # What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
-html_extra_path = ["_build/shown"]
+html_extra_path = ["_build/shown", "replay.webp", "replay-still.webp"]
 _shown = Path(__file__).parent / html_extra_path[0] / "flock.html"
 _shown.parent.mkdir(parents=True, exist_ok=True)
 if (_live := live_page()) is None:
@@ -119,9 +119,9 @@ def setup(app: Sphinx) -> None:
 def _link_environment_pages(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
 ) -> None:
-    # Their docstrings are Markdown, and pages of their own.
+    # Their docstrings are Markdown, on a page of their own.
     if what == "class" and name in ENVIRONMENTS:
-        lines[:] = [f"See :doc:`/environments/{obj.__name__}`."]
+        lines[:] = ["See :doc:`/environments/classes`."]
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:

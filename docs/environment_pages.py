@@ -1,11 +1,12 @@
 """The pages of the environments, written whenever the pages are built.
 
-A class's page is its docstring, and id_pages.py makes a page for each id. `tables.md` lists what
-the core declares: parameters, options, terms of the reward, entries of the observation and of the
-global state, features of the flock.
+`classes.md` has the docstring of each class, and id_pages.py makes a page for each id. `tables.md`
+lists what the core declares: parameters, options, terms of the reward, entries of the observation
+and of the global state, features of the flock.
 """
 
 import inspect
+import re
 from collections.abc import Iterable
 from dataclasses import fields
 from pathlib import Path
@@ -37,14 +38,16 @@ EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
 
 def pages() -> dict[Path, str]:
     """Return the text of every page."""
-    texts = {
-        each.__name__: f"# {each.__name__}\n\n{inspect.getdoc(each)}\n".replace(
-            "docs/environments/tables.md", "[Tables](tables.md)"
-        )
-        for each in CLASSES
-    }
-    texts |= {**id_pages(), "tables": tables()}
+    texts = {**id_pages(), "classes": classes(), "tables": tables()}
     return {FOLDER / f"{name}.md": text for name, text in texts.items()}
+
+
+def classes() -> str:
+    """Return the page of the classes, which are their docstrings."""
+    told = "\n\n".join(f"# {each.__name__}\n\n{inspect.getdoc(each)}" for each in CLASSES)
+    told = told.replace("docs/environments/tables.md", "[Tables](tables.md)")
+    told = re.sub("^(#+ )", r"#\1", told, flags=re.MULTILINE)
+    return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{told}\n"
 
 
 def tables() -> str:

@@ -81,9 +81,9 @@ def page(env_id: str) -> str:
         f'env = gymnasium.make("flockenv:{env_id}")\n'
         "observation, info = env.reset(seed=7)\n```",
         f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. Both '
-        "take every [option](tables.md), and [`LeadersEnv`](LeadersEnv.md) specifies the task. In "
-        f"the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} (seed "
-        f"{SEED}, a flock that follows), at ten times real time.",
+        "take every [option](tables.md), and [`LeadersEnv`](classes.md#leadersenv) specifies the "
+        f"task. In the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} "
+        f"(seed {SEED}, a flock that follows), at ten times real time.",
         spaces,
     ]
     if env_id != LEADERS:
