@@ -12,7 +12,12 @@ return less a baseline, which is linear in what the leader observes and in the f
 and is fitted to the other half of the flocks. Each flock's episode gives an estimate. Their mean
 over its standard error is the significance z. It grows with the square root of the samples
 (decisions of leaders), so that z per million samples compares rewards, horizons and action modes.
-Positive: the reward grows towards the other policy. docs/learning.md has what it found.
+Positive: the reward grows towards the other policy. docs/learning.md has what it found, by
+
+    python baselines/reward_signal.py --pool wide --horizon 30 --flocks 256
+    python baselines/reward_signal.py --pool narrow --horizon 30 --flocks 256
+    python baselines/reward_signal.py --pool wide --horizon 30 --flocks 256 --action-mode lean \\
+        --shared --hold-s 24 --to learned
 """
 
 import argparse
