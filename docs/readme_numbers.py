@@ -26,10 +26,9 @@ def speed() -> str:
     return (
         f"A step of 0.01 s with 27 boats jammed in `narrow` takes {float(step['us_per_step']):.1f} "
         f"µs on one core, and {float(step['faster']):.1f} times as long in the physics engine "
-        f"rapier. When a boat slides along the wall for 2 s, the default scheme is off by "
-        f"{ours:.2g} cm: it is second order while a contact lasts. The first-order scheme `moreau` "
-        f"is off by {first_order:.2g} cm, and rapier, to which motors are forces of first order, "
-        f"by {theirs:.2g} cm. If the boat hits the wall on the way, the time of the impact sets "
+        f"rapier. After 2 s of sliding along the wall a boat is off by {ours:.2g} cm with the "
+        f"default scheme, by {first_order:.2g} cm with the first-order `moreau`, and by "
+        f"{theirs:.2g} cm in rapier. If it hits the wall on the way, the time of the impact sets "
         f"the error: {hit[0]} and {hit[1]} cm with our schemes "
         "([speed against error](docs/speed_vs_error.md))."
     )
@@ -87,12 +86,11 @@ def density() -> str:
     return finding(
         "Dense flocks need noise to move, sparse ones do not.",
         f"In `wide`, noise raises the rotation of 50 boats (1 if all circle one way) by "
-        f"{LEAST_RISE} or more in "
-        f"{needs('50')} variants of the model, and that of 20 boats in {needs('20')}: most rotate "
-        "without noise (24 runs of 30 minutes each, no leaders). With the default preset, dense "
-        "flocks hardly rotate at any noise. With `experiment`, which was fitted to jams at low "
-        f"noise, 27 boats in `narrow` reach {quiet:.2f} without noise, {moving:.2f} at bw = 1.0 s "
-        f"and {gone:.2f} at 2.8 s.",
+        f"{LEAST_RISE} or more in {needs('50')} variants of the model. It does so for 20 boats in "
+        f"{needs('20')}, because most rotate without noise (24 runs of 30 minutes, no leaders). "
+        "With the default preset, dense flocks hardly rotate at any noise. With `experiment`, "
+        f"fitted to jams at low noise, 27 boats in `narrow` reach {quiet:.2f} without noise, "
+        f"{moving:.2f} at bw = 1.0 s and {gone:.2f} at 2.8 s.",
         "density",
         "Rise of the rotation by noise, against density",
     )
@@ -104,10 +102,10 @@ def overlap() -> str:
     return finding(
         "When order is lost depends on choices that the paper leaves open.",
         f"20 boats in `wide` lose it at bw = {lost('simulation, n = 20', boats)} s with white "
-        "noise and the default scheme. With noise and steps as the paper prints them it is "
+        "noise and the default scheme. With noise and steps as in the paper it is "
         f"{lost('paper, 0.1 cm, n = 20', boats)} to {lost('paper, 0.001 cm, n = 20', boats)} s, "
-        "depending on how much overlap a step tolerates. The paper reports 0.6 to 0.8 s (24 runs "
-        "at each noise, no leaders).",
+        "depending on the overlap that a step tolerates (paper: 0.6 to 0.8 s; 24 runs at each "
+        "noise, no leaders).",
         "readings",
         "When each variant of the model loses its order",
     )
@@ -119,9 +117,8 @@ def currents() -> str:
     return finding(
         "The current that the paper measured makes a flock lose its order earlier.",
         f"27 boats of `experiment` in `narrow` lose it at {own[0]} s, and with the measured "
-        f"current at {strong[0]} s; the paper reports 1.4 s, between the two. With three leaders "
-        f"it is {own[1]} and {strong[1]} s, and the paper's 2.0 s is further away (24 runs at each "
-        "noise).",
+        f"current at {strong[0]} s (paper: 1.4 s). With three leaders it is {own[1]} and "
+        f"{strong[1]} s (paper: 2.0 s; 24 runs at each noise).",
         "current",
         "Order against noise with both currents",
     )
