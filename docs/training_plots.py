@@ -61,7 +61,7 @@ def budgets(figure: Figure) -> None:
     for place, row in enumerate(mixed):
         _seed(axes, [{**row, "at": str(1160 + 22 * place)}], "at", fmt="s", mfc="white")
     _levels(axes, rows(BUDGETS[2000])[:2])
-    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(300, 2350))
+    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(100, 2350))
 
 
 def algorithms(figure: Figure) -> None:
