@@ -85,6 +85,6 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
 
 fn unknown<E: serde::de::Error>(name: &str, of: &str) -> E {
     refused(format!(
-        "it has {name:?}, which this flockenv does not know of {of}"
+        "this version of flockenv does not know {name:?} among {of}"
     ))
 }

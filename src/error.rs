@@ -91,7 +91,7 @@ impl FlockError {
             more => format!(" and {more} others"),
         };
         Self::Solver(format!(
-            "flock {flock}{others}: {self}; the episode is over, the other flocks' go on"
+            "flock {flock}{others}: {self}; its episode is over, the other flocks go on"
         ))
     }
 

@@ -36,7 +36,7 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
         return refuse("the bytes are too short to be a snapshot");
     };
     let ([kind @ .., format], [own_kind @ .., own_format]) = (found, magic);
-    let why = "the bytes are no flockenv snapshot of this kind";
+    let why = "the bytes are not a flockenv snapshot of this kind";
     FlockError::unless_fitting(kind == own_kind, why)?;
     if format != own_format {
         let [format, own] = [format, own_format].map(|format| char::from(*format).escape_debug());

@@ -89,7 +89,7 @@ impl DampedLaw {
         let found = tuned.find(|(name, _)| Some(*name) == pool);
         found.map(|(_, law)| law).ok_or_else(|| {
             let pools = Self::TUNED.map(|(name, _)| name).join(" and ");
-            let accepted = format!("the damped law is tuned in the pools {pools} alone");
+            let accepted = format!("the damped law is tuned only in the pools {pools}");
             FlockError::parameter(setting, value, accepted)
         })
     }

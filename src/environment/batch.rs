@@ -270,7 +270,7 @@ impl EnvBatch {
             unseal(&MAGIC, bytes)?;
         let mut batch = Self::new(settings, members)?;
         let is_whole = states.len() == batch.envs.len();
-        FlockError::unless_fitting(is_whole, "the batch is not whole")?;
+        FlockError::unless_fitting(is_whole, "a part of the batch is missing")?;
         for (env, stored) in batch.envs.iter_mut().zip(states) {
             *env = env.restored(&batch.settings, stored)?;
         }
@@ -286,7 +286,7 @@ impl EnvBatch {
         let [own, other] =
             [&*self, &restored].map(|batch| batch.envs.iter().map(FlockEnv::parameters));
         let is_same = restored.settings == self.settings && own.eq(other);
-        FlockError::unless_fitting(is_same, "the state is of an environment with other options")?;
+        FlockError::unless_fitting(is_same, "the state's environment has other options")?;
         *self = restored;
         Ok(())
     }

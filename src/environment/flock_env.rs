@@ -139,7 +139,7 @@ impl FlockEnv {
     /// [`FlockError::Episode`] if the environment has to be reset first.
     pub(crate) fn check_ready(&self, autoreset: Autoreset) -> Result<()> {
         let message = match &self.episode {
-            None => "step was called without an episode; call reset first",
+            None => "step was called before reset; call reset first",
             Some(episode) if episode.has_ended() && autoreset == Autoreset::Disabled => {
                 "step was called after the episode's end; call reset first"
             }
@@ -271,7 +271,7 @@ impl FlockEnv {
             .transpose()?;
         let found = stored.final_observation.len();
         let is_own = [0, whole].contains(&found) && (episode.is_none() || stored.seeds.is_some());
-        FlockError::unless_fitting(is_own, "the state is of another environment")?;
+        FlockError::unless_fitting(is_own, "the state belongs to another environment")?;
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.check_upcoming(settings, &stored.upcoming)?;
         (restored.seeds, restored.upcoming) = (stored.seeds, stored.upcoming);

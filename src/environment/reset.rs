@@ -96,7 +96,7 @@ impl ResetRequest {
         };
         check_flock(&flock, parameters)?;
         let is_early = flock.time() + settings.time_of(schedule.steps) <= LATEST;
-        let accepted = "a time at least an episode's length before 1e9 s";
+        let accepted = "a time that leaves a whole episode before 1e9 s";
         FlockError::unless(is_early, "time_s", flock.time_s(), accepted)?;
         flock.set_target(schedule.targets())?;
         Ok((schedule, flock))
@@ -110,6 +110,6 @@ pub(super) fn check_flock(flock: &Flock, parameters: &FlockParameters) -> Result
         bw_s: parameters.bw_s,
         ..flock.parameters().clone()
     };
-    let why = "the snapshot is of a flock with other parameters than the environment's, target and bw_s aside";
+    let why = "the snapshot's flock has other parameters than the environment; only target and bw_s may differ";
     FlockError::unless_fitting(same == *parameters, why)
 }

@@ -142,10 +142,10 @@ impl RewardWeights {
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
         for (term, weight) in RewardTerm::ALL.iter().zip(self.0) {
             let value = format!("{}: {weight}", term.name());
-            FlockError::unless(weight.abs() <= 1e6, "reward", &value, "weights within 1e6")?;
+            FlockError::unless(weight.abs() <= 1e6, "reward", &value, "-1e6 to 1e6")?;
             let has_normal = parameters.n_leaders < parameters.n_boats;
             let is_met = has_normal || weight == 0.0 || !term.needs_normal_boats();
-            let accepted = "terms about the normal boats need n_boats > n_leaders";
+            let accepted = "this term needs a normal boat: n_boats > n_leaders";
             FlockError::unless(is_met, "reward", value, accepted)?;
         }
         Ok(())
@@ -178,7 +178,7 @@ impl Setting for RewardWeights {
     /// Terms that are not named weigh nothing.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         let Value::Map(weights) = value else {
-            let accepted = "a dictionary of weights, or a list with one for each leader";
+            let accepted = "a dictionary of weights, or a list of dictionaries, one per leader";
             return wrong_kind(name, accepted);
         };
         let mut own = Self([0.0; TERMS]);
@@ -234,7 +234,7 @@ impl Weights {
         match self {
             Self::Each(weights) if weights.len() != most => {
                 let value = format!("a list of {} weights", weights.len());
-                let accepted = format!("a dictionary, or one for each of {most} leaders");
+                let accepted = format!("one dictionary, or one for each of {most} leaders");
                 Err(FlockError::parameter("reward", value, accepted))
             }
             _ => Ok(()),

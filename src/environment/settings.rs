@@ -79,7 +79,7 @@ impl EnvSettings {
         FlockError::unless(is_long_enough, "episode_s", duration, accepted)?;
         let shortest = 1.0 / self.control_hz;
         let horizon = self.reward_horizon_s.unwrap_or(shortest);
-        let accepted = format!("at least one control step, {shortest} s");
+        let accepted = format!("at least one control step of {shortest} s");
         // A tenth may be given for ten control steps per second, whatever the rounding.
         let is_whole = horizon >= (1.0 - 1e-9) * shortest;
         FlockError::unless(is_whole, "reward_horizon_s", horizon, accepted)?;
@@ -94,7 +94,7 @@ impl EnvSettings {
         Observer::new(self.layout(), parameters)?;
         for block in [Block::Order, Block::LeanFeatures] {
             let has_normal = parameters.n_leaders < parameters.n_boats;
-            let accepted = "order parameters are of the normal boats and need n_boats > n_leaders";
+            let accepted = "order parameters need a normal boat: n_boats > n_leaders";
             let is_met = has_normal || !self.observation.has(block);
             FlockError::unless(is_met, block.option(), true, accepted)?;
         }

@@ -191,7 +191,7 @@ impl Flock {
         let accepted = "a finite duration of at least 0 s";
         FlockError::unless(is_duration, "seconds", duration_s, accepted)?;
         let end = self.time + ticks(duration_s);
-        let accepted = "an end before time_s = 1e9";
+        let accepted = "a duration that ends before time_s = 1e9";
         FlockError::unless(end <= LATEST, "seconds", duration_s, accepted)?;
         Ok(end)
     }

@@ -117,7 +117,7 @@ impl Flock {
             target: self.parameters.target.clone(),
             ..restored.parameters.clone()
         };
-        let why = "the snapshot is of a flock with other parameters";
+        let why = "the snapshot's flock has other parameters";
         FlockError::unless_fitting(same == self.parameters, why)?;
         *self = restored;
         Ok(())

@@ -81,7 +81,7 @@ impl Flock {
                 });
             }
         }
-        let accepted = "finite numbers within -1e9 to 1e9";
+        let accepted = "finite numbers from -1e9 to 1e9";
         if let Some(boat) = poses.iter().position(|pose| !pose.is_in_range()) {
             let Pose { position, heading } = poses[boat];
             let value = format!("[{}, {}, {heading}] of boat {boat}", position.x, position.y);

@@ -159,7 +159,7 @@ impl FlockParameters {
         let phases = "fw_s + nop1_s + bw_s + nop2_s";
         FlockError::unless(cycle_s >= 1e-6, phases, cycle_s, accepted)?;
         let (longest, scheme) = (self.scheme.longest_dt_s(), self.scheme.name());
-        let accepted = format!("1e-6 to {longest} s, where scheme {scheme:?} is stable");
+        let accepted = format!("1e-6 to {longest} s, the stable range of scheme {scheme:?}");
         let is_stable = (1e-6..=longest).contains(&self.dt_s);
         FlockError::unless(is_stable, "dt_s", self.dt_s, accepted)
     }

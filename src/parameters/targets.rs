@@ -63,7 +63,7 @@ impl Targets {
         match self {
             Self::Each(targets) if targets.len() != n_leaders || n_leaders == 0 => {
                 let accepted = match n_leaders {
-                    0 => "a flock without leaders has no list of targets: \"cw\" or \"ccw\""
+                    0 => "\"cw\" or \"ccw\": a flock without leaders has no list of targets"
                         .to_owned(),
                     n => format!("as many targets as leaders: n_leaders = {n}"),
                 };

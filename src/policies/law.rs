@@ -75,7 +75,7 @@ impl Law {
     pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
         match name.parse()? {
             LawName::EverySubstep => {
-                let accepted = "a law that leaders follow by what they observe";
+                let accepted = "a law that reads observations";
                 Err(FlockError::parameter("law", name, accepted))
             }
             LawName::Paper => Ok(Self::Paper),

@@ -105,7 +105,7 @@ mod by_feature {
         for (weight, name) in weights.iter_mut().zip(LeanFeatures::names()) {
             let found = given.remove(name);
             let missing =
-                || D::Error::custom(format!("weights have no {name}: one per lean feature"));
+                || D::Error::custom(format!("weights lack {name}: each lean feature needs one"));
             *weight = found.ok_or_else(missing)?;
         }
         match given.pop_first() {
@@ -131,7 +131,7 @@ impl LeaningLaw {
     /// [`FlockError::Parameter`] for text that is no law, and for what [`Self::check`] refuses.
     pub fn from_json(text: &str) -> Result<Self> {
         let law: Self = serde_json::from_str(text).map_err(|error| {
-            FlockError::parameter("policy", error, "a leaning law as JSON, of finite numbers")
+            FlockError::parameter("policy", error, "a leaning law in JSON of finite numbers")
         })?;
         law.check()?;
         Ok(law)
@@ -155,7 +155,7 @@ impl LeaningLaw {
         let found = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
         let (_, text) = found.ok_or_else(|| {
             let pools = LEARNED.map(|(name, _)| name).join(" and ");
-            let accepted = format!("leaders have been trained in the pools {pools} alone");
+            let accepted = format!("leaders are trained only in the pools {pools}");
             FlockError::parameter("law", "learned", accepted)
         })?;
         Self::from_json(text)
@@ -177,7 +177,7 @@ impl LeaningLaw {
             return Ok(());
         };
         let is_tuned = DampedLaw::TUNED.contains(&(self.pool.as_str(), self.gains));
-        let accepted = "none with gains other than those tuned in the pool";
+        let accepted = "none, unless the gains are the tuned ones of the pool";
         FlockError::unless(is_tuned, "decision_period_s", period, accepted)?;
         let is_time = period > 0.0 && period <= 1e6;
         let accepted = "a positive time in s, or none";

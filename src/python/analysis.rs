@@ -43,7 +43,7 @@ pub(super) fn order_columns<'py>(
     let (poses, velocities) = (samples(&pose, "pose")?, samples(&velocity, "velocity")?);
     let ((times, boats), (found, others)) = (poses.shape(), velocities.shape());
     if (times, boats) != (found, others) {
-        let expected = format!("({times}, {boats}, 3), that of pose");
+        let expected = format!("({times}, {boats}, 3), as pose has");
         return Err(wrong_shape("velocity", &[found, others, 3], &expected));
     }
     columns(py, &poses.recorded(&velocities)?)

@@ -102,7 +102,7 @@ impl Numbers {
         if let Ok(any) = mask.and_then(|mask| mask.call_method0("any"))
             && any.is_truthy()?
         {
-            let message = format!("{name} is masked, which is not accepted: numbers alone");
+            let message = format!("{name} is masked; fill its gaps first");
             return Err(refusal(message));
         }
         let asarray = numpy::get_array_module(py)?.getattr("asarray")?;
@@ -151,8 +151,8 @@ pub(super) fn flat_actions<'py>(
     let Numbers { values, are_whole } = Numbers::of(actions, name, &shape)?;
     if let Some(levels) = levels.filter(|_| !are_whole) {
         let last = levels.saturating_sub(1);
-        let accepted = format!("whole numbers from 0 to {last} that name levels of the rudder");
-        return Err(refusal(format!("{name} must be integers, {accepted}")));
+        let accepted = format!("whole numbers from 0 to {last}, the levels of the rudder");
+        return Err(refusal(format!("{name} must be {accepted}")));
     }
     Ok(PyArray1::from_vec(actions.py(), values))
 }

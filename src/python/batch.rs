@@ -335,7 +335,7 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
     let is_alone = !starts_twice && !noise_twice;
     FlockError::unless(is_alone, "reset options", "snapshot and others", accepted)?;
     if let Some(seed) = noise_seed.filter(|_| snapshot.is_none()) {
-        let accepted = "a noise_seed together with a snapshot, which it continues with other noise";
+        let accepted = "a noise_seed only together with a snapshot";
         return Err(FlockError::parameter("noise_seed", seed, accepted).into());
     }
     if let Some(bytes) = snapshot {

@@ -211,7 +211,7 @@ pub(super) fn rudders_from(
 
 /// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
 pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
-    let accepted = "a dictionary with pose and, if need be, velocity, time_s and allow_overlap";
+    let accepted = "a dictionary with pose and, if you like, velocity, time_s and allow_overlap";
     let state = value.cast::<PyDict>();
     let dict = state.map_err(|_| wrong_type(value, "state", accepted))?;
     let refuse = |found: &str| FlockError::parameter("state", found, accepted);

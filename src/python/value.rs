@@ -127,7 +127,7 @@ pub(super) fn set_given<S>(
     for (name, value) in values {
         let is_meant = |field: &&Field<S>| name.eq(field.name).is_ok_and(|same| same);
         let field = fields.iter().find(is_meant);
-        let field = field.ok_or_else(|| not_accepted("option", &name, "one that there is"))?;
+        let field = field.ok_or_else(|| not_accepted("option", &name, "a known option"))?;
         set(of, field, &value)?;
     }
     Ok(())

@@ -144,7 +144,7 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
             .expect("the wild flock leaves its range");
         let words = error.to_string();
         assert!(matches!(error, FlockError::Solver(_)));
-        assert!(words.starts_with("flock 1: ") && words.ends_with("the other flocks' go on"));
+        assert!(words.starts_with("flock 1: ") && words.ends_with("the other flocks go on"));
         let episodes = |batch: &EnvBatch| -> Vec<_> {
             let episode = |env: &FlockEnv| {
                 let episode = env.episode().unwrap();

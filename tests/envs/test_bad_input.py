@@ -66,8 +66,8 @@ def interface(request):
         ({"decision_period_s": float("nan")}, "whole number of control steps"),
         ({"decision_period_s": -1.0}, "whole number of control steps"),
         ({"reward_horizon_s": 0.0}, "positive number"),
-        ({"reward_horizon_s": 0.099}, "at least one control step, 0.1 s"),
-        ({"reward_horizon_s": 1e-300, "control_hz": 2.5}, "at least one control step, 0.4 s"),
+        ({"reward_horizon_s": 0.099}, "at least one control step of 0.1 s"),
+        ({"reward_horizon_s": 1e-300, "control_hz": 2.5}, "at least one control step of 0.4 s"),
         ({"observation": {"lean_features": True}, "pool": (100.0, 40.0)}, "wide and narrow"),
     ],
 )

@@ -131,5 +131,5 @@ def test_they_are_mirrored_to_the_target():
 
 @pytest.mark.parametrize("pool", [(100.0, 40.0), (90.0, 20.0)])
 def test_other_pools_are_refused(pool):
-    with pytest.raises(flockenv.ParameterError, match="standardized in the pools wide and narrow"):
+    with pytest.raises(flockenv.ParameterError, match="only in the pools wide and narrow"):
         flockenv.LeadersEnv(pool=pool, observation=LEAN)

@@ -130,8 +130,8 @@ def test_weights_of_each_leader_pay_it_as_the_same_weights_of_all(options):
     [
         (WEIGHTS[:1], "one for each of 2 leaders"),
         ([{}, {"signed_ordre": 1.0}], "signed_ordre.*is not accepted: one of .signed_order"),
-        ([{}, {"signed_order": np.nan}], "within 1e6"),
-        ([{}, 1.0], "must be a dictionary of weights, or a list with one for each leader"),
+        ([{}, {"signed_order": np.nan}], "-1e6 to 1e6"),
+        ([{}, 1.0], "must be a dictionary of weights, or a list of dictionaries, one per leader"),
         ([{}, {"signed_order": "much"}], "reward must be a number"),
         ([{}, {"signed_order": True}], "reward must be a number"),
     ],

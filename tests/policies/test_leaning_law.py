@@ -114,7 +114,7 @@ def text(change) -> str:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda law: law["weights"].pop("near"), "weights have no near"),
+        (lambda law: law["weights"].pop("near"), "weights lack near"),
         (lambda law: law["weights"].update(far=1.0), '"far", which is no lean feature'),
         (lambda law: law["weights"].update(near=math.nan), "expected value"),
         (lambda law: law["weights"].update(near="1"), "invalid type: string"),
@@ -123,7 +123,7 @@ def text(change) -> str:
         (lambda law: law.update(format=2), "this version of flockenv reads format 1"),
         (lambda law: law.pop("format"), "missing field `format`"),
         (lambda law: law.update(code="import os"), "unknown field `code`"),
-        (lambda law: law.update(pool="bath"), "standardized in the pools wide and narrow"),
+        (lambda law: law.update(pool="bath"), "standardized only in the pools wide and narrow"),
         (lambda law: law.update(bound="relu"), "unknown variant `relu`"),
         (lambda law: law["gains"].pop("gain"), "missing field `gain`"),
         (lambda law: law.update(decision_period_s=-1.0), "decision_period_s = -1"),

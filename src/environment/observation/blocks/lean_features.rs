@@ -128,7 +128,7 @@ impl LeanFeatures {
         let place = POOLS.iter().position(|name| Some(*name) == pool);
         place.ok_or_else(|| {
             let pools = POOLS.join(" and ");
-            let accepted = format!("lean features are standardized in the pools {pools} alone");
+            let accepted = format!("lean features are standardized only in the pools {pools}");
             FlockError::parameter("pool", pool.unwrap_or("without a name"), accepted)
         })
     }
