@@ -113,6 +113,12 @@ class CommandLine:
         texts = (each.buffer.getvalue().decode("utf-8", "surrogateescape") for each in streams)
         return subprocess.CompletedProcess(arguments, ended.value.code or 0, *texts)
 
+    def succeeds(self, *words: object, **variables: str | None) -> subprocess.CompletedProcess[str]:
+        """Run a command in this process that must not fail."""
+        done = self(*words, **variables)
+        assert done.returncode == 0, done.stderr
+        return done
+
     def process(
         self, *words: object, before: str = "", **variables: str | None
     ) -> subprocess.CompletedProcess[str]:

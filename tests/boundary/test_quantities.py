@@ -32,8 +32,7 @@ def test_tables_of_sweeps_have_every_averaged_quantity():
 
 def test_the_command_line_and_the_replay_page_show_the_table(cli, run, tmp_path):
     options = ["--set", "n_boats=5", "--set", "n_leaders=1", "--minutes", "0.3", "--json"]
-    done = cli("run", *options, "--out", tmp_path / "run.npz")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("run", *options, "--out", tmp_path / "run.npz")
     shown = json.loads(done.stdout)
     assert {"nematic_mean", "milling_mean", "psi_v_mean", "signed_order_mean"} <= shown.keys()
     keys = [each["key"] for each in shown_quantities([run])]

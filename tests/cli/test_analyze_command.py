@@ -19,13 +19,11 @@ def run(tmp_path):
 
 def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     tracks = tmp_path / "tracks.csv"
-    done = cli("analyze", str(run), "--out", str(tracks))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("analyze", run, "--out", tracks)
     assert "tracks.csv" in done.stdout
     assert "tracks.toml" in done.stdout
     files = ["--plot", str(tmp_path / "order.png"), "--out", str(tmp_path / "again.npz")]
-    analyzed = cli("analyze", str(tracks), *files)
-    assert analyzed.returncode == 0, analyzed.stderr
+    analyzed = cli.succeeds("analyze", tracks, *files)
     assert "1206 poses of 6 boats in 201 frames" in analyzed.stderr
     assert "mean Ψ_o 0." in analyzed.stdout
     pixels = imread(tmp_path / "order.png")[..., :3]
@@ -35,7 +33,7 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     recording = flockenv.Recording.load(tmp_path / "again.npz")
     assert recording.ids.tolist() == ["0", "1", "2", "3", "4", "5"]
     summaries = [
-        json.loads(cli("analyze", str(path), "--json").stdout)
+        json.loads(cli("analyze", path, "--json").stdout)
         for path in (tmp_path / "again.npz", tracks)
     ]
     report = summaries[1].pop("tracks")
@@ -44,11 +42,14 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     assert summaries[0]["psi_o_mean"] == pytest.approx(recording.analyzed().order.psi_o.mean())
 
 
-def test_tracks_play_beside_the_model(cli, run, tmp_path):
-    tracks = tmp_path / "tracks.csv"
-    cli("analyze", str(run), "--out", str(tracks))
-    done = cli("replay", str(tracks), str(run), "--html", str(tmp_path / "both.html"))
-    assert done.returncode == 0, done.stderr
+@pytest.fixture
+def tracks(cli, run, tmp_path):
+    cli.succeeds("analyze", run, "--out", tmp_path / "tracks.csv")
+    return tmp_path / "tracks.csv"
+
+
+def test_tracks_play_beside_the_model(cli, run, tracks, tmp_path):
+    cli.succeeds("replay", tracks, run, "--html", tmp_path / "both.html")
     assert (tmp_path / "both.html").exists()
 
 
@@ -60,8 +61,7 @@ def test_the_first_frame_shows_which_way_is_up(cli, tmp_path):
         (tmp_path / "t.toml").write_text(
             f'pool = [90, 0]\nfps = 10\nheading_unit = "deg"\ny_down = {down}\n'
         )
-        done = cli("analyze", str(tmp_path / "t.csv"), "--plot", str(tmp_path / f"{down}.png"))
-        assert done.returncode == 0, done.stderr
+        done = cli.succeeds("analyze", tmp_path / "t.csv", "--plot", tmp_path / f"{down}.png")
         assert "mean cosine between heading and motion: 1.00" in done.stderr
         pixels = imread(tmp_path / f"{down}.png")[..., :3]
         boat = abs(pixels - to_rgb("#0072B2")).max(axis=-1) < 0.02
@@ -71,9 +71,7 @@ def test_the_first_frame_shows_which_way_is_up(cli, tmp_path):
         assert place[1] > 0.6
 
 
-def test_what_was_left_out_is_said_by_boat(cli, run, tmp_path):
-    tracks = tmp_path / "tracks.csv"
-    cli("analyze", str(run), "--out", str(tracks))
+def test_what_was_left_out_is_said_by_boat(cli, tracks):
     lines = tracks.read_text().splitlines()
     place = [lines[0].split(",").index(name) for name in ("x_cm", "y_cm")]
     for number in range(300, 330):
@@ -82,14 +80,13 @@ def test_what_was_left_out_is_said_by_boat(cli, run, tmp_path):
             cells[each] = "0.0"
         lines[number] = ",".join(cells)
     tracks.write_text("\n".join(lines))
-    done = cli("analyze", str(tracks))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("analyze", tracks)
     assert "missing: 30 of 1206 boat-frames" in done.stderr
     assert (
         "left out: 30 rows (30 in no water: 5 5, 4 5, 3 5, 2 5, 1 5, 1 more boats)" in done.stderr
     )
     assert "gaps: 6, the longest 0.6 s" in done.stderr
-    named = json.loads(cli("analyze", str(tracks), "--json", "--quiet").stdout)["tracks"]
+    named = json.loads(cli("analyze", tracks, "--json", "--quiet").stdout)["tracks"]
     counted = {"5": 5, "4": 5, "3": 5, "2": 5, "1": 5, "0": 5}
     assert named.pop("left_out") == {"in no water": counted}
     cosine = named.pop("cosine")
@@ -105,15 +102,14 @@ def test_a_report_by_name_has_no_cosine_of_what_stands_still(cli, tmp_path):
     rows = "".join(f"{k},a,60.0,40.0,90\n" for k in range(30))
     (tmp_path / "t.csv").write_text("frame,id,x,y,heading\n" + rows)
     (tmp_path / "t.toml").write_text('pool = [90, 0]\nfps = 10\nheading_unit = "deg"\n')
-    named = json.loads(cli("analyze", str(tmp_path / "t.csv"), "--json").stdout)["tracks"]
+    named = json.loads(cli("analyze", tmp_path / "t.csv", "--json").stdout)["tracks"]
     assert named["cosine"] is None
     assert named["stuck"] == {"a": [60.0, 40.0, 30]}
 
 
 def test_gsd(cli, run, tmp_path):
     pytest.importorskip("gsd.hoomd")
-    done = cli("analyze", str(run), "--out", str(tmp_path / "run.gsd"))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("analyze", run, "--out", tmp_path / "run.gsd")
     assert "run.toml" not in done.stdout
 
 
@@ -148,8 +144,7 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
             x, y = 300 + 90 * np.cos(angle), 200 + 90 * np.sin(angle)
             rows.append(f"{frame},{name},{x:.3f},{y:.3f},{np.degrees(angle) + 90:.3f}")
     (tmp_path / "robots.csv").write_text("\n".join(["frame,robot,x,y,theta", *rows]))
-    done = cli("analyze", tmp_path / "robots.csv", "--json")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("analyze", tmp_path / "robots.csv", "--json")
     assert json.loads(done.stdout)["milling_mean"] == pytest.approx(1.0, abs=0.01)
     text = (tmp_path / "robots.toml").read_text()
     for field in ("pool", "center", "cm_per_unit", "y_down", "fps", "heading_unit"):

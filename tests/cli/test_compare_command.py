@@ -32,8 +32,7 @@ def learned(folder: Path, name: str = "leaning.npz") -> str:
 
 def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_in) -> None:
     both = ["--pool", "wide", "--pool", "narrow"]
-    done = cli("compare", *SHORT, *both, "--n-leaders", "0-4", "--out", str(tmp_path))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *SHORT, *both, "--n-leaders", "0-4", "--out", tmp_path)
     assert "F = " not in done.stdout
     rows = [line.split() for line in done.stdout.splitlines()]
     numbers = [each for each in rows if "±" in " ".join(each)]
@@ -52,8 +51,7 @@ def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_i
 def test_ones_own_policy_comes_first_and_has_a_card(cli, tmp_path: Path) -> None:
     arguments = ["--n-leaders", "1,2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(tmp_path)]
     words = ["compare", "--policy", learned(tmp_path), "--name", "mine", *NARROW, *arguments]
-    done = cli(*words, "--full")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds(*words, "--full")
     assert done.stderr == ""
     assert "narrow-bw-0.2, learned: signed_order = " in done.stdout
     assert f"narrow-bw-0.4, mine minus {REFERENCES[0]}, k = 2: " in done.stdout
@@ -87,8 +85,7 @@ def test_alternating_targets_and_drop_outs_in_a_pool_of_ones_own(cli, tmp_path: 
     pool = ["--set", "pool=[150, 30]", "--set", "bw_s=0.2"]
     two = ["--only", "--policy", "damped law", "--policy", "straight ahead"]
     out = ["--n-leaders", "1", "--json", "--out", str(tmp_path)]
-    done = cli("compare", *two, *SHORT, *pool, *environment, *out)
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *two, *SHORT, *pool, *environment, *out)
     card = (tmp_path / "card.md").read_text()
     assert "150x30-bw-0.2: 8 boats, pool (150.0, 30.0), bw_s = 0.2, target = alternate" in card
     (row,) = json.loads(done.stdout)["differences"]
@@ -100,12 +97,11 @@ def test_names_of_references(cli, tmp_path: Path) -> None:
     """A policy that is one is run once under any name; a file that is called like one is not."""
     file = learned(tmp_path, "learned.npz")
     two = ["--policy", REFERENCES[2], "--policy", file, "--n-leaders", "1", "--json"]
-    done = cli("compare", *NARROW, *two, "--out", str(tmp_path))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *NARROW, *two, "--out", tmp_path)
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == [REFERENCES[2], file, *REFERENCES[:2]]
     alias = ["--policy", REFERENCES[1], "--name", "mine", "--n-leaders", "1", "--json"]
-    done = cli("compare", *NARROW, *alias, "--out", str(tmp_path))
+    done = cli("compare", *NARROW, *alias, "--out", tmp_path)
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == ["mine", REFERENCES[0], REFERENCES[2]]
 
@@ -115,16 +111,14 @@ def test_a_policy_for_each_leader(cli, tmp_path: Path) -> None:
     pair = "leader_0=damped law,leader_1=damped law"
     two = ["--only", "--policy", pair, "--name", "pair", "--policy", "damped law", "--name", "one"]
     out = ["--n-leaders", "2", "--json", "--out", str(tmp_path)]
-    done = cli("compare", *two, *NARROW, *out)
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *two, *NARROW, *out)
     (row,) = json.loads(done.stdout)["differences"]
     assert (row["policy"], row["mean"]) == ("pair", pytest.approx(0.0, abs=1e-9))
 
 
 def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path: Path) -> None:
     short = ["--episodes", "2", "--minutes", "0.01", "--set", "n_boats=8", "--pool", "narrow"]
-    done = cli("compare", *short, "--full", "--out", str(tmp_path))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *short, "--full", "--out", tmp_path)
     assert "unknown" in done.stdout
     assert "nan" not in done.stdout
     lines = (tmp_path / "runs.csv").read_text().splitlines()
@@ -134,8 +128,7 @@ def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path
 
 def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
     arguments = ["--set", "pool=[90.0, 30.0]", "--set", "bw_s=0.3", "--out", str(tmp_path)]
-    done = cli("compare", *SHORT, *arguments, "--quiet")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *SHORT, *arguments, "--quiet")
     assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
     assert REFERENCES[2] in done.stdout
     assert "tuned" not in done.stdout
@@ -144,7 +137,7 @@ def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
 def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
     own = tmp_path / "a_policy_with_a_rather_long_name_of_its_own.json"
     flockenv.policies.load("learned", pool="wide").save(own)
-    done = cli("compare", *SHORT, "-q", "--out", tmp_path / "out", "--policy", str(own))
+    done = cli("compare", *SHORT, "-q", "--out", tmp_path / "out", "--policy", own)
     table, _ = done.stdout.split("Written to")
     assert max(map(len, table.splitlines())) <= 80
     assert "…" not in table
@@ -184,7 +177,7 @@ def test_errors_are_one_line_with_exit_code_2(
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     given = [each.replace("{}", str(tmp_path)) for each in arguments]
     brief = [] if "--suite" in arguments else ["--minutes", "0.5", "--n-leaders", "1,2"]
-    done = cli("compare", *brief, *given, "--out", str(tmp_path / "out"))
+    done = cli("compare", *brief, *given, "--out", tmp_path / "out")
     assert done.returncode == 2, done.stderr
     assert words in done.stderr.replace("\n", " ")
     assert "Traceback" not in done.stderr
@@ -201,8 +194,7 @@ def test_a_suite_says_first_how_long_it_takes(cli, tmp_path, monkeypatch):
         Case, "run", lambda case, *rest: before.append(case.episode_s) or run(case, *rest)
     )
     words = ["compare", "--suite", "v2", "--policy", "straight ahead", "--out", tmp_path]
-    done = cli(*words)
-    assert done.returncode == 0
+    done = cli.succeeds(*words)
     assert re.search(r"^2 tasks, 0 flock-hours: about \d+ min here$", done.stderr, re.MULTILINE)
     # A minute of each policy, and then the tasks.
     assert before == [60.0, 60.0, 20.0, 20.0]

@@ -20,8 +20,7 @@ SPEC = "minutes = 600\nseeds = 40\n[[grid]]\nn_boats = [20]\n"
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_has_an_example_and_fits(cli, name):
-    reported = cli(name, "-h")
-    assert reported.returncode == 0
+    reported = cli.succeeds(name, "-h")
     assert f"Example: flockenv {name}" in reported.stdout
     assert "--json" in reported.stdout
     assert max(map(len, reported.stdout.splitlines())) <= 80
@@ -140,7 +139,7 @@ def test_ctrl_c_keeps_the_runs_of_a_sweep(cli, tmp_path, pressed_in):
     done = cli("sweep", spec, "--workers", "1", "--out", out)
     assert done.returncode == 130, done.stderr
     assert len(list(out.rglob("*.npz"))) == 1
-    assert cli("sweep", spec, "--out", out).returncode == 0
+    cli.succeeds("sweep", spec, "--out", out)
     assert len(list(out.rglob("*.npz"))) == 9
 
 

@@ -44,12 +44,10 @@ def written(name: str) -> str:
 
 def test_recordings_may_have_any_name(cli):
     name = written(os.fsdecode(b"\xff\xfe run.npz"))
-    done = cli("run", *TINY, "--force", "--out", name)
-    assert done.returncode == 0, done.stderr
+    cli.succeeds("run", *TINY, "--force", "--out", name)
     for title in (name, "[/b] $x$ <b>"):
-        done = cli("replay", name, "-q", "--html", "page.html", "--name", title)
-        assert done.returncode == 0, done.stderr
-    done = cli("replay", name, "-q", "--html", "page.html")
+        cli.succeeds("replay", name, "-q", "--html", "page.html", "--name", title)
+    cli("replay", name, "-q", "--html", "page.html")
     assert "<title>\ufffd\ufffd run" in Path("page.html").read_text("utf-8")
 
 
@@ -57,8 +55,7 @@ def test_policies_may_have_any_name(cli):
     names = list(map(written, ["x[/b] $a_{ $.npz", "_under.npz", os.fsdecode(b"\xff.npz")]))
     short = ["-q", "--episodes", "2", "--minutes", "0.1", "--pool", "narrow", "--set", "n_boats=5"]
     wanted = [word for name in names for word in ("--policy", name)]
-    done = cli("compare", *short, "--n-leaders", "0-1", "--only", *wanted, "--out", "c")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *short, "--n-leaders", "0-1", "--only", *wanted, "--out", "c")
     assert "a_{" in done.stdout
     assert "\ufffd" in Path("c", "run.toml").read_text("utf-8")
     assert Path("c", "card.md").read_text("utf-8").startswith("# b] $a_{ $\n")

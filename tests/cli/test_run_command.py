@@ -19,8 +19,7 @@ PARAMETERS = flockenv.FlockParameters(n_boats=8, n_leaders=2, pool="narrow")
 @pytest.fixture(scope="module")
 def run(cli, tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("runs") / "law;.npz"
-    done = cli("run", *SMALL, "--seed", "7", "--out", out)
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("run", *SMALL, "--seed", "7", "--out", out)
     assert shlex.join(["flockenv", "replay", str(out)]) in done.stdout.splitlines()[-1]
     return out
 
@@ -32,8 +31,7 @@ def test_the_recording_is_what_simulate_returns(run):
 def test_the_parameters_beside_it_run_it_again(cli, run, tmp_path):
     again = tmp_path / "again.npz"
     toml = run.with_suffix(".toml")
-    done = cli("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
-    assert done.returncode == 0, done.stderr
+    cli.succeeds("run", "--params", toml, "--minutes", "0.2", "--seed", "7", "--out", again)
     assert flockenv.Recording.load(again) == flockenv.Recording.load(run)
     assert "seed 7, policy paper's law at every substep" in toml.read_text()
 
@@ -55,13 +53,12 @@ def test_json_is_all_that_is_printed(cli, tmp_path):
 def test_what_is_there_is_overwritten_only_if_that_is_asked_for(cli, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for names in (["run"], ["run", "run-2"]):
-        assert cli("run", *SMALL, "-q").returncode == 0
+        cli.succeeds("run", *SMALL, "-q")
         assert sorted(each.stem for each in Path("results").glob("*.npz")) == names
     refused = cli("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "-q")
     assert "results/run.npz is there already: --force overwrites it" in refused.stderr
     assert flockenv.Recording.load("results/run.npz").seed == 0
-    forced = cli("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
-    assert forced.returncode == 0, forced.stderr
+    cli.succeeds("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
     assert flockenv.Recording.load("results/run.npz").seed == 1
     Path("mine.toml").write_text("n_boats = 3\n")
     refused = cli("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
@@ -76,8 +73,7 @@ def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
     page = run.with_suffix(".html")
     assert written == {"html": str(page), "bytes": page.stat().st_size, "every": 1}
     pair = tmp_path / "sub" / "pair.html"
-    done = cli("replay", run, run, "--html", pair)
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("replay", run, run, "--html", pair)
     assert "<title>law; (1) and law; (2) – flockenv replay</title>" in pair.read_text()
 
 
@@ -96,12 +92,10 @@ def test_replay_draws_a_moving_picture(cli, run, tmp_path):
 
 def test_replay_draws_two_side_by_side(cli, run, tmp_path):
     shorter, both = tmp_path / "shorter.npz", tmp_path / "both.gif"
-    done = cli("run", *SMALL, "--minutes", "0.1", "--seed", "4", "--out", shorter)
-    assert done.returncode == 0, done.stderr
+    cli.succeeds("run", *SMALL, "--minutes", "0.1", "--seed", "4", "--out", shorter)
     draw = ("replay", run, shorter, "--gif", both, "--speed", "16")
     for colors in ("direction", "role"):
-        done = cli(*draw, "--name", "long", "--name", "short", "--colors", colors)
-        assert done.returncode == 0, done.stderr
+        cli.succeeds(*draw, "--name", "long", "--name", "short", "--colors", colors)
         with Image.open(both) as picture:
             frames = [np.array(each.convert("RGB")) for each in ImageSequence.Iterator(picture)]
         assert {each.shape for each in frames} == {(600, 1200, 3)}
@@ -120,8 +114,7 @@ def test_replay_draws_two_side_by_side(cli, run, tmp_path):
 @pytest.mark.parametrize(("start", "frames", "first_s"), [("4", 12, 4.0), ("99", 1, 12.0)])
 def test_a_moving_picture_starts_later(cli, run, tmp_path, start, frames, first_s):
     """The 8 s that are left last 1 s at 8 times real time; of nothing there is the last frame."""
-    done = cli("replay", run, "--gif", tmp_path / "late.gif", "--start", start)
-    assert done.returncode == 0, done.stderr
+    cli.succeeds("replay", run, "--gif", tmp_path / "late.gif", "--start", start)
     with Image.open(tmp_path / "late.gif") as picture:
         assert picture.n_frames == frames
         found = np.array(picture.convert("RGB")).astype(int)
@@ -142,8 +135,7 @@ def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_
         refused = cli(*words, "--policy", model)
         assert (refused.returncode, "--trust" in refused.stderr) == (2, True)
         assert not out.exists()
-        done = cli(*words, "--policy", model, "--trust")
-        assert done.returncode == 0, done.stderr
+        cli.succeeds(*words, "--policy", model, "--trust")
         out.rename(tmp_path / "steered.npz") if out.exists() else None
     policy = flockenv.policies.load(model, trust=True)
     steered = flockenv.simulate(PARAMETERS, 3, 12.0, policy=policy)
@@ -154,7 +146,6 @@ def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_
 def test_a_run_without_leaders_names_no_target(cli, tmp_path):
     for leaders in (0, 1):
         options = ["--set", f"n_leaders={leaders}", "--set", "n_boats=4", "--minutes", "0.2"]
-        done = cli("run", *options, "--out", tmp_path / f"{leaders}.npz")
-        assert done.returncode == 0, done.stderr
+        done = cli.succeeds("run", *options, "--out", tmp_path / f"{leaders}.npz")
         assert ("towards target" in done.stdout) == (leaders == 1)
         assert "rotation" in done.stdout

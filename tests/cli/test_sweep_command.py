@@ -12,13 +12,12 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     spec = tmp_path / "noise.toml"
     spec.write_text(SPEC)
     out = tmp_path / "out"
-    done = cli("sweep", str(spec), "--out", str(out))
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("sweep", spec, "--out", out)
     assert "8 runs" in done.stdout
     table = load_sweep(out)
     assert table[["n_boats", "bw_s", "seed"]].drop_duplicates().shape == (8, 3)
     before = (out / "sweep.csv").read_bytes()
-    again = cli("sweep", str(spec), "--out", str(out), "--workers", "1", "--json")
+    again = cli("sweep", spec, "--out", out, "--workers", "1", "--json")
     assert again.stderr == ""
     assert len(json.loads(again.stdout)) == 8
     assert (out / "sweep.csv").read_bytes() == before
@@ -28,22 +27,21 @@ def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:
     spec = tmp_path / "noise.toml"
     spec.write_text(SPEC)
     sweep = ["sweep", str(spec), "--quiet", "--workers", "1", "--out"]
-    looked = cli(*sweep, str(tmp_path / "out"), "--dry-run", "--shard", "1/2", "--json")
+    looked = cli(*sweep, tmp_path / "out", "--dry-run", "--shard", "1/2", "--json")
     workload = json.loads(looked.stdout)
     assert 0 < workload["runs"] < 8
     assert workload["stored"] == 0
     assert not (tmp_path / "out").exists()
     for shard in ("1/2", "2/2"):
-        done = cli(*sweep, str(tmp_path / "out"), "--shard", shard)
-        assert done.returncode == 0, done.stderr
+        done = cli.succeeds(*sweep, tmp_path / "out", "--shard", shard)
         assert f"Shard {shard}" in done.stdout
         assert not (tmp_path / "out" / "sweep.csv").exists()
         stored = len(list((tmp_path / "out").rglob("*.npz")))
         assert stored == (workload["runs"] if shard == "1/2" else 8)
-    again = cli(*sweep, str(tmp_path / "out"), "--shard", "1/2", "--json")
+    again = cli(*sweep, tmp_path / "out", "--shard", "1/2", "--json")
     assert json.loads(again.stdout) == {"shard": "1/2", "runs": workload["runs"], "failed": 0}
     for out in ("out", "alone"):
-        assert cli(*sweep, str(tmp_path / out)).returncode == 0
+        cli.succeeds(*sweep, str(tmp_path / out))
     for name in ("sweep.csv", "sweep.parquet"):
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
 

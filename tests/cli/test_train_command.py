@@ -25,8 +25,7 @@ def _short_comparisons(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     out = str(tmp_path / "run")
-    done = cli("train", *TINY, "--seed", "5", "--out", out, "--json")
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("train", *TINY, "--seed", "5", "--out", out, "--json")
     assert done.stderr == ""
     found = json.loads(done.stdout)
     assert set(found["signed_order"]) == {"paper's law", "tuned law", "trained"}
@@ -34,8 +33,9 @@ def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     assert len((tmp_path / "run" / "comparison.csv").read_text().splitlines()) == 1 + 3 * 2
     assert (tmp_path / "run" / "curve.png").stat().st_size > 0
     hours = str(128 * 48 / 3600)
-    more = cli("train", "--resume", "--flock-hours", hours, "--episodes", "2", "--out", out)
-    assert more.returncode == 0, more.stderr
+    more = cli.succeeds(
+        "train", "--resume", "--flock-hours", hours, "--episodes", "2", "--out", out
+    )
     assert f"Resuming from {out}/checkpoint.zip" in more.stderr.replace("\n", "")
     assert "trained: signed order " in more.stdout
     assert load(found["model"], trust=True).provenance["samples"] == str(128 * 48 * 2)
@@ -50,7 +50,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
         (["--resume"], "no checkpoint"),
         (["--resume", "--seed", "3"], "only --flock-hours may differ"),
     ):
-        done = cli("train", *arguments, "--out", str(tmp_path / "run"))
+        done = cli("train", *arguments, "--out", tmp_path / "run")
         assert done.returncode == 2, done.stderr
         assert words in done.stderr
         assert "Error:" in done.stderr
@@ -80,7 +80,7 @@ def test_an_interrupt_leaves_a_checkpoint(
 
     monkeypatch.setattr(PPO, "train", pressed)
     out = tmp_path / "run"
-    done = cli("train", *TINY, "--quiet", "--out", str(out))
+    done = cli("train", *TINY, "--quiet", "--out", out)
     assert done.returncode == 130
     assert "Interrupted. What was finished before is stored." in done.stderr
     monkeypatch.undo()

@@ -58,7 +58,7 @@ def test_a_field_that_is_given_twice_is_refused(cli, tmp_path):
 def test_a_run_has_the_fields_that_are_named(cli, tmp_path):
     fields = ["--n-boats", "6", "--n-leaders", "2", "--pool", "(80, 30)", "--bw-s", "0.2"]
     out = tmp_path / "a.npz"
-    assert cli("run", *fields, "--minutes", "0.02", "--out", out).returncode == 0
+    cli.succeeds("run", *fields, "--minutes", "0.02", "--out", out)
     text = out.with_suffix(".toml").read_text()
     assert all(line in text for line in ("n_boats = 6", "n_leaders = 2", "bw_s = 0.2"))
     assert "80.0" in text

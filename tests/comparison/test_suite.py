@@ -132,8 +132,7 @@ def test_a_policy_is_scored_on_every_task(cli, tmp_path: Path, monkeypatch) -> N
     ]
     monkeypatch.setattr(suite, "TASKS", tuple(replace(task, episode_s=20.0) for task in small))
     words = ["--suite", "v2", "--policy", "damped law", "--name", "mine", "--out", str(tmp_path)]
-    done = cli("compare", *words)
-    assert done.returncode == 0, done.stderr
+    done = cli.succeeds("compare", *words)
     assert "mine, interquartile mean: " in done.stdout
     names = pd.read_csv(tmp_path / "scores.csv")["task"].tolist()
     assert names == [*(task.name for task in TASKS), "interquartile mean", IMPROVED]
