@@ -10,40 +10,18 @@ import pytest
 import flockenv
 from flockenv.envs.options import _NAMES, OPTIONS, RESET_OPTIONS
 
+from .conftest import EVERY
+
 SMALL = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
 ARGUMENTS = ("seed", "reset_mask", "render_mode", "render_size", "num_envs", "num_flocks")
 
 
-def of_sb3(**options):
-    pytest.importorskip("stable_baselines3")
-    return flockenv.sb3.LeaderVecEnv(2, **options)
+def unwrapped(**options):
+    inner = gymnasium.make("flockenv/Leaders-v0", **options)
+    return gymnasium.wrappers.FlattenObservation(inner).unwrapped
 
 
-def of_torchrl(**options):
-    pytest.importorskip("torchrl")
-    return flockenv.torchrl.LeadersEnv(2, **options)
-
-
-EVERY = {
-    "single": flockenv.LeadersEnv,
-    "parallel": flockenv.parallel_env,
-    "aec": flockenv.env,
-    "vector": lambda **options: flockenv.LeadersVectorEnv(2, **options),
-    "gymnasium.make": lambda **options: gymnasium.make("flockenv/Leaders-v0", **options),
-    "gymnasium.make_vec": lambda **options: gymnasium.make_vec(
-        "flockenv/Leaders-v0", num_envs=2, **options
-    ),
-    "unwrapped": lambda **options: (
-        gymnasium.wrappers.FlattenObservation(
-            gymnasium.make("flockenv/Leaders-v0", **options)
-        ).unwrapped
-    ),
-    "sb3": of_sb3,
-    "torchrl": of_torchrl,
-}
-
-
-@pytest.fixture(params=EVERY.values(), ids=EVERY.keys())
+@pytest.fixture(params=[*EVERY.values(), unwrapped], ids=[*EVERY, "unwrapped"])
 def env(request):
     return request.param(**SMALL)
 
@@ -55,7 +33,7 @@ def test_names_of_options_are_no_attributes(env):
     for name in sorted(names):
         for written in (name, name.upper(), name.title(), name.replace("_", "")):
             with pytest.raises(AttributeError, match=f"^'{written}' cannot be set as an attribute"):
-                setattr(env, written, 3)
+                setattr(env, written, 7)
     assert vars(env) == before
 
 

@@ -1,6 +1,5 @@
 """Law: bad input is a named error, and nothing has moved."""
 
-import gymnasium
 import numpy as np
 import pytest
 
@@ -8,13 +7,10 @@ import flockenv
 from flockenv import EpisodeError, FlockError, ParameterError
 from flockenv.envs.options import _NAMES, RESET_OPTIONS
 
+from .conftest import EVERY, INTERFACES, torchrl_env, zeros
+
 OPTIONS = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
 NOTHING = dict.fromkeys(["own", "phase", "target", "order", "neighbors"], 0)
-INTERFACES = {
-    "single": lambda **options: flockenv.LeadersEnv(**options),
-    "parallel": lambda **options: flockenv.parallel_env(**options),
-    "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
-}
 
 
 @pytest.fixture(params=INTERFACES.values(), ids=INTERFACES.keys())
@@ -101,14 +97,8 @@ def test_params_and_preset_exclude_each_other():
     assert flockenv.LeadersEnv(preset="paper").parameters.scheme == "paper"
 
 
-def zeros(env):
-    if isinstance(env, flockenv.LeadersParallelEnv):
-        return {agent: np.zeros(1) for agent in env.possible_agents}
-    return np.zeros(env.action_space.shape)
-
-
 def test_stepping_before_a_reset_and_after_the_end(interface):
-    env = interface(autoreset_mode="disabled") if interface.__name__ == "vector" else interface()
+    env = interface()
     with pytest.raises(EpisodeError, match="reset"):
         env.step(zeros(env))
     env.reset(seed=0)
@@ -228,30 +218,6 @@ def resets(interface):
     return reset
 
 
-EVERY = {
-    **INTERFACES,
-    "gymnasium.make": lambda **options: gymnasium.make(
-        "flockenv/Leaders-v0", disable_env_checker=True, **options
-    ),
-    "gymnasium.make_vec": lambda **options: gymnasium.make_vec(
-        "flockenv/Leaders-v0", num_envs=3, **options
-    ),
-    "aec": lambda **options: flockenv.env(**options),
-    "sb3": lambda **options: leader_vec_env(3, **options),
-    "torchrl": lambda **options: torchrl_env(3, **options),
-}
-
-
-def leader_vec_env(*arguments, **options):
-    pytest.importorskip("stable_baselines3")
-    return flockenv.sb3.LeaderVecEnv(*arguments, **options)
-
-
-def torchrl_env(*arguments, **options):
-    pytest.importorskip("torchrl")
-    return flockenv.torchrl.LeadersEnv(*arguments, **options)
-
-
 @pytest.fixture(params=EVERY.values(), ids=EVERY.keys())
 def every(request):
     return resets(lambda: request.param(**OPTIONS))
@@ -310,7 +276,7 @@ def test_a_mask_is_for_vector_environments(name):
 
 @pytest.mark.parametrize("given", [{"bw_s": 0.5}, {"seed": 3}, {"anything": 1}])
 def test_what_torchrl_passes_on_is_taken_or_refused(given):
-    env = torchrl_env(2, **OPTIONS)
+    env = torchrl_env(**OPTIONS)
     with pytest.raises(flockenv.errors.UnknownOptionError, match=r"options=.*set_seed"):
         env.reset(**given)
     env.reset(options={"bw_s": 0.5})

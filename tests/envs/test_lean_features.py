@@ -38,24 +38,13 @@ def expected(row: np.ndarray) -> list[float]:
     return [*own, outer, *order, *near, *leaders, *rest]
 
 
-def visited(pool: str, target: str = "random") -> flockenv.LeadersVectorEnv:
-    env = flockenv.LeadersVectorEnv(
-        8,
-        n_boats=27,
-        n_leaders=3,
-        pool=pool,
-        bw_s=(0.2, 0.6),
-        target=target,
-        mirror_to_target=True,
-        observation={"lean_features": True},
-    )
-    env.reset(seed=1)
-    return env
+CROWD = {"n_boats": 27, "n_leaders": 3, "mirror_to_target": True}
 
 
 @pytest.mark.parametrize("pool", ["wide", "narrow"])
 def test_features_are_affine_in_what_is_seen(pool):
-    env, rows = visited(pool), []
+    task = {"observation": {"lean_features": True}, "bw_s": (0.2, 0.6), "target": "random"}
+    env, rows = flockenv.LeadersVectorEnv(8, pool=pool, **CROWD, **task), []
     law = DampedLaw(mirror_to_target=True, observation={"lean_features": True})
     seen, _ = env.reset(seed=1)
     for step in range(300):
@@ -79,16 +68,8 @@ def test_features_are_affine_in_what_is_seen(pool):
 @pytest.mark.parametrize("pool", ["wide", "narrow"])
 def test_they_are_standardized_under_the_tuned_law(pool):
     bw_s = flockenv.FlockParameters.critical_bw_s("simulation", pool)
-    env = flockenv.LeadersVectorEnv(
-        64,
-        n_boats=27,
-        n_leaders=3,
-        pool=pool,
-        bw_s=bw_s,
-        action_mode="lean",
-        mirror_to_target=True,
-        observation=LEAN,
-    )
+    leaning = {"action_mode": "lean", "observation": LEAN}
+    env = flockenv.LeadersVectorEnv(64, pool=pool, bw_s=bw_s, **CROWD, **leaning)
     env.reset(seed=7)
     rows = []
     for step in range(2600):

@@ -50,25 +50,28 @@ def test_terms_follow_from_the_flock():
             assert rewards[agent] == pytest.approx(sum(ALL[name] * terms[name] for name in ALL))
 
 
-def test_a_jam_heads_outward_and_stands():
+def step_of_a_ring(turn, **options):
+    """A step of boats around the pool, turned so much from outward.
+
+    It lasts a millisecond: the flock has no time to leave its order.
+    """
     angles = np.linspace(0, 2 * np.pi, 7)[:-1]
+    pose = np.stack([140 * np.cos(angles), 140 * np.sin(angles), angles + turn], axis=1)
+    env = flockenv.LeadersEnv(n_boats=6, n_leaders=2, control_hz=1000.0, episode_s=1.0)
+    env.reset(seed=0, options={"state": {"pose": pose}, **options})
+    return env.step(np.zeros(2))
+
+
+def test_a_jam_heads_outward_and_stands():
     for turn, jam in ((0.0, -1.0), (np.pi, 0.0), (np.pi / 2, 0.0)):
-        pose = np.stack([140 * np.cos(angles), 140 * np.sin(angles), angles + turn], axis=1)
-        env = flockenv.LeadersEnv(n_boats=6, n_leaders=2, control_hz=1000.0, episode_s=1.0)
-        env.reset(seed=0, options={"state": {"pose": pose}})
-        terms = env.step(np.zeros(2))[4]["reward_terms"]
+        terms = step_of_a_ring(turn)[4]["reward_terms"]
         assert terms["jam"] == pytest.approx(jam, abs=0.01)
 
 
 def test_perfect_order_pays_one_and_the_wrong_way_minus_one():
-    angles = np.linspace(0, 2 * np.pi, 7)[:-1]
     for target, turn in (("cw", -np.pi / 2), ("ccw", np.pi / 2)):
-        pose = np.stack([140 * np.cos(angles), 140 * np.sin(angles), angles + turn], axis=1)
         for chosen, expected in (("cw", 1.0), ("ccw", -1.0)):
-            # A tenth of a millisecond: the flock has no time to leave its perfect order.
-            env = flockenv.LeadersEnv(n_boats=6, n_leaders=2, control_hz=1000.0, episode_s=1.0)
-            env.reset(seed=0, options={"state": {"pose": pose}, "target": chosen})
-            _, reward, _, _, _ = env.step(np.zeros(2))
+            reward = step_of_a_ring(turn, target=chosen)[1]
             assert reward == pytest.approx(expected if target == "cw" else -expected, abs=1e-6)
 
 

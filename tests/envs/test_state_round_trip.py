@@ -8,6 +8,8 @@ import pytest
 
 import flockenv
 
+from .conftest import INTERFACES, actions_for
+
 OPTIONS = {"n_boats": 12, "n_leaders": 3, "episode_s": 6.0}
 VARIANTS = {
     "plain": {},
@@ -25,14 +27,6 @@ VARIANTS = {
     "obstacles": {"pool": (150.0, 0.0), "discs": [(30, 0, 8)], "walls": [(-60, 40, 0, 40)]},
     "bias": {"speed_spread_cm_s": 3.0, "turning_bias": 0.1, "current_gain": 0.1},
 }
-INTERFACES = {
-    "single": lambda **options: flockenv.LeadersEnv(**options),
-    "parallel": lambda **options: flockenv.parallel_env(**options),
-    "vector": lambda **options: flockenv.LeadersVectorEnv(3, **options),
-    "same step": lambda **options: flockenv.LeadersVectorEnv(
-        3, autoreset_mode="same_step", **options
-    ),
-}
 COPIES = {
     "set_state": lambda env, fresh: fresh.set_state(env.get_state()) or fresh,
     "clone": lambda env, fresh: env.clone(),
@@ -43,9 +37,11 @@ COPIES = {
 
 def action(env, step):
     random = np.random.default_rng(step)
-    if isinstance(env, flockenv.LeadersParallelEnv):
-        return {agent: random.uniform(-1, 1, 1) for agent in env.possible_agents}
-    return random.uniform(-1, 1, env.action_space.shape)
+    return actions_for(env, lambda shape: random.uniform(-1, 1, shape))
+
+
+def same_step(**options):
+    return flockenv.LeadersVectorEnv(3, autoreset_mode="same_step", **options)
 
 
 def equal(first, second):
@@ -55,7 +51,7 @@ def equal(first, second):
 
 
 @pytest.mark.parametrize("variant", VARIANTS.values(), ids=VARIANTS.keys())
-@pytest.mark.parametrize("make", INTERFACES.values(), ids=INTERFACES.keys())
+@pytest.mark.parametrize("make", [*INTERFACES.values(), same_step], ids=[*INTERFACES, "same step"])
 @pytest.mark.parametrize("again", COPIES.values(), ids=COPIES.keys())
 def test_middle_of_an_episode(make, again, variant):
     options = {**OPTIONS, **variant}
