@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import TrackLayout, read_tracks
+from flockenv.tracks import TrackLayout, guess_layout, read_layout, read_tracks
 
 PIXEL_CM = 0.25
 CENTER = (812.0, 604.5)
@@ -51,6 +51,12 @@ def read_and_counted(source, layout=None):
     recording = read_tracks(source, layout, reports.append)
     (report,) = reports
     return recording, report
+
+
+def guessed_of(path):
+    """Return the layout that is guessed from a table, as the file beside it says it."""
+    guess_layout(path)
+    return read_layout(path.with_suffix(".toml"))
 
 
 def but(layout, **changes):

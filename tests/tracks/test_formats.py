@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import TrackLayout, guess_layout, read_layout, read_tracks
+from flockenv.tracks import TrackLayout, read_tracks
 
-from .conftest import FIELDS, LAYOUT, but, check, read_and_counted
+from .conftest import FIELDS, LAYOUT, but, check, guessed_of, read_and_counted
 
 
 def key_points(seen):
@@ -58,8 +58,7 @@ def test_deeplabcut(seen, tmp_path):
         assert report.left_out["with too little confidence"] == {"boat7": 1}
         assert report.left_out["without a position"]["boat7"] > 0
         assert report.missing == seen.missing + 1
-    guess_layout(tmp_path / "dlc.csv")
-    guessed = read_layout(tmp_path / "dlc.toml")
+    guessed = guessed_of(tmp_path / "dlc.csv")
     assert (guessed.x, guessed.y, guessed.heading) == (layout.x, layout.y, layout.heading)
     assert (guessed.id, guessed.frame, guessed.least_confidence) == (None, "frame", 0.6)
 
@@ -67,8 +66,7 @@ def test_deeplabcut(seen, tmp_path):
 def test_deeplabcut_of_one_animal(seen, tmp_path):
     wide = deeplabcut(seen).xs("boat7", axis=1, level="individuals")
     wide.to_csv(tmp_path / "dlc.csv")
-    guess_layout(tmp_path / "dlc.csv")
-    layout = read_layout(tmp_path / "dlc.toml")
+    layout = guessed_of(tmp_path / "dlc.csv")
     assert (layout.id, layout.x, layout.heading[2]) == (None, "center_x", "nose_x")
     found, _ = read_and_counted(tmp_path / "dlc.csv", but(layout, fps=10.0))
     assert (found.ids.tolist(), len(found)) == (["0"], 601)
@@ -84,8 +82,7 @@ def test_sleap(seen, tmp_path):
     # What is assigned to no track has no name.
     table = pd.concat([table, table[::50].assign(track="")]).sort_values("frame_idx", kind="stable")
     table.to_csv(tmp_path / "sleap.csv", index=False)
-    guess_layout(tmp_path / "sleap.csv")
-    guessed = read_layout(tmp_path / "sleap.toml")
+    guessed = guessed_of(tmp_path / "sleap.csv")
     # Without a part in the middle, the center is between the two ends.
     assert (guessed.x, guessed.y) == (("tail.x", "nose.x"), ("tail.y", "nose.y"))
     assert (guessed.id, guessed.frame) == ("track", "frame_idx")
@@ -113,8 +110,7 @@ def test_wide_tables_of_idtracker(seen, tmp_path, columns):
         ].to_numpy()
         table[f"angle{name}"] = wide["angle"][name].to_numpy()
     table.to_csv(tmp_path / "trajectories.csv", index=False)
-    guess_layout(tmp_path / "trajectories.csv")
-    guessed = read_layout(tmp_path / "trajectories.toml")
+    guessed = guessed_of(tmp_path / "trajectories.csv")
     assert guessed.x == columns.format("{id}")
     assert (guessed.id, guessed.frame, guessed.fps, guessed.heading) == (
         None, "seconds", None, "angle{id}",
@@ -143,8 +139,7 @@ def test_trex(seen, tmp_path):
     paths = sorted(tmp_path.glob("film_*.csv"))
     joined = pd.concat([pd.read_csv(p).assign(id=p.stem.rpartition("_")[2]) for p in paths])
     joined.to_csv(tmp_path / "all.csv", index=False)
-    guess_layout(tmp_path / "all.csv")
-    guessed = read_layout(tmp_path / "all.toml")
+    guessed = guessed_of(tmp_path / "all.csv")
     assert (guessed.x, guessed.y, guessed.heading, guessed.id) == (
         "X#wcentroid (cm)", "Y#wcentroid (cm)", "ANGLE", "id",
     )  # fmt: skip
@@ -168,8 +163,7 @@ def test_trackmate(seen, tmp_path):
         ",,(pixel),(pixel),(deg),,",
     ]
     (tmp_path / "spots.csv").write_text("\n".join([lines[0], *more, *lines[1:]]))
-    guess_layout(tmp_path / "spots.csv")
-    guessed = read_layout(tmp_path / "spots.toml")
+    guessed = guessed_of(tmp_path / "spots.csv")
     assert (guessed.id, guessed.x, guessed.frame) == ("TRACK_ID", "POSITION_X", "FRAME")
     layout = but(guessed, **FIELDS, fps=10.0)
     check(seen, *read_and_counted(tmp_path / "spots.csv", layout))
@@ -324,8 +318,7 @@ def test_ethovision(seen, tmp_path):
     before = '"Number of header lines:";"5"\n"Start time";"05/04/2026 10:00:00"\n\n'
     header = '"Trial time";"X center";"Y center";"Direction"\n"s";"px";"px";"deg"\n'
     (tmp_path / "etho.csv").write_bytes((before + header + lines).encode("utf-16"))
-    guess_layout(tmp_path / "etho.csv")
-    guessed = read_layout(tmp_path / "etho.toml")
+    guessed = guessed_of(tmp_path / "etho.csv")
     assert (guessed.frame, guessed.x, guessed.heading) == ("Trial time", "X center", "Direction")
     assert (guessed.separator, guessed.skip, guessed.id) == (";", 3, None)
     found, report = read_and_counted(

@@ -5,7 +5,7 @@ import pytest
 import flockenv
 from flockenv.tracks import guess_layout, read_layout, read_tracks
 
-from .conftest import CENTER, FIELDS, but, check, read_and_counted
+from .conftest import CENTER, FIELDS, but, check, guessed_of, read_and_counted
 
 LAB = ("Frame", "RobotID", "X [px]", "Y [px]", "Theta [deg]")
 
@@ -51,8 +51,7 @@ def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encodin
 def test_units_in_a_header_are_taken(tmp_path, names, expected):
     rows = [f"{40 * k};{k % 2};{k % 7 + 0.5};{k % 5 + 1.5};0.1" for k in range(40)]
     (tmp_path / "lab.csv").write_text("\n".join([names, *rows]))
-    guess_layout(tmp_path / "lab.csv")
-    found = read_layout(tmp_path / "lab.toml")
+    found = guessed_of(tmp_path / "lab.csv")
     assert {name: getattr(found, name) for name in expected} == expected
 
 
@@ -70,7 +69,6 @@ def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):
     table = seen.table.set_axis(LAB, axis=1)
     table.loc[::9, ["X [px]", "Y [px]"]] = -1
     table.to_csv(tmp_path / "lab.csv", index=False)
-    guess_layout(tmp_path / "lab.csv")
-    guessed = read_layout(tmp_path / "lab.toml")
+    guessed = guessed_of(tmp_path / "lab.csv")
     assert guessed.center == pytest.approx(CENTER, abs=40)
     assert guessed.lost == ((-1.0, -1.0),)
