@@ -2,9 +2,23 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch")
+
+
+def started(venv, seed=None):
+    """Return an environment after a reset, seeded before if a seed is given."""
+    if seed is not None:
+        venv.seed(seed)
+    venv.reset()
+    return venv
+
+
+def steps(venv, number):
+    """Return what so many steps without a rudder return."""
+    return [venv.step(np.zeros((venv.num_envs, 1), np.float32)) for _ in range(number)]
 
 
 @pytest.fixture(autouse=True)

@@ -2,7 +2,6 @@
 
 import pickle
 
-import numpy as np
 import pytest
 
 import flockenv
@@ -16,6 +15,8 @@ from stable_baselines3.common.monitor import Monitor  # noqa: E402
 
 from flockenv.sb3 import LeaderVecEnv  # noqa: E402
 
+from .conftest import started, steps  # noqa: E402
+
 STEPS = 20
 
 
@@ -24,8 +25,7 @@ def make(num_flocks=3, **options):
 
 
 def test_attributes_and_methods_of_slots():
-    venv = make()
-    venv.reset()
+    venv = started(make())
     assert venv.get_attr("flock_index") == [0, 0, 1, 1, 2, 2]
     assert venv.get_attr("flock_index", indices=[5, 0]) == [2, 0]
     assert not venv.has_attr("note")
@@ -41,14 +41,8 @@ def bw_s_of(venv):
     return [episode["bw_s"] for episode in venv.env_method("episode")]
 
 
-def steps(venv, number):
-    return [venv.step(np.zeros((venv.num_envs, 1), np.float32)) for _ in range(number)]
-
-
 def test_set_attr_holds_for_the_episodes_that_start_from_then_on():
-    venv = make(num_flocks=2)
-    venv.seed(0)
-    venv.reset()
+    venv = started(make(num_flocks=2), seed=0)
     own = venv.slots[0].parameters.bw_s
     assert venv.get_attr("bw_s") == [own] * 4
     assert venv.get_attr("target") == ["cw"] * 4
@@ -129,9 +123,7 @@ def test_set_attr_of_anything_else_says_what_it_takes(name):
 
 
 def test_set_attr_refuses_what_no_episode_can_have():
-    venv = make(num_flocks=2)
-    venv.seed(0)
-    venv.reset()
+    venv = started(make(num_flocks=2), seed=0)
     before = venv.get_state()
     for name, value, indices in (
         ("bw_s", -1.0, None),

@@ -14,6 +14,8 @@ from stable_baselines3 import PPO  # noqa: E402
 
 from flockenv.sb3 import LeaderVecEnv  # noqa: E402
 
+from .conftest import started, steps  # noqa: E402
+
 OPTIONS = {"n_boats": 9, "episode_s": 2.0}
 STEPS = 20
 
@@ -30,8 +32,7 @@ def actions_of(venv, step):
 def test_end_of_an_episode():
     venv = make()
     reference = gymnasium.make_vec("flockenv/Leaders-v0", num_envs=3, n_leaders=2, **OPTIONS)
-    venv.seed(4)
-    venv.reset()
+    started(venv, seed=4)
     reference.reset(seed=4)
     for step in range(STEPS):
         actions = actions_of(venv, step)
@@ -71,13 +72,8 @@ def test_leader_counts_mix():
     assert venv.state().shape == (9, *venv.state_space.shape)
 
 
-def steps(venv, number):
-    return [venv.step(np.zeros((venv.num_envs, 1), np.float32)) for _ in range(number)]
-
-
 def test_set_options_refuses_what_it_does_not_know_and_forgets_it():
-    venv = make(num_flocks=2)
-    venv.reset()
+    venv = started(make(num_flocks=2))
     for options in (
         {"n_boats": 9},
         {"bw": 0.5},
@@ -131,8 +127,7 @@ def test_a_reward_that_raises_does_not_end_the_training(fails_at):
 
     venv, plain = make(reward=reward, num_flocks=2), make(num_flocks=2)
     for env in (venv, plain):
-        env.seed(3)
-        env.reset()
+        started(env, seed=3)
     steps(plain, fails_at)
     with pytest.raises(KeyError, match="mine"):
         steps(venv, fails_at)
@@ -148,17 +143,10 @@ def test_a_reward_that_raises_does_not_end_the_training(fails_at):
 
 @pytest.mark.parametrize("value", [1e39, -1e39, np.finfo(np.float64).max])
 def test_rewards_beyond_single_precision_are_refused(value):
-    venv = make(reward=lambda venv: np.full(venv.num_envs, value))
-    venv.reset()
+    venv = started(make(reward=lambda venv: np.full(venv.num_envs, value)))
     with pytest.raises(flockenv.ParameterError, match="float32"):
         steps(venv, 1)
-    steps(make_and_reset(reward=[{"signed_order": 1e6}] * 2), 1)
-
-
-def make_and_reset(**options):
-    venv = make(**options)
-    venv.reset()
-    return venv
+    steps(started(make(reward=[{"signed_order": 1e6}] * 2)), 1)
 
 
 def test_discrete_rudders():
@@ -171,9 +159,7 @@ def test_discrete_rudders():
 
 
 def test_pickle_and_clone():
-    venv = make()
-    venv.seed(0)
-    venv.reset()
+    venv = started(make(), seed=0)
     venv.step(actions_of(venv, 0))
     for copy in (venv.clone(), pickle.loads(pickle.dumps(venv))):
         assert copy.get_state() == venv.get_state()
@@ -214,8 +200,7 @@ def test_counts_and_seeds_are_checked():
     for bad in (-1, 2**64 - 2):
         with pytest.raises(flockenv.ParameterError, match="seed = "):
             venv.seed(bad)
-    venv.seed(2**64 - 3)
-    venv.reset()
+    started(venv, seed=2**64 - 3)
 
 
 def test_a_flocks_leaders_share_the_options_of_a_reset():
@@ -248,8 +233,7 @@ def test_a_function_of_the_environment_is_its_reward():
 
     venv, plain = make(reward=outward, num_flocks=2), make(num_flocks=2)
     for env in (venv, plain):
-        env.seed(3)
-        env.reset()
+        started(env, seed=3)
     total = np.zeros(4)
     for step in range(STEPS):
         actions = actions_of(venv, step)
@@ -267,9 +251,8 @@ def test_a_function_of_the_environment_is_its_reward():
 
 
 def test_images_are_those_of_the_flocks():
-    venv = LeaderVecEnv(3, render_mode="rgb_array", render_size=(100, 80), n_boats=8, n_leaders=2)
-    venv.seed(1)
-    venv.reset()
+    pictures = {"render_mode": "rgb_array", "render_size": (100, 80)}
+    venv = started(LeaderVecEnv(3, n_boats=8, n_leaders=2, **pictures), seed=1)
     images = venv.get_images()
     assert [image.shape for image in images] == [(80, 100, 3)] * 3
     assert (images[0] != images[1]).any()
