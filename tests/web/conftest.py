@@ -2,8 +2,12 @@
 
 import base64
 import gzip
+import json
 import re
+import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,3 +19,21 @@ def wasm(pytestconfig, tmp_path_factory) -> Path:
     path: Path = tmp_path_factory.mktemp("wasm") / "flockenv_web.wasm"
     path.write_bytes(gzip.decompress(base64.b64decode(packed)))
     return path
+
+
+@pytest.fixture(scope="session")
+def answer_of_node(pytestconfig) -> Callable[..., Any]:
+    """Give a script a question in JSON, and read its answer."""
+
+    def answer(question: object, *script: str) -> Any:
+        done = subprocess.run(
+            ["node", *script],
+            input=json.dumps(question),
+            cwd=pytestconfig.rootpath,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return json.loads(done.stdout)
+
+    return answer

@@ -1,7 +1,5 @@
 """Law: the live page refuses the files that Recording.load refuses, in the same sentences."""
 
-import json
-import subprocess
 import warnings
 from pathlib import Path
 
@@ -15,17 +13,10 @@ pytestmark = pytest.mark.live
 
 
 @pytest.fixture(scope="module")
-def said_of(pytestconfig, wasm):
+def said_of(answer_of_node, wasm):
     def asked(paths: list[Path]) -> list[dict]:
         question = {"wasm": str(wasm), "format": FORMAT, "paths": [str(path) for path in paths]}
-        done = subprocess.run(
-            ["node", pytestconfig.rootpath / "tests/web/read_files.mjs"],
-            input=json.dumps(question),
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return json.loads(done.stdout)
+        return answer_of_node(question, "tests/web/read_files.mjs")
 
     return asked
 

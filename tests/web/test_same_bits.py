@@ -1,9 +1,6 @@
 """Law: a flock has the same bits in WebAssembly as in the native build."""
 
 import base64
-import json
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,18 +11,6 @@ from flockenv.policies.names import LAWS
 pytestmark = pytest.mark.live
 
 MINUTE_S = 60.0
-
-
-def ends_in_node(root: Path, wasm: Path, requests: list[dict], duration_s: float) -> list[dict]:
-    runs = [{"request": each, "samples": round(10 * duration_s)} for each in requests]
-    done = subprocess.run(
-        ["node", root / "tests/web/run_core.mjs"],
-        input=json.dumps({"wasm": str(wasm), "runs": runs}),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout)
 
 
 def numbers(text: str) -> np.ndarray:
@@ -45,13 +30,14 @@ def numbers(text: str) -> np.ndarray:
         ),
     ],
 )
-def test_a_minute_of_27_boats_with_leaders(policy, changes, pytestconfig, wasm):
+def test_a_minute_of_27_boats_with_leaders(policy, changes, answer_of_node, wasm):
     fields = {"n_boats": 27, "n_leaders": 3, "bw_s": 0.3, **changes}
     parameters = flockenv.FlockParameters(**fields)
     each = {f"leader_{k}": name for k, name in enumerate(policy.split(","))}
     native = flockenv.simulate(parameters, 7, MINUTE_S, policy=each if len(each) > 1 else policy)
     request = {"parameters": fields, "seed": "7", "leaders": policy}
-    (end,) = ends_in_node(pytestconfig.rootpath, wasm, [request], MINUTE_S)
+    question = {"wasm": str(wasm), "runs": [{"request": request, "samples": round(10 * MINUTE_S)}]}
+    (end,) = answer_of_node(question, "tests/web/run_core.mjs")
     assert end["samples"] == len(native)
     assert np.array_equal(numbers(end["pose"]), native.pose[-1])
     assert np.array_equal(numbers(end["velocity"]), native.velocity[-1])

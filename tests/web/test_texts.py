@@ -1,9 +1,7 @@
 """Law: what the page says of a flock, as a command and in Python, is the flock."""
 
-import json
 import runpy
 import shlex
-import subprocess
 from itertools import pairwise
 
 import pytest
@@ -52,16 +50,9 @@ KINDS = {
         ),
     ],
 )
-def test_command_and_python_name_the_same_flock(flock, expected, pytestconfig, tmp_path):
-    done = subprocess.run(
-        ["node", "--input-type=module", "-e", SCRIPT],
-        input=json.dumps({"flocks": [flock], "kinds": KINDS}),
-        cwd=pytestconfig.rootpath,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    ((command, python),) = json.loads(done.stdout)
+def test_command_and_python_name_the_same_flock(flock, expected, answer_of_node, tmp_path):
+    question = {"flocks": [flock], "kinds": KINDS}
+    ((command, python),) = answer_of_node(question, "--input-type=module", "-e", SCRIPT)
     wanted = flockenv.FlockParameters(**expected)
     words = shlex.split(command)
     changes = [value for option, value in pairwise(words) if option == "--set"]
