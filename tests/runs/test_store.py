@@ -29,12 +29,16 @@ def spec(parameters: flockenv.FlockParameters) -> RunSpec:
     return RunSpec(parameters=parameters, seed=3, duration_s=30.0)
 
 
+@pytest.fixture
+def store(tmp_path: Path) -> RunStore:
+    return RunStore(tmp_path)
+
+
 @pytest.mark.parametrize("keep", KEEP)
 def test_a_kept_run_comes_back(
-    parameters: flockenv.FlockParameters, tmp_path: Path, keep: str
+    parameters: flockenv.FlockParameters, store: RunStore, keep: str
 ) -> None:
     spec = RunSpec(parameters=parameters, seed=3, duration_s=30.0, keep=keep)
-    store = RunStore(tmp_path)
     assert store.load(spec) is None
     result = execute(spec)
     store.save(spec, result)
@@ -69,8 +73,7 @@ def test_all_that_a_result_depends_on_is_in_the_key(spec: RunSpec) -> None:
 
 
 @pytest.mark.parametrize("damage", ["cut", "flip", "nonsense", "empty"])
-def test_damage_is_named_and_kept(spec: RunSpec, tmp_path: Path, damage: str) -> None:
-    store = RunStore(tmp_path)
+def test_damage_is_named_and_kept(spec: RunSpec, store: RunStore, damage: str) -> None:
     store.save(spec, execute(spec))
     whole = store.path(spec).read_bytes()
     middle = len(whole) // 2
@@ -112,9 +115,8 @@ def test_runs_with_more_or_less_are_read_and_stay(spec: RunSpec, tmp_path: Path,
 
 
 def test_a_run_that_lacks_what_cannot_be_computed_is_named_and_stays(
-    spec: RunSpec, tmp_path: Path
+    spec: RunSpec, store: RunStore
 ) -> None:
-    store = RunStore(tmp_path)
     store.save(spec, execute(spec))
     stored = changed(store.path(spec), lambda arrays: arrays.pop("phase"))
     for attempt in (lambda: store.load(spec), lambda: run_missing([spec], store)):
@@ -131,9 +133,8 @@ def test_a_key_holds_what_differs_from_the_defaults(spec: RunSpec) -> None:
 
 @pytest.mark.parametrize("name", ["RESULTS_VERSION", "__version__"])
 def test_runs_of_another_version_are_missing_and_stay(
-    spec: RunSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+    spec: RunSpec, store: RunStore, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    store = RunStore(tmp_path)
     with monkeypatch.context() as patched:
         patched.setattr(run_store if name.isupper() else run_store._core, name, "0.0.7")
         store.save(spec, execute(spec))
@@ -155,8 +156,7 @@ def test_equal_specs_have_equal_keys(spec: RunSpec) -> None:
     assert "-0.0" not in minus.to_json()
 
 
-def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, tmp_path: Path) -> None:
-    store = RunStore(tmp_path)
+def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, store: RunStore) -> None:
     other = RunSpec(parameters=spec.parameters, seed=4, duration_s=30.0)
     store.save(other, execute(other))
     store.path(spec).parent.mkdir(exist_ok=True)
@@ -165,8 +165,7 @@ def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, tmp_path: Path) ->
         assert store.load(spec) is None
 
 
-def test_missing_runs_are_made_and_failures_cost_no_others(spec: RunSpec, tmp_path: Path) -> None:
-    store = RunStore(tmp_path)
+def test_missing_runs_are_made_and_failures_cost_no_others(spec: RunSpec, store: RunStore) -> None:
     impossible = RunSpec(parameters=spec.parameters.replace(n_boats=900), seed=0, duration_s=30.0)
     seen: list[RunSpec] = []
     failures = run_missing([impossible, spec, spec], store, progress=seen.append)
@@ -184,8 +183,7 @@ def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:
         RunStore(tmp_path / "file").save(spec, execute(spec))
 
 
-def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, tmp_path: Path) -> None:
-    store = RunStore(tmp_path)
+def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, store: RunStore) -> None:
     # Also root may not read a folder as a file.
     store.path(spec).mkdir(parents=True)
     with pytest.raises(StorageError, match=f"{spec.key}.*cannot be read"):
@@ -266,15 +264,13 @@ def test_a_run_of_which_other_things_were_kept_is_not_taken(spec, tmp_path, keep
 @pytest.mark.parametrize("duration_s", [0.05, 1.0, 7.0, 30.0, 33.333])
 @pytest.mark.parametrize("sample_hz", [0.3, 1.0, 3.0, 10.0, 33.0, 100.0])
 @pytest.mark.parametrize("keep", KEEP)
-def test_every_run_that_was_kept_is_its_own(spec, tmp_path, keep, sample_hz, duration_s) -> None:
+def test_every_run_that_was_kept_is_its_own(spec, store, keep, sample_hz, duration_s) -> None:
     spec = replace(spec, keep=keep, sample_hz=sample_hz, duration_s=duration_s)
-    store = RunStore(tmp_path)
     store.save(spec, execute(spec))
     assert store.load(spec) == execute(spec)
 
 
-def test_resuming_removes_what_killed_processes_left(spec, tmp_path) -> None:
-    store = RunStore(tmp_path)
+def test_resuming_removes_what_killed_processes_left(spec, store) -> None:
     folder = store.path(spec).parent
     folder.mkdir(parents=True)
     (folder / ".0123456789abcdef.tmp").write_bytes(b"half a run")
