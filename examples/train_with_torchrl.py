@@ -1,6 +1,6 @@
 """Train two leaders with PPO of TorchRL, 64 flocks at once, and save a policy for every command.
 
-    python examples/train_with_torchrl.py      # 40 rollouts
+    python examples/train_with_torchrl.py      # 40 rollouts; another number may follow
 
 All leaders share one actor, which sees what its leader observes. The critic sees the whole flock,
 and gives its value to each leader.
@@ -29,7 +29,7 @@ OPTIONS = {
     "physics": "training",
     "episode_s": 40.0,
 }
-ROLLOUTS = int(sys.argv[1]) if len(sys.argv) > 1 else 40
+ROLLOUTS = int([*sys.argv, "40"][1])
 EPOCHS, BATCHES = 4, 4
 FILE = Path("results/train_with_torchrl/policy.npz")
 
