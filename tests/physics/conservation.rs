@@ -4,8 +4,9 @@
 //! On paper: two boats that meet head on with opposite speeds stop, with nothing left of either.
 
 use crate::support::{
-    OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, cases, core_distance, crowded,
-    deepest_overlap, disc, flock_of, inert, kinetic_energy, momentum, take_substeps,
+    OPEN_WATER, R, SCHEMES, VELOCITY_SCHEMES, angular_momentum, assert_near, cases, changed,
+    core_distance, crowded, deepest_overlap, disc, first_kick_s, flock_of, inert, kinetic_energy,
+    momentum, set_off, take_substeps,
 };
 use flockenv::contact::Partner;
 use flockenv::geometry::{Pose, Velocity};
@@ -41,58 +42,38 @@ fn angular_momentum_that_overlaps_cost_is_counted() {
         let before = angular_momentum(&flock);
         take_substeps(&mut flock, 1);
         let counted = flock.statistics().displaced_angular_momentum_cm2_s;
-        let changed = angular_momentum(&flock) - before;
-        assert!(
-            (changed.abs() - counted).abs() < 1e-9,
-            "{scheme:?}: {changed} {counted}"
-        );
+        let gained = angular_momentum(&flock) - before;
+        assert_near(gained.abs(), counted, 1e-9, scheme);
         assert!((counted - 6.0).abs() < 0.01, "{scheme:?}: {counted}");
     }
 }
 
-/// A flock placed at random with random velocities up to `speed` in each component.
+/// A boat's random velocity, up to `speed` in each component. A fixed recipe in place of a generator:
+/// irrational steps around the circle.
+fn random_velocity(boat: usize, seed: u64, speed: f64) -> Velocity {
+    let phase = 2.399_963 * (boat as f64 + seed as f64 * 0.618);
+    let rate = speed * (0.3 + 0.7 * (0.755 * boat as f64).fract());
+    Velocity::new(rate * phase.cos(), rate * phase.sin(), (3.0 * phase).sin())
+}
+
+/// A flock placed at random with random velocities.
 fn scattered(p: &FlockParameters, n_boats: usize, seed: u64, speed: f64) -> Flock {
-    let p = FlockParameters {
-        n_boats,
-        ..p.clone()
-    };
-    let mut flock = Flock::new(p, seed).expect("the pool holds the flock");
-    let poses = flock.poses().to_vec();
-    // A fixed recipe in place of a generator: irrational steps around the circle.
-    let velocities: Vec<Velocity> = (0..n_boats)
-        .map(|i| {
-            let phase = 2.399_963 * (i as f64 + seed as f64 * 0.618);
-            let rate = speed * (0.3 + 0.7 * (0.755 * i as f64).fract());
-            Velocity::new(rate * phase.cos(), rate * phase.sin(), (3.0 * phase).sin())
-        })
-        .collect();
-    flock
-        .set_state(&poses, &velocities, 0.0, false)
-        .expect("as placed");
-    flock
+    let p = changed(p.clone(), |p| p.n_boats = n_boats);
+    set_off(p, seed, |boat, _| random_velocity(boat, seed, speed))
 }
 
 /// Boats in open water drawn together towards the middle, so that they collide there.
 fn imploding(scheme: Scheme, n_boats: usize, seed: u64) -> Flock {
     let p = FlockParameters {
+        n_boats,
         pool: OPEN_WATER,
         ..inert(scheme)
     };
-    let mut flock = scattered(&p, n_boats, seed, 3.0);
-    let poses = flock.poses().to_vec();
-    let velocities: Vec<Velocity> = flock
-        .velocities()
-        .iter()
-        .zip(&poses)
-        .map(|(v, p)| Velocity {
-            linear: v.linear - p.position * 0.5,
-            ..*v
-        })
-        .collect();
-    flock
-        .set_state(&poses, &velocities, 0.0, false)
-        .expect("as placed");
-    flock
+    set_off(p, seed, |boat, pose| {
+        let mut velocity = random_velocity(boat, seed, 3.0);
+        velocity.linear -= pose.position * 0.5;
+        velocity
+    })
 }
 
 proptest! {
@@ -110,8 +91,8 @@ proptest! {
             // Moving poses out of deep overlaps changes angular momentum, which is counted.
             let counted = flock.statistics().displaced_angular_momentum_cm2_s;
             prop_assert!(counted == 0.0 || flock.statistics().depenetration_passes > 0);
-            let changed = angular_momentum(&flock) - spin_before;
-            prop_assert!(changed.abs() < 1e-7 + counted);
+            let gained = angular_momentum(&flock) - spin_before;
+            prop_assert!(gained.abs() < 1e-7 + counted);
         }
     }
 
@@ -132,7 +113,7 @@ proptest! {
                 let lift = 0.5 * (p.pool.inner_radius_cm + R + 1e-2) * turn * turn;
                 let overlap = deepest_overlap(&flock);
                 take_substeps(&mut flock, 1);
-                let kick = if step == 0 && scheme == Scheme::Leapfrog { 0.01 } else { 0.02 };
+                let kick = if step == 0 { first_kick_s(scheme, 0.02) } else { 0.02 };
                 let contacts = flock.contacts();
                 let impulses: f64 = contacts.iter().map(|c| c.force * kick).sum();
                 let lifting = contacts.iter().filter(|c| c.contact.partner == Partner::InnerWall);
@@ -193,10 +174,7 @@ fn a_lone_boat_keeps_its_energy_along_a_round_wall_but_for_the_chords() {
 
 #[test]
 fn poses_reported_are_finite_and_inside() {
-    let p = FlockParameters {
-        pool: Pool::NARROW,
-        ..inert(Scheme::Leapfrog)
-    };
+    let p = changed(inert(Scheme::Leapfrog), |p| p.pool = Pool::NARROW);
     let mut flock = scattered(&p, 27, 5, 15.0);
     take_substeps(&mut flock, 500);
     let inside = |p: &Pose| (48.5..90.0).contains(&p.position.norm());

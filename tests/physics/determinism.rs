@@ -3,7 +3,7 @@
 //!
 //! On paper: nothing, zero bits of difference.
 
-use crate::support::{NOISES, SCHEMES, bits, busy};
+use crate::support::{NOISES, SCHEMES, bits, busy, changed};
 use flockenv::parameters::{Noise, Scheme, Solver, Target};
 use flockenv::{Flock, FlockParameters};
 use rayon::prelude::*;
@@ -31,30 +31,24 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_others() {
 }
 
 #[test]
-fn a_run_cut_on_the_grid_is_the_same_run() {
+fn a_run_cut_on_the_grid_or_at_its_own_phase_switches_is_the_same_run() {
     for p in all_kinds() {
-        let whole = advanced(&mut Flock::new(p.clone(), 3).expect("room"), &[4.0]);
-        for cuts in [
-            &[1.0, 3.0][..],
-            &[0.02, 3.98],
-            &[0.0, 1.5, 0.0, 2.5],
-            &[0.7, 0.02, 0.6, 1.18, 1.5],
+        let run = |cuts: &[f64]| advanced(&mut Flock::new(p.clone(), 3).expect("room"), cuts);
+        let (on_the_grid, at_switches) = (run(&[4.0]), run(&[1.318]));
+        for (cuts, whole) in [
+            (&[1.0, 3.0][..], &on_the_grid),
+            (&[0.02, 3.98], &on_the_grid),
+            (&[0.0, 1.5, 0.0, 2.5], &on_the_grid),
+            (&[0.7, 0.02, 0.6, 1.18, 1.5], &on_the_grid),
+            (&[0.713, 0.2, 0.305, 0.1], &at_switches),
         ] {
-            let cut = advanced(&mut Flock::new(p.clone(), 3).expect("room"), cuts);
-            assert_eq!(cut, whole, "{:?} {:?} {cuts:?}", p.scheme, p.noise_scheme);
+            let found = run(cuts);
+            assert_eq!(
+                &found, whole,
+                "{:?} {:?} {cuts:?}",
+                p.scheme, p.noise_scheme
+            );
         }
-    }
-}
-
-#[test]
-fn a_run_cut_at_its_own_phase_switches_is_the_same_run() {
-    for p in all_kinds() {
-        let whole = advanced(&mut Flock::new(p.clone(), 3).expect("room"), &[1.318]);
-        let cut = advanced(
-            &mut Flock::new(p.clone(), 3).expect("room"),
-            &[0.713, 0.2, 0.305, 0.1],
-        );
-        assert_eq!(cut, whole, "{:?} {:?}", p.scheme, p.noise_scheme);
     }
 }
 
@@ -78,10 +72,7 @@ fn held_rudders_cut_on_the_grid_are_the_same_run() {
 fn a_snapshot_continues_with_the_same_bits() {
     for p in all_kinds() {
         for solver in Solver::ALL.iter().copied() {
-            let p = FlockParameters {
-                solver,
-                ..p.clone()
-            };
+            let p = changed(p.clone(), |p| p.solver = solver);
             let mut flock = Flock::new(p.clone(), 11).expect("room");
             // On a phase switch, on the grid, and neither: in the middle of a substep.
             for stop in [0.713, 0.987, 0.123_456_789] {

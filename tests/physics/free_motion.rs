@@ -3,24 +3,20 @@
 //! On paper: a boat that holds its heading reaches v = v0·(1 − exp(−c0·t)), x = v0·(t − (1 − exp(−c0·t))/c0).
 //! Otherwise: a Runge–Kutta solution of order 4 with steps of 0.1 ms.
 
-use crate::support::{SCHEMES, driven, flock_of, inert, runge_kutta, take_substeps};
+use crate::support::{
+    SCHEMES, changed, driven, flock_of, inert, runge_kutta, take_substeps, time_of_velocities,
+};
 use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;
 
-/// Distance run from rest, and the velocities' own time: `leapfrog` has them half a substep earlier.
+/// Distance run from rest, the speed then and its own time.
 fn run_from_rest(scheme: Scheme, dt: f64, duration: f64) -> (f64, f64, f64) {
-    let p = FlockParameters {
-        dt_s: dt,
-        ..driven(scheme)
-    };
+    let p = changed(driven(scheme), |p| p.dt_s = dt);
     let heading: f64 = 0.7;
     let mut flock = flock_of(&p, &[([0.0, 0.0, heading], [0.0; 3])]);
     flock.advance(duration, None).expect("finite motion");
     let speed = flock.velocities()[0].linear.norm();
-    let time = match scheme {
-        Scheme::Leapfrog => duration - 0.5 * dt,
-        Scheme::Moreau | Scheme::Paper => duration,
-    };
+    let time = time_of_velocities(scheme, duration, dt);
     let position = flock.poses()[0].position;
     assert!((position.y.atan2(position.x) - heading).abs() < 1e-12);
     (position.norm(), speed, time)
@@ -57,10 +53,7 @@ fn an_engine_switched_off_lets_the_speed_decay() {
         (Scheme::Moreau, 0.98_f64.powi(100)),
         (Scheme::Paper, 0.98_f64.powi(100)),
     ] {
-        let p = FlockParameters {
-            speed_cm_s: 0.0,
-            ..driven(scheme)
-        };
+        let p = changed(driven(scheme), |p| p.speed_cm_s = 0.0);
         let mut flock = flock_of(&p, &[([0.0; 3], [9.0, -4.0, 0.0])]);
         take_substeps(&mut flock, 100);
         let linear = flock.velocities()[0].linear;
@@ -150,15 +143,20 @@ fn observed_orders(scheme: Scheme, dt: f64, p: &FlockParameters) -> Vec<f64> {
     errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect()
 }
 
-#[test]
-fn two_cycles_converge_to_the_exact_solution_with_the_scheme_s_order() {
-    let p = FlockParameters {
+/// Cycles of [2 1 bw 1] s.
+fn cycles(bw_s: f64) -> FlockParameters {
+    FlockParameters {
         fw_s: 2.0,
         nop1_s: 1.0,
-        bw_s: 0.6,
+        bw_s,
         nop2_s: 1.0,
         ..driven(Scheme::Leapfrog)
-    };
+    }
+}
+
+#[test]
+fn two_cycles_converge_to_the_exact_solution_with_the_scheme_s_order() {
+    let p = cycles(0.6);
     // Orders are asymptotic: at these dt the next term still moves them by a tenth or two.
     for (scheme, order, slack) in [
         (Scheme::Leapfrog, 2.0, 0.15),
@@ -193,21 +191,12 @@ fn switches_off_the_grid_of_substeps_keep_the_order() {
 fn leapfrog_is_exact_to_a_hundredth_of_a_millimeter_a_second() {
     // dt = 0.01: the second-order error constant of a cycle with backing is of order 10 cm/s², which
     // gives 1e-3 cm; the first-order schemes are a hundred times worse.
-    let p = FlockParameters {
-        fw_s: 2.0,
-        nop1_s: 1.0,
-        bw_s: 0.3,
-        nop2_s: 1.0,
-        ..driven(Scheme::Leapfrog)
-    };
+    let p = cycles(0.3);
     let exact = exact_two_cycles(&p, 0.7);
     let error = |scheme| largest_error(two_cycles(scheme, 0.01, &p, 0.7), exact);
-    assert!(
-        error(Scheme::Leapfrog) < 8.6e-3,
-        "{}",
-        error(Scheme::Leapfrog)
-    );
-    assert!(error(Scheme::Moreau) > 10.0 * error(Scheme::Leapfrog));
+    let (leapfrog, moreau) = (error(Scheme::Leapfrog), error(Scheme::Moreau));
+    assert!(leapfrog < 8.6e-3, "{leapfrog}");
+    assert!(moreau > 10.0 * leapfrog, "{moreau}");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 //! On paper: a boat flat on the wall can only slide about the pool's center, with inertia Y² + ρ².
 
 use crate::support::{
-    H, R, RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, flock_of, inert,
-    root, take_substeps,
+    H, R, RHO, SCHEMES, VELOCITY_SCHEMES, assert_near, assert_solved, changed, crowded,
+    deepest_overlap, disc, driven, first_kick_s, flock_of, inert, root, take_substeps,
 };
 use flockenv::contact::{Contact, ContactDetector};
 use flockenv::geometry::{HullPose, Pose, Velocity};
@@ -22,10 +22,7 @@ fn a_boat_flat_on_the_wall_hit_off_center() {
     let y = (q * q - H * H).sqrt();
     for scheme in SCHEMES {
         for t in [0.0, 1.0, -2.0, 2.4] {
-            let p = FlockParameters {
-                pool: disc(90.0),
-                ..inert(scheme)
-            };
+            let p = changed(inert(scheme), |p| p.pool = disc(90.0));
             let states = [
                 ([0.0, -y, 0.0], [0.0; 3]),
                 ([t, -y + 2.0 * R + H, -FRAC_PI_2], [0.0, -8.0, 0.0]),
@@ -39,11 +36,7 @@ fn a_boat_flat_on_the_wall_hit_off_center() {
             assert!((flat.linear.x - y * spin).abs() < 1e-10, "{scheme:?} {t}");
             assert!(flat.linear.y.abs() < 1e-10 && (flat.angular - spin).abs() < 1e-11);
             assert!((tip.linear.y + 8.0 - hit).abs() < 1e-10 && tip.linear.x.abs() < 1e-10);
-            let kick = if scheme == Scheme::Leapfrog {
-                0.01
-            } else {
-                0.02
-            };
+            let kick = first_kick_s(scheme, 0.02);
             let mut wall: Vec<f64> = flock
                 .contacts()
                 .iter()
@@ -55,11 +48,8 @@ fn a_boat_flat_on_the_wall_hit_off_center() {
                 0.5 * hit * q / y,
                 0.5 * hit * t.abs() * q * y / (H * inertia),
             );
-            assert!(
-                (wall[0] - half_sum + half_difference).abs() < 1e-9,
-                "{wall:?}"
-            );
-            assert!((wall[1] - half_sum - half_difference).abs() < 1e-9);
+            assert_near(wall[0], half_sum - half_difference, 1e-9, &wall);
+            assert_near(wall[1], half_sum + half_difference, 1e-9, &wall);
         }
     }
 }
@@ -110,15 +100,10 @@ fn a_closed_ring_of_touching_boats_turns_as_one() {
         let (mut flock, y) = ring_flock(&inert(scheme), &spins);
         take_substeps(&mut flock, 1);
         for (pose, velocity) in flock.poses().iter().zip(flock.velocities()) {
-            assert!(
-                (velocity.angular - 0.05).abs() < 1e-8,
-                "{scheme:?} {}",
-                velocity.angular
-            );
+            assert_near(velocity.angular, 0.05, 1e-8, scheme);
             assert!((velocity.linear.norm() - 0.05 * y).abs() < 1e-7, "{pose:?}");
         }
-        assert!(flock.statistics().worst_residual_cm_s <= 1e-10);
-        assert_eq!(flock.statistics().unsolved, 0);
+        assert_solved(&flock);
     }
 }
 
@@ -136,21 +121,15 @@ fn a_closed_ring_under_way_accelerates_as_one_boat_on_a_rail() {
     take_substeps(&mut flock, 3000);
     assert!(deepest_overlap(&flock) < 0.01);
     let first = flock.velocities()[0].angular;
-    assert!(
-        flock
-            .velocities()
-            .iter()
-            .all(|v| (v.angular - first).abs() < 1e-6)
-    );
+    for velocity in flock.velocities() {
+        assert_near(velocity.angular, first, 1e-6, "as one");
+    }
     assert_eq!(flock.statistics().unsolved, 0);
 }
 
 /// Accelerations of two boats side by side, one pressed on the other, with every near contact closed.
 fn pressed_accelerations(turn: f64, shift: f64) -> Vec<f64> {
-    let p = FlockParameters {
-        n_boats: 2,
-        ..inert(Scheme::Moreau)
-    };
+    let p = changed(inert(Scheme::Moreau), |p| p.n_boats = 2);
     let poses = [Pose::new(0.0, 0.0, 0.0), Pose::new(shift, 2.0 * R, turn)];
     let boats = poses.map(|pose| HullPose::new(&pose));
     let mut contacts: Vec<Contact> = Vec::new();
@@ -177,11 +156,8 @@ fn parallel_hulls_turned_by_a_billionth_accelerate_alike() {
         let straight = pressed_accelerations(0.0, shift);
         for turn in [1e-9, -1e-9, PI, PI + 1e-9, PI - 1e-9] {
             let turned = pressed_accelerations(turn, shift);
-            for (a, b) in straight.iter().zip(&turned) {
-                assert!(
-                    (a - b).abs() < 1e-7,
-                    "{shift} {turn}: {straight:?} {turned:?}"
-                );
+            for (&found, &expected) in turned.iter().zip(&straight) {
+                assert_near(found, expected, 1e-7, (shift, turn));
             }
         }
     }

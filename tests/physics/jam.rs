@@ -3,11 +3,13 @@
 //!
 //! On paper: what engines and drag do to the momentum of the whole flock, the walls take up.
 
-use crate::support::{deepest_overlap, driven, kinetic_energy, momentum, take_substeps};
+use crate::support::{
+    assert_solved, deepest_overlap, driven, kinetic_energy, momentum, table_3, take_substeps,
+};
 use flockenv::contact::Partner;
 use flockenv::flock::ContactForce;
 use flockenv::geometry::{Hull, HullPose, Vec2, inner_wall_gap, outer_wall_gap};
-use flockenv::parameters::{Pool, Preset, Scheme};
+use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 
 fn jam(n_boats: usize, c4: f64, seed: u64) -> Flock {
@@ -38,25 +40,25 @@ fn hold(flock: &mut Flock, minutes: usize) -> Vec<f64> {
         .collect()
 }
 
-fn assert_held(flock: &Flock, overlaps: &[f64]) {
-    let statistics = flock.statistics();
-    assert!(statistics.worst_residual_cm_s <= 1e-10, "{statistics:?}");
-    assert_eq!(statistics.unsolved, 0);
-    assert!(statistics.solves > statistics.substeps / 2);
-    // The linearization's leftover without relinearization passes, at dt = 0.01 s.
-    assert!(
-        overlaps.iter().all(|&overlap| overlap <= 1e-2),
-        "{overlaps:?}"
-    );
-    // Nothing creeps: a minute of the second half is as the first half's. (Medians, since a boat that
-    // snaps into another place makes a minute's deepest overlap a few times larger.)
-    let median = |part: &[f64]| {
-        let mut sorted = part.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted[sorted.len() / 2]
-    };
-    let (early, late) = overlaps.split_at(overlaps.len() / 2);
-    assert!(median(late) <= 1.5 * median(early) + 5e-4, "{overlaps:?}");
+fn assert_two_jams_hold(minutes: usize) {
+    for (n, seed) in [(50, 1), (114, 2)] {
+        let mut flock = jam(n, 0.1, seed);
+        let overlaps = hold(&mut flock, minutes);
+        assert_solved(&flock);
+        assert!(flock.statistics().solves > flock.statistics().substeps / 2);
+        // The linearization's leftover without relinearization passes, at dt = 0.01 s.
+        let shallow = overlaps.iter().all(|&overlap| overlap <= 1e-2);
+        assert!(shallow, "{overlaps:?}");
+        // Nothing creeps: a minute of the second half is as the first half's. (Medians, since a boat that
+        // snaps into another place makes a minute's deepest overlap a few times larger.)
+        let median = |part: &[f64]| {
+            let mut sorted = part.to_vec();
+            sorted.sort_by(f64::total_cmp);
+            sorted[sorted.len() / 2]
+        };
+        let (early, late) = overlaps.split_at(overlaps.len() / 2);
+        assert!(median(late) <= 1.5 * median(early) + 5e-4, "{overlaps:?}");
+    }
 }
 
 #[test]
@@ -93,21 +95,13 @@ fn walls_balance_engines_and_drag() {
 
 #[test]
 fn jams_hold_for_minutes() {
-    for (n, seed) in [(50, 1), (114, 2)] {
-        let mut flock = jam(n, 0.1, seed);
-        let overlaps = hold(&mut flock, 2);
-        assert_held(&flock, &overlaps);
-    }
+    assert_two_jams_hold(2);
 }
 
 #[test]
 #[ignore = "an hour of 50 boats, then of 114: minutes of computing"]
 fn jams_hold_for_hours() {
-    for (n, seed) in [(50, 1), (114, 2)] {
-        let mut flock = jam(n, 0.1, seed);
-        let overlaps = hold(&mut flock, 60);
-        assert_held(&flock, &overlaps);
-    }
+    assert_two_jams_hold(60);
 }
 
 #[test]
@@ -124,7 +118,7 @@ fn the_longest_step_of_the_explicit_schemes_stays_bounded() {
                     bw_s: 2.0,
                     dt_s: scheme.longest_dt_s(),
                     pool: Pool::NARROW,
-                    ..FlockParameters::preset(Preset::Simulation)
+                    ..table_3()
                 };
                 let mut flock = Flock::new(p, seed).expect("27 boats fit");
                 for _ in 0..80 {

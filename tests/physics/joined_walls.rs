@@ -3,20 +3,11 @@
 //! On paper: a straight wall cut into a hundred pieces is the same wall, and so is a circle of many pieces, up to the
 //! sagitta R·(1 − cos(π/n)) of each. What lies beyond the end of a piece is nearer to the next one.
 
-use crate::support::{R, disc, driven, flock_of};
+use crate::support::{R, VELOCITY_SCHEMES, changed, disc, disc_at, driven, flock_of, wall};
 use flockenv::FlockParameters;
 use flockenv::geometry::Pose;
-use flockenv::parameters::{Disc, Scheme, Wall};
+use flockenv::parameters::{Scheme, Wall};
 use std::f64::consts::TAU;
-
-fn wall(from: (f64, f64), to: (f64, f64)) -> Wall {
-    Wall {
-        x0_cm: from.0,
-        y0_cm: from.1,
-        x1_cm: to.0,
-        y1_cm: to.1,
-    }
-}
 
 /// Walls from one point to the next.
 fn chain(points: impl Iterator<Item = (f64, f64)>) -> Vec<Wall> {
@@ -51,11 +42,8 @@ const STEPS: [(f64, usize); 3] = [(0.1, 1), (0.1, 0), (0.02, 0)];
 fn slid(p: &FlockParameters, pose: [f64; 3], seconds: f64) -> Pose {
     let mut flock = flock_of(p, &[(pose, [0.0; 3])]);
     flock.advance(seconds, None).expect("finite motion");
-    assert!(
-        flock.statistics().worst_overlap_cm < 0.05,
-        "{}",
-        flock.statistics().worst_overlap_cm
-    );
+    let deepest = flock.statistics().worst_overlap_cm;
+    assert!(deepest < 0.05, "{deepest}");
     flock.poses()[0]
 }
 
@@ -66,7 +54,7 @@ fn distance(a: &Pose, b: &Pose) -> f64 {
 #[test]
 fn a_straight_wall_in_pieces_is_the_whole_wall() {
     for (dt_s, relinearizations) in STEPS {
-        for scheme in [Scheme::Leapfrog, Scheme::Moreau] {
+        for scheme in VELOCITY_SCHEMES {
             let along = |pieces| {
                 let p = FlockParameters {
                     dt_s,
@@ -81,12 +69,11 @@ fn a_straight_wall_in_pieces_is_the_whole_wall() {
             for pieces in [2, 7, 100, 300] {
                 let error = distance(&along(pieces), &whole);
                 // Leapfrog takes the first substep on each piece for an impact, of which nothing is known before.
-                let least = if scheme == Scheme::Leapfrog {
-                    0.05
-                } else {
-                    1e-12
+                let most = match scheme {
+                    Scheme::Leapfrog => 0.05,
+                    _ => 1e-12,
                 };
-                assert!(error < least, "{scheme:?} {dt_s} {pieces}: {error}");
+                assert!(error < most, "{scheme:?} {dt_s} {pieces}: {error}");
             }
         }
     }
@@ -100,36 +87,22 @@ fn a_ring_in_pieces_is_the_round_wall() {
             relinearizations,
             ..driven(Scheme::Leapfrog)
         };
-        let inside = [80.0, 0.0, 1.2];
-        let round = FlockParameters {
-            pool: disc(90.0),
-            ..base.clone()
-        };
-        let pieces = FlockParameters {
-            walls: circle(90.0, 200),
-            ..base.clone()
-        };
-        let error = distance(&slid(&round, inside, 14.0), &slid(&pieces, inside, 14.0));
-
-        assert!(error < 0.5, "inside, {dt_s} {relinearizations}: {error}");
-
-        let outside = [56.0, 0.0, 2.0];
-        let post = Disc {
-            x_cm: 0.0,
-            y_cm: 0.0,
-            radius_cm: 50.0,
-        };
-        let round = FlockParameters {
-            discs: vec![post],
-            ..base.clone()
-        };
-        let pieces = FlockParameters {
-            walls: circle(50.0, 200),
-            ..base
-        };
-        let error = distance(&slid(&round, outside, 5.0), &slid(&pieces, outside, 5.0));
-
-        assert!(error < 0.5, "outside, {dt_s} {relinearizations}: {error}");
+        let rim = changed(base.clone(), |p| p.pool = disc(90.0));
+        let post = changed(base.clone(), |p| p.discs = vec![disc_at(0.0, 0.0, 50.0)]);
+        for (round, radius, start, seconds) in [
+            (rim, 90.0, [80.0, 0.0, 1.2], 14.0),
+            (post, 50.0, [56.0, 0.0, 2.0], 5.0),
+        ] {
+            let pieces = changed(base.clone(), |p| p.walls = circle(radius, 200));
+            let error = distance(
+                &slid(&round, start, seconds),
+                &slid(&pieces, start, seconds),
+            );
+            assert!(
+                error < 0.5,
+                "{radius} cm, {dt_s} {relinearizations}: {error}"
+            );
+        }
     }
 }
 

@@ -5,31 +5,19 @@
 //! On paper: c1 = c2 = c3 = 0, then α̇(t) = c4·W(t) exactly. A boat under way damps its spin at
 //! k = c3·v0: variance c4²/(2k) for good.
 
-use crate::support::{NOISES, SCHEMES, driven, flock_of, inert};
+use crate::support::{
+    NOISES, SCHEMES, assert_near, changed, driven, flock_of, inert, seeded_flock_of,
+    time_of_velocities,
+};
 use flockenv::parameters::{Noise, Scheme};
 use flockenv::random::BrownianPaths;
 use flockenv::{Flock, FlockParameters};
 
 /// Boats far apart, all at rest or all moving along.
 fn spread_out(p: &FlockParameters, boats: usize, speed: f64, seed: u64) -> Flock {
-    let p = FlockParameters {
-        n_boats: boats,
-        ..p.clone()
-    };
-    let mut flock = Flock::new(p, seed).expect("open water");
-    let (poses, velocities): (Vec<_>, Vec<_>) = (0..boats)
-        .map(|i| {
-            let (row, column) = ((i / 50) as f64, (i % 50) as f64);
-            (
-                flockenv::geometry::Pose::new(60.0 * column, 60.0 * row, 0.0),
-                flockenv::geometry::Velocity::new(speed, 0.0, 0.0),
-            )
-        })
-        .unzip();
-    flock
-        .set_state(&poses, &velocities, 0.0, false)
-        .expect("far apart");
-    flock
+    let places = (0..boats).map(|i| [60.0 * (i % 50) as f64, 60.0 * (i / 50) as f64, 0.0]);
+    let states: Vec<_> = places.map(|pose| (pose, [speed, 0.0, 0.0])).collect();
+    seeded_flock_of(p, &states, seed)
 }
 
 fn moments(values: &[f64]) -> (f64, f64, f64) {
@@ -48,29 +36,26 @@ const BOATS: usize = 2000;
 /// Five standard deviations of the sample variance of 2000 normal draws, sqrt(2/2000) each.
 const FIVE_SIGMA: f64 = 5.0 * 0.031_6;
 
+/// Moments of the spins that noise of c4 = 0.3 has given boats at rest after 2 s.
+fn moments_after_2_s(scheme: Scheme, noise_scheme: Noise, dt_s: f64, seed: u64) -> (f64, f64, f64) {
+    let p = FlockParameters {
+        c4: 0.3,
+        dt_s,
+        noise_scheme,
+        ..inert(scheme)
+    };
+    let mut flock = spread_out(&p, BOATS, 0.0, seed);
+    flock.advance(2.0, None).expect("finite motion");
+    moments(&spins(&flock))
+}
+
 #[test]
 fn white_noise_has_the_variance_c4_squared_t_at_any_dt() {
     for scheme in SCHEMES {
         for dt_s in [0.1, 0.02, 0.005] {
-            let p = FlockParameters {
-                c4: 0.3,
-                dt_s,
-                noise_scheme: Noise::White,
-                ..inert(scheme)
-            };
-            let mut flock = spread_out(&p, BOATS, 0.0, 5);
-            flock.advance(2.0, None).expect("finite motion");
-            // Leapfrog's velocities belong to the middle of the last substep.
-            let time = match scheme {
-                Scheme::Leapfrog => 2.0 - 0.5 * dt_s,
-                _ => 2.0,
-            };
-            let (mean, variance, kurtosis) = moments(&spins(&flock));
-            let expected = 0.09 * time;
-            assert!(
-                (variance / expected - 1.0).abs() < FIVE_SIGMA,
-                "{scheme:?} {dt_s}: {variance}"
-            );
+            let (mean, variance, kurtosis) = moments_after_2_s(scheme, Noise::White, dt_s, 5);
+            let expected = 0.09 * time_of_velocities(scheme, 2.0, dt_s);
+            assert_near(variance / expected, 1.0, FIVE_SIGMA, (scheme, dt_s));
             assert!(mean.abs() < 5.0 * (expected / BOATS as f64).sqrt());
             // The sample kurtosis of a normal law is 3 ± sqrt(24/n).
             assert!((kurtosis - 3.0).abs() < 5.0 * (24.0 / BOATS as f64).sqrt());
@@ -82,14 +67,6 @@ fn white_noise_has_the_variance_c4_squared_t_at_any_dt() {
 fn per_step_noise_has_a_variance_in_proportion_to_dt() {
     for scheme in SCHEMES {
         for dt_s in [0.1, 0.02, 0.005] {
-            let p = FlockParameters {
-                c4: 0.3,
-                dt_s,
-                noise_scheme: Noise::PerStep,
-                ..inert(scheme)
-            };
-            let mut flock = spread_out(&p, BOATS, 0.0, 6);
-            flock.advance(2.0, None).expect("finite motion");
             let substeps = 2.0 / dt_s;
             // Leapfrog's first kick lasts half a substep.
             let kicks = match scheme {
@@ -97,11 +74,8 @@ fn per_step_noise_has_a_variance_in_proportion_to_dt() {
                 _ => substeps,
             };
             let expected = 0.09 * dt_s * dt_s * kicks;
-            let (_, variance, _) = moments(&spins(&flock));
-            assert!(
-                (variance / expected - 1.0).abs() < FIVE_SIGMA,
-                "{scheme:?} {dt_s}: {variance}"
-            );
+            let (_, variance, _) = moments_after_2_s(scheme, Noise::PerStep, dt_s, 6);
+            assert_near(variance / expected, 1.0, FIVE_SIGMA, (scheme, dt_s));
         }
     }
 }
@@ -142,10 +116,7 @@ fn boats_and_times_are_independent() {
 #[test]
 fn no_noise_is_no_noise() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            c4: 0.0,
-            ..inert(scheme)
-        };
+        let p = changed(inert(scheme), |p| p.c4 = 0.0);
         let mut flock = spread_out(&p, 10, 1.0, 5);
         flock.advance(3.0, None).expect("finite motion");
         assert!(spins(&flock).iter().all(|&w| w == 0.0));
@@ -292,10 +263,7 @@ fn increments_over_parts_of_a_cell_have_their_own_variance() {
             .collect();
         let expected = (to - from) as f64 * 0.5e-9;
         let (_, variance, kurtosis) = moments(&draws);
-        assert!(
-            (variance / expected - 1.0).abs() < 5.0 * 0.010_5,
-            "{from} {to}: {variance}"
-        );
+        assert_near(variance / expected, 1.0, 5.0 * 0.010_5, (from, to));
         assert!((kurtosis - 3.0).abs() < 5.0 * (24.0_f64 / 18_000.0).sqrt());
     }
 }
@@ -316,10 +284,7 @@ fn bridges_of_different_leaves_are_independent() {
     let variance = leaf as f64 * 0.5e-9 / 4.0;
     let products = one.iter().zip(&other).map(|(a, b)| a * b / variance);
     let correlation = products.sum::<f64>() / boats as f64;
-    assert!(
-        correlation.abs() < 5.0 / (boats as f64).sqrt(),
-        "{correlation}"
-    );
+    assert_near(correlation, 0.0, 5.0 / (boats as f64).sqrt(), "two leaves");
 }
 
 #[test]
@@ -359,10 +324,6 @@ fn leapfrog_has_the_exact_stationary_spin_and_moreau_to_first_order() {
         let expected = 0.01_f64.powi(2) / 30.0 * factor;
         let (_, variance, _) = moments(&draws);
         // 20 000 draws: 1 % a standard deviation.
-        assert!(
-            (variance / expected - 1.0).abs() < 0.05,
-            "{scheme:?} {dt_s}: {}",
-            variance / expected
-        );
+        assert_near(variance / expected, 1.0, 0.05, (scheme, dt_s));
     }
 }

@@ -1,7 +1,9 @@
 //! Gaps between boats and obstacles: on paper beside a wall, at its end and at a disc; and against their own slopes
 //! and the distance of segments at random poses.
 
-use crate::support::{H, R, cases, disc_at, segment_distance, wall, wall_ends};
+use crate::support::{
+    H, R, cases, core, disc_at, displaced, near, pose, segment_distance, wall, wall_ends,
+};
 use flockenv::geometry::{Feature, Gap, Hull, HullPose, Obstacle, Pose, Vec2};
 use flockenv::parameters::Wall;
 use proptest::prelude::*;
@@ -17,10 +19,6 @@ fn gaps(boat: &Pose, obstacle: &Obstacle, margin: f64) -> Vec<(Feature, Gap)> {
         found.push((feature, gap));
     });
     found
-}
-
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() < 1e-12
 }
 
 #[test]
@@ -85,16 +83,6 @@ fn slope(gap: &Gap, direction: usize) -> f64 {
     [gap.normal.x, gap.normal.y, gap.arm_i][direction]
 }
 
-fn displaced(pose: &Pose, direction: usize, step: f64) -> Pose {
-    let mut numbers = [pose.position.x, pose.position.y, pose.heading];
-    numbers[direction] += step;
-    Pose::new(numbers[0], numbers[1], numbers[2])
-}
-
-fn pose() -> impl Strategy<Value = Pose> {
-    (-15.0..15.0_f64, -15.0..15.0_f64, -7.0..7.0_f64).prop_map(|(x, y, a)| Pose::new(x, y, a))
-}
-
 /// Walls shorter and longer than the hull.
 fn any_wall() -> impl Strategy<Value = Wall> {
     let end = || (-40.0..40.0_f64, -40.0..40.0_f64);
@@ -104,17 +92,12 @@ fn any_wall() -> impl Strategy<Value = Wall> {
     prop_oneof![long, short].prop_filter("a length", |wall| wall.length_cm() > 0.01)
 }
 
-fn core(boat: &Pose) -> (Vec2, Vec2) {
-    let axis = Vec2::new(boat.heading.cos(), boat.heading.sin()) * H;
-    (boat.position - axis, boat.position + axis)
-}
-
 proptest! {
     #![proptest_config(cases(2000))]
 
     #[test]
-    fn the_least_gap_to_a_wall_is_the_distance_of_core_and_wall(a in pose(), w in any_wall()) {
-        let distance = segment_distance(core(&a), wall_ends(&w));
+    fn the_least_gap_to_a_wall_is_the_distance_of_core_and_wall(a in pose(15.0, 7.0), w in any_wall()) {
+        let distance = segment_distance(core(&a, H), wall_ends(&w));
         let found = gaps(&a, &Obstacle::from(&w), 100.0);
         prop_assert!(!found.is_empty() && found.len() <= 2);
         let least = found.iter().map(|(_, g)| g.gap).fold(f64::INFINITY, f64::min);
@@ -127,17 +110,17 @@ proptest! {
 
     #[test]
     fn the_gap_to_a_disc_is_the_distance_of_core_and_disc(
-        a in pose(), x in -30.0..30.0_f64, y in -30.0..30.0_f64, radius in 0.1..40.0_f64,
+        a in pose(15.0, 7.0), x in -30.0..30.0_f64, y in -30.0..30.0_f64, radius in 0.1..40.0_f64,
     ) {
         let center = Vec2::new(x, y);
-        let distance = segment_distance(core(&a), (center, center));
+        let distance = segment_distance(core(&a, H), (center, center));
         let found = gaps(&a, &Obstacle::from(&disc_at(x, y, radius)), 100.0);
         prop_assert_eq!(found.len(), 1);
         prop_assert!((found[0].1.gap - (distance - R - radius)).abs() < 1e-9);
     }
 
     #[test]
-    fn a_gap_changes_as_its_normal_and_arm_say(a in pose(), w in any_wall()) {
+    fn a_gap_changes_as_its_normal_and_arm_say(a in pose(15.0, 7.0), w in any_wall()) {
         let (step, obstacle) = (1e-5, Obstacle::from(&w));
         for (feature, gap) in gaps(&a, &obstacle, 20.0) {
             // Curvature is at most 1/distance a unit of displacement squared; near crossing there is none.

@@ -2,8 +2,11 @@
 //!
 //! On paper: as `obstacle_hard_cases`.
 
-use crate::obstacle_hard_cases::{PUSH, assert_solved, assert_wedged};
-use crate::support::{R, SCHEMES, VELOCITY_SCHEMES, crowded, disc_at, driven, wall};
+use crate::obstacle_hard_cases::{PUSH, assert_wedged};
+use crate::support::{
+    R, SCHEMES, VELOCITY_SCHEMES, assert_near, assert_solved, changed, crowded, disc_at, driven,
+    wall,
+};
 use flockenv::FlockParameters;
 
 #[test]
@@ -20,17 +23,12 @@ fn a_boat_before_a_gate_that_is_too_narrow() {
         ] {
             let (side, reach) = (g + d, R + d);
             let before = (reach * reach - side * side).sqrt();
-            let p = if d == 0.0 {
-                FlockParameters {
-                    walls: vec![wall((0.0, g), (0.0, 60.0)), wall((0.0, -60.0), (0.0, -g))],
-                    ..driven(scheme)
-                }
+            let mut p = driven(scheme);
+            if d == 0.0 {
+                p.walls = vec![wall((0.0, g), (0.0, 60.0)), wall((0.0, -60.0), (0.0, -g))];
             } else {
-                FlockParameters {
-                    discs: vec![disc_at(0.0, side, d), disc_at(0.0, -side, d)],
-                    ..driven(scheme)
-                }
-            };
+                p.discs = vec![disc_at(0.0, side, d), disc_at(0.0, -side, d)];
+            }
             let each = PUSH * reach / (2.0 * before);
             assert_wedged(&p, (-before, 0.0), each, 2, &format!("{scheme:?} {g} {d}"));
         }
@@ -63,10 +61,8 @@ fn a_gate_wider_than_the_boat_is_no_hindrance() {
             through.advance(6.0, None).expect("finite motion");
             free.advance(6.0, None).expect("finite motion");
             let [found, expected] = [&through, &free].map(|flock| flock.poses()[0].position.x);
-            assert!(
-                (found - expected).abs() < 1e-9 && found > 40.0,
-                "{scheme:?} {found}"
-            );
+            assert_near(found, expected, 1e-9, scheme);
+            assert!(found > 40.0, "{scheme:?} {found}");
         }
     }
 }
@@ -85,24 +81,13 @@ fn a_channel_exactly_as_wide_as_the_hull_lets_it_slide() {
         };
         let start = [([-60.0, 0.0, 0.0], [0.0; 3])];
         let mut inside = crowded(&p, &start);
-        let mut free = crowded(
-            &FlockParameters {
-                c4: 0.0,
-                ..driven(scheme)
-            },
-            &start,
-        );
+        let mut free = crowded(&changed(driven(scheme), |p| p.c4 = 0.0), &start);
         inside.advance(5.0, None).expect("finite motion");
         free.advance(5.0, None).expect("finite motion");
         let (found, expected) = (inside.poses()[0], free.poses()[0]);
-        assert!(
-            (found.position.x - expected.position.x).abs() < 1e-4,
-            "{found:?} {expected:?}"
-        );
-        assert!(
-            found.position.y.abs() < 1e-9 && found.heading.abs() < 1e-9,
-            "{found:?}"
-        );
+        assert_near(found.position.x, expected.position.x, 1e-4, scheme);
+        assert_near(found.position.y, 0.0, 1e-9, scheme);
+        assert_near(found.heading, 0.0, 1e-9, scheme);
         assert_solved(&inside);
     }
 }

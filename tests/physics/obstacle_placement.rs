@@ -2,11 +2,11 @@
 
 use crate::obstacles::arena;
 use crate::support::{
-    OPEN_WATER, deepest_overlap, disc_at, flock_of, inert, refused_field, table_3, wall,
+    OPEN_WATER, deepest_overlap, disc, disc_at, flock_of, inert, refused_field, table_3, wall,
 };
 use flockenv::flock::{Change, State};
 use flockenv::geometry::Pose;
-use flockenv::parameters::{Disc, Noise, Pool, Scheme, Wall};
+use flockenv::parameters::{Disc, Noise, Scheme, Wall};
 use flockenv::{Flock, FlockError, FlockParameters};
 
 #[test]
@@ -27,14 +27,21 @@ fn boats_never_start_inside() {
     }
 }
 
+/// Walls 9 cm apart in both directions that reach so far from the center.
+fn grid(reach_cm: f64) -> impl Iterator<Item = Wall> {
+    let places = (-7..=7).map(|i| 9.0 * f64::from(i));
+    places.flat_map(move |at| {
+        [
+            wall((at, -reach_cm), (at, reach_cm)),
+            wall((-reach_cm, at), (reach_cm, at)),
+        ]
+    })
+}
+
 #[test]
 fn boats_start_near_the_center_of_open_water_whatever_stands_there() {
     // Twenty boats without obstacles start within sqrt(20·25·128.5 cm²/π) = 143 cm. A disc about the center moves them
     // outward, and one far away not at all; the room between two discs of a kilometer is 20 cm wide at the center.
-    let grid = (-7..=7).flat_map(|i| {
-        let at = 9.0 * f64::from(i);
-        [wall((at, -63.0), (at, 63.0)), wall((-63.0, at), (63.0, at))]
-    });
     let scenes = [
         (vec![disc_at(0.0, 0.0, 500.0)], vec![], 500.0, 530.0),
         (vec![disc_at(0.0, 0.0, 1e5)], vec![], 1e5, 1.001e5),
@@ -46,7 +53,7 @@ fn boats_start_near_the_center_of_open_water_whatever_stands_there() {
             0.0,
             3e3,
         ),
-        (vec![], grid.collect(), 60.0, 190.0),
+        (vec![], grid(63.0).collect(), 60.0, 190.0),
     ];
     for (number, (discs, walls, nearest, farthest)) in scenes.into_iter().enumerate() {
         let p = FlockParameters {
@@ -76,44 +83,22 @@ fn no_room_is_a_named_error() {
         n_boats,
         discs,
         walls,
-        pool: Pool {
-            outer_radius_cm: 60.0,
-            inner_radius_cm: 0.0,
-        },
+        pool: disc(60.0),
         ..table_3()
     };
     // A disc over the whole pool, or one that leaves a ring narrower than a boat.
     for radius in [100.0, 51.0] {
         let p = crowd(1, vec![disc_at(0.0, 0.0, radius)], vec![]);
-        let error = Flock::new(p, 1).err();
-        assert!(
-            matches!(
-                error,
-                Some(FlockError::Placement {
-                    requested: 1,
-                    placed: 0
-                })
-            ),
-            "{radius}: {error:?}"
-        );
+        let none = FlockError::Placement {
+            requested: 1,
+            placed: 0,
+        };
+        assert_eq!(Flock::new(p, 1).err(), Some(none), "{radius}");
     }
-    // Walls 9 cm apart leave no place for a boat of 10 cm.
-    let grid = (-7..=7).flat_map(|i| {
-        let at = 9.0 * f64::from(i);
-        [wall((at, -70.0), (at, 70.0)), wall((-70.0, at), (70.0, at))]
-    });
-    let grid: Vec<Wall> = grid
-        .filter(|w| w.x0_cm.abs() < 60.0 || w.y0_cm.abs() < 60.0)
-        .collect();
-    let grid: Vec<Wall> = grid
-        .into_iter()
-        .filter(|w| w.x0_cm.abs().min(w.y0_cm.abs()) < 60.0)
-        .collect();
-    let error = Flock::new(crowd(2, vec![], grid), 1).err();
-    assert!(
-        matches!(error, Some(FlockError::Placement { .. })),
-        "{error:?}"
-    );
+    // Walls 9 cm apart leave no place for a boat of 10 cm. Those that miss the pool are no walls of it.
+    let through = |w: &Wall| w.x0_cm.abs().min(w.y0_cm.abs()) < 60.0;
+    let error = Flock::new(crowd(2, vec![], grid(70.0).filter(through).collect()), 1).err();
+    assert!(matches!(error, Some(FlockError::Placement { .. })));
     // Without the discs there is room for 50 boats, with them there is not.
     assert!(Flock::new(crowd(50, vec![], vec![]), 1).is_ok());
     let posts = [-30.0, 30.0].map(|x| disc_at(x, 0.0, 28.0)).to_vec();

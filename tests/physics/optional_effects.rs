@@ -3,7 +3,7 @@
 //!
 //! On paper: zero bits of difference.
 
-use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy};
+use crate::support::{NOISES, OPEN_WATER, SCHEMES, bits, busy, changed};
 use flockenv::parameters::{Noise, Scheme};
 use flockenv::{Flock, FlockParameters};
 
@@ -35,10 +35,7 @@ fn run(p: &FlockParameters, seed: u64, durations: &[f64]) -> Vec<u64> {
 fn a_cap_without_a_current_changes_no_bit() {
     for (scheme, noise) in kinds() {
         let plain = busy(scheme, noise);
-        let capped = FlockParameters {
-            current_cap_cm_s: 0.5,
-            ..plain.clone()
-        };
+        let capped = changed(plain.clone(), |p| p.current_cap_cm_s = 0.5);
         assert_eq!(run(&plain, 6, &[4.0]), run(&capped, 6, &[4.0]));
     }
 }

@@ -4,10 +4,10 @@
 //! On paper: boats that all head outward have Ψ_o = 1, φ_o = 0; clockwise motion is φ_o = +π/2. And
 //! always C = (N·Ψ² − mean|·|²)/(N − 1), which is (N·Ψ_o² − 1)/(N − 1) for unit vectors.
 
-use crate::support::cases;
+use crate::support::{cases, changed, near, table_3};
 use flockenv::geometry::lap_frame::{LapFrame, orientation};
 use flockenv::geometry::{Pose, Vec2, Velocity};
-use flockenv::parameters::{Preset, Target};
+use flockenv::parameters::Target;
 use flockenv::{Flock, FlockError, FlockParameters, OrderParameters};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -32,10 +32,6 @@ fn ring(boats: &[(f64, f64, [f64; 2])]) -> (Vec<Pose>, Vec<Velocity>) {
 fn order_of(boats: &[(f64, f64, [f64; 2])]) -> OrderParameters {
     let (poses, velocities) = ring(boats);
     OrderParameters::of(&poses, &velocities).expect("boats")
-}
-
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() < 1e-12
 }
 
 #[test]
@@ -109,10 +105,7 @@ fn disorder_has_psi_of_order_one_over_the_root_of_n() {
     let n = 40;
     let mut sum = 0.0;
     for seed in 0..400 {
-        let p = FlockParameters {
-            n_boats: n,
-            ..FlockParameters::preset(Preset::Simulation)
-        };
+        let p = changed(table_3(), |p| p.n_boats = n);
         let flock = Flock::new(p, seed).expect("room");
         sum += flock.order_parameters(false).expect("boats").psi_o;
     }
@@ -127,7 +120,7 @@ fn of_the_normal_boats_only_unless_asked() {
     let p = FlockParameters {
         n_boats: 3,
         n_leaders: 2,
-        ..FlockParameters::preset(Preset::Simulation)
+        ..table_3()
     };
     let mut flock = Flock::new(p.clone(), 1).expect("room");
     let scene = [

@@ -5,27 +5,28 @@
 //! overlaps are undone by displacement and leave boats at rest.
 
 use crate::support::{
-    RHO, SCHEMES, VELOCITY_SCHEMES, crowded, deepest_overlap, disc, driven, inert, kinetic_energy,
-    take_substeps,
+    RHO, SCHEMES, VELOCITY_SCHEMES, assert_near, changed, crowded, deepest_overlap, disc, driven,
+    first_kick_s, inert, kinetic_energy, set_off, table_3, take_substeps,
 };
 use flockenv::geometry::{Pose, Velocity};
-use flockenv::parameters::Scheme;
+use flockenv::parameters::Pool;
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::TAU;
+
+/// Two boats at rest, nose to tail, that overlap.
+fn overlapping(p: &FlockParameters, overlap: f64) -> Flock {
+    crowded(p, &[0.0, 15.0 - overlap].map(|x| ([x, 0.0, 0.0], [0.0; 3])))
+}
 
 #[test]
 fn shallow_overlap_at_rest_opens_in_one_substep() {
     for scheme in VELOCITY_SCHEMES {
         let overlap = 0.004;
-        let states = [
-            ([0.0, 0.0, 0.0], [0.0; 3]),
-            ([15.0 - overlap, 0.0, 0.0], [0.0; 3]),
-        ];
-        let mut flock = crowded(&inert(scheme), &states);
+        let mut flock = overlapping(&inert(scheme), overlap);
         take_substeps(&mut flock, 1);
         let speed = 0.5 * overlap / 0.02;
-        assert!((flock.velocities()[1].linear.x - speed).abs() < 1e-10);
-        assert!((flock.velocities()[0].linear.x + speed).abs() < 1e-10);
+        assert_near(flock.velocities()[1].linear.x, speed, 1e-10, scheme);
+        assert_near(flock.velocities()[0].linear.x, -speed, 1e-10, scheme);
         assert!(deepest_overlap(&flock) < 1e-10);
     }
 }
@@ -43,20 +44,14 @@ fn deep_overlap_and_crossed_cores_come_apart_without_speed() {
             vec![([84.0, 0.0, 0.3], [0.0; 3]), ([88.0, 3.0, 1.0], [0.0; 3])],
             vec![([0.0, 0.0, 0.0], [0.0; 3]); 3],
         ] {
-            let p = FlockParameters {
-                pool: disc(90.0),
-                ..inert(scheme)
-            };
+            let p = changed(inert(scheme), |p| p.pool = disc(90.0));
             let mut flock = crowded(&p, &states);
             let boats = states.len() as f64;
             for _ in 0..20 {
                 take_substeps(&mut flock, 1);
                 let bound = boats * (0.5 * 0.001_1 / 0.01_f64).powi(2);
-                assert!(
-                    kinetic_energy(&flock) < bound,
-                    "{scheme:?} {}",
-                    kinetic_energy(&flock)
-                );
+                let energy = kinetic_energy(&flock);
+                assert!(energy < bound, "{scheme:?} {energy}");
                 assert!(flock.poses().iter().all(Pose::is_finite));
             }
             assert!(deepest_overlap(&flock) <= 0.0101, "{scheme:?} {states:?}");
@@ -71,7 +66,7 @@ fn too_many_boats_for_the_pool_stay_bounded() {
     // can give, nothing is NaN, and a status says so.
     for scheme in SCHEMES {
         let p = FlockParameters {
-            pool: flockenv::parameters::Pool::NARROW,
+            pool: Pool::NARROW,
             c4: 0.1,
             ..driven(scheme)
         };
@@ -106,9 +101,9 @@ fn substeps_of_a_whole_second_are_stable() {
     for n_boats in [1, 12, 27] {
         let p = FlockParameters {
             n_boats,
-            pool: flockenv::parameters::Pool::NARROW,
+            pool: Pool::NARROW,
             dt_s: 1.0,
-            ..FlockParameters::preset(flockenv::parameters::Preset::Simulation)
+            ..table_3()
         };
         let mut flock = Flock::new(p, 3).expect("room");
         for _ in 0..10 {
@@ -132,27 +127,20 @@ fn a_full_pool_with_its_engines_off_never_gains_energy() {
             let p = FlockParameters {
                 n_boats: 114,
                 c0,
-                pool: flockenv::parameters::Pool::NARROW,
+                pool: Pool::NARROW,
                 ..inert(scheme)
             };
-            let mut flock = Flock::new(p, 2).expect("room");
-            let poses = flock.poses().to_vec();
-            let velocities: Vec<_> = (0..114)
-                .map(|i| {
-                    let phase = 2.4 * f64::from(i);
-                    Velocity::new(10.0 * phase.cos(), 10.0 * phase.sin(), phase.sin())
-                })
-                .collect();
-            flock
-                .set_state(&poses, &velocities, 0.0, false)
-                .expect("as placed");
+            let mut flock = set_off(p, 2, |boat, _| {
+                let phase = 2.4 * boat as f64;
+                Velocity::new(10.0 * phase.cos(), 10.0 * phase.sin(), phase.sin())
+            });
             let start = kinetic_energy(&flock);
             let mut before = start;
             for step in 0..500 {
                 let overlap = deepest_overlap(&flock);
                 take_substeps(&mut flock, 1);
-                let kick = if step == 0 && scheme == Scheme::Leapfrog {
-                    0.01
+                let kick = if step == 0 {
+                    first_kick_s(scheme, 0.02)
                 } else {
                     0.02
                 };
@@ -163,10 +151,8 @@ fn a_full_pool_with_its_engines_off_never_gains_energy() {
                     0.0
                 };
                 let now = kinetic_energy(&flock);
-                assert!(
-                    now <= before * (1.0 + 1e-12) + undone,
-                    "{scheme:?} {c0}: {before} {now}"
-                );
+                let most = before * (1.0 + 1e-12) + undone;
+                assert!(now <= most, "{scheme:?} {c0}: {before} {now}");
                 assert!(now <= start);
                 before = now;
             }
@@ -179,16 +165,9 @@ fn part_of_a_substep_opens_its_part_of_an_overlap() {
     // An overlap has a whole substep to close in, however short the one at hand is: relinearization does not hurry it.
     for relinearizations in [0, 1, 2] {
         for scheme in VELOCITY_SCHEMES {
-            let p = FlockParameters {
-                relinearizations,
-                ..inert(scheme)
-            };
+            let p = changed(inert(scheme), |p| p.relinearizations = relinearizations);
             let overlap = 0.004;
-            let states = [
-                ([0.0, 0.0, 0.0], [0.0; 3]),
-                ([15.0 - overlap, 0.0, 0.0], [0.0; 3]),
-            ];
-            let mut flock = crowded(&p, &states);
+            let mut flock = overlapping(&p, overlap);
             flock.advance(0.005, None).expect("finite motion");
             let speed = 0.5 * overlap / 0.02;
             let found = flock.velocities()[1].linear.x;

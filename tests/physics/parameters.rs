@@ -2,7 +2,7 @@
 //!
 //! On paper: Tables 1 and 3 are accepted, each of their fields out of range is refused by its name.
 
-use crate::support::{refused_field, table_3};
+use crate::support::{annulus, changed, refused_field, table_3};
 use flockenv::parameters::{Field, Kind, Noise, Pool, Preset, Scheme, Solver, Target, Value};
 use flockenv::{Flock, FlockError, FlockParameters};
 
@@ -87,11 +87,8 @@ fn every_number_out_of_range_is_refused_by_name() {
 
 #[test]
 fn counts_pools_and_times_out_of_range_are_refused() {
-    let check = |change: fn(&mut FlockParameters)| {
-        let mut p = table_3();
-        change(&mut p);
-        refused_field(p.check())
-    };
+    let check =
+        |change: fn(&mut FlockParameters)| refused_field(changed(table_3(), change).check());
     assert_eq!(check(|p| p.n_boats = 0), "n_boats");
     assert_eq!(check(|p| p.n_boats = usize::MAX), "n_boats");
     assert_eq!(check(|p| p.n_leaders = 21), "n_leaders");
@@ -107,10 +104,7 @@ fn counts_pools_and_times_out_of_range_are_refused() {
         (f64::INFINITY, f64::INFINITY),
         (f64::NEG_INFINITY, 0.0),
     ] {
-        let pool = Pool {
-            outer_radius_cm,
-            inner_radius_cm,
-        };
+        let pool = annulus(outer_radius_cm, inner_radius_cm);
         let p = FlockParameters { pool, ..table_3() };
         assert_eq!(refused_field(p.check()), "pool", "{pool:?}");
     }

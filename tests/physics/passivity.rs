@@ -8,17 +8,14 @@
 //! free boat is driven past the spin at which c1·w³ = (c2·s − c3·w)·u·ẋ.
 
 use crate::support::{
-    OPEN_WATER, R, VELOCITY_SCHEMES, deepest_overlap, disc_at, driven, flock_of, inert,
-    kinetic_energy, take_substeps,
+    OPEN_WATER, R, VELOCITY_SCHEMES, annulus, backing, deepest_overlap, disc_at, flock_of, inert,
+    kinetic_energy, set_off, table_3, take_substeps,
 };
 use flockenv::geometry::Velocity;
-use flockenv::parameters::{Pool, Preset, Scheme};
+use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 
-const CHANNEL: Pool = Pool {
-    outer_radius_cm: 80.0,
-    inner_radius_cm: 60.0,
-};
+const CHANNEL: Pool = annulus(80.0, 60.0);
 
 fn substeps(scheme: Scheme) -> &'static [f64] {
     match scheme {
@@ -33,19 +30,16 @@ fn rudders_thrown_about_in_a_channel_wedge_no_boat_out() {
         for &dt_s in substeps(scheme) {
             for relinearizations in [0, 1, 2] {
                 for seed in 0..2 {
-                    let mut flock = Flock::new(
-                        FlockParameters {
-                            n_boats: 20,
-                            n_leaders: 20,
-                            pool: CHANNEL,
-                            dt_s,
-                            relinearizations,
-                            scheme,
-                            ..FlockParameters::preset(Preset::Simulation)
-                        },
-                        seed,
-                    )
-                    .expect("room");
+                    let p = FlockParameters {
+                        n_boats: 20,
+                        n_leaders: 20,
+                        pool: CHANNEL,
+                        dt_s,
+                        relinearizations,
+                        scheme,
+                        ..table_3()
+                    };
+                    let mut flock = Flock::new(p, seed).expect("room");
                     for step in 0..300 {
                         let rudder: Vec<_> = (0..20)
                             .map(|i| if (i + step) % 2 == 0 { 1.0 } else { -1.0 })
@@ -77,13 +71,9 @@ fn spinning_hulls_in_a_channel_never_gain_energy() {
                     relinearizations,
                     ..inert(scheme)
                 };
-                let mut flock = Flock::new(p, 1).expect("room");
-                let poses = flock.poses().to_vec();
-                let spins = (0..20).map(|i| Velocity::new(0.0, 0.0, 4.0 * f64::from(i % 5 - 2)));
-                let spins: Vec<_> = spins.collect();
-                flock
-                    .set_state(&poses, &spins, 0.0, false)
-                    .expect("as placed");
+                let mut flock = set_off(p, 1, |boat, _| {
+                    Velocity::new(0.0, 0.0, 4.0 * ((boat % 5) as f64 - 2.0))
+                });
                 let mut before = kinetic_energy(&flock);
                 for step in 0..300 {
                     let overlap = deepest_overlap(&flock).min(0.01);
@@ -134,9 +124,7 @@ fn no_backing_boat_is_driven_past_its_turn() {
     // Backing at 15 cm/s, s = 0: at most sqrt(c3·15/c1).
     let p = FlockParameters {
         reverse_speed_cm_s: 15.0,
-        fw_s: 0.0,
-        bw_s: 1.0,
-        ..driven(Scheme::Leapfrog)
+        ..backing(Scheme::Leapfrog)
     };
     let most = (p.c3 * 15.0 / p.c1).sqrt();
     for dt_s in [0.02, 0.1, 0.5, 1.0] {
@@ -163,7 +151,7 @@ fn substeps_cut_for_their_contacts_go_on_from_a_snapshot() {
         pool: CHANNEL,
         dt_s: 0.5,
         relinearizations: 1,
-        ..FlockParameters::preset(Preset::Simulation)
+        ..table_3()
     };
     let mut flock = Flock::new(p, 3).expect("room");
     for _ in 0..60 {

@@ -88,16 +88,8 @@ fn the_analysis_window() {
 fn the_analysis_window_of_sampled_phases() {
     use Phase::{Backward, DriftAfterForward, Forward};
     // fw from 0 to 4 s, the drift from 4 to 6 s, bw to the last time.
-    let phases = [
-        Forward,
-        Forward,
-        Forward,
-        Forward,
-        DriftAfterForward,
-        DriftAfterForward,
-        Backward,
-        Backward,
-    ];
+    let drift_and_back = [DriftAfterForward, DriftAfterForward, Backward, Backward];
+    let phases = [[Forward; 4], drift_and_back].concat();
     let times_s: Vec<f64> = (0..8).map(f64::from).collect();
     let analyzed = sampled_analysis_window(&times_s, &phases);
     let expected = [false, false, true, true, true, false, false, false];

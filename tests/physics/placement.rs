@@ -3,10 +3,10 @@
 //!
 //! On paper: no two cores nearer than 2r, every core end within R_out − r and beyond R_in + r.
 
-use crate::support::{OPEN_WATER, deepest_overlap};
+use crate::support::{OPEN_WATER, annulus, deepest_overlap, disc, table_3};
 use flockenv::geometry::Velocity;
 use flockenv::geometry::lap_frame::orientation;
-use flockenv::parameters::{Pool, Preset};
+use flockenv::parameters::Pool;
 use flockenv::{Flock, FlockError, FlockParameters};
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -14,17 +14,13 @@ fn placed(n_boats: usize, pool: Pool, seed: u64) -> Result<Flock, FlockError> {
     let p = FlockParameters {
         n_boats,
         pool,
-        ..FlockParameters::preset(Preset::Simulation)
+        ..table_3()
     };
     Flock::new(p, seed)
 }
 
 #[test]
 fn flocks_are_placed_apart_and_at_rest() {
-    let no_obstacle = Pool {
-        inner_radius_cm: 0.0,
-        ..Pool::NARROW
-    };
     for (n, pool) in [
         (1, Pool::NARROW),
         (27, Pool::NARROW),
@@ -32,7 +28,7 @@ fn flocks_are_placed_apart_and_at_rest() {
         (114, Pool::NARROW),
         (20, Pool::WIDE),
         (350, Pool::WIDE),
-        (100, no_obstacle),
+        (100, disc(Pool::NARROW.outer_radius_cm)),
         (200, OPEN_WATER),
     ] {
         for seed in 0..3 {
@@ -48,10 +44,8 @@ fn flocks_are_placed_apart_and_at_rest() {
 #[test]
 fn placement_follows_the_seed() {
     let poses = |seed| {
-        placed(40, Pool::NARROW, seed)
-            .expect("room")
-            .poses()
-            .to_vec()
+        let flock = placed(40, Pool::NARROW, seed).expect("room");
+        flock.poses().to_vec()
     };
     assert_eq!(poses(3), poses(3));
     assert_ne!(poses(3), poses(4));
@@ -82,12 +76,8 @@ fn placement_is_even_around_the_pool_and_in_heading() {
 fn too_many_boats_are_an_error_that_says_how_many_fitted() {
     // A disc of radius 40 cm has the area of 39 hulls. 36 of them would cover 92 %, which no packing
     // of stadiums against a round wall reaches; 38 and 100 are refused without trying hard.
-    let pool = Pool {
-        outer_radius_cm: 40.0,
-        inner_radius_cm: 0.0,
-    };
     for n in [36, 38, 100] {
-        match placed(n, pool, 1) {
+        match placed(n, disc(40.0), 1) {
             Err(FlockError::Placement { requested, placed }) => {
                 assert_eq!(requested, n);
                 // Plain dropping alone covers a third of the water.
@@ -101,16 +91,12 @@ fn too_many_boats_are_an_error_that_says_how_many_fitted() {
 #[test]
 fn placement_ends_where_it_is_told_to() {
     // 50 boats are placed by rejection, 2000 by growth, 2400 do not fit.
-    let pool = Pool {
-        outer_radius_cm: 360.0,
-        inner_radius_cm: 0.0,
-    };
     for n_boats in [50, 2000, 2400] {
         for patience in [0, 3] {
             let p = FlockParameters {
                 n_boats,
-                pool,
-                ..FlockParameters::preset(Preset::Simulation)
+                pool: disc(360.0),
+                ..table_3()
             };
             let called = AtomicU32::new(0);
             let keep_going = || called.fetch_add(1, Ordering::Relaxed) < patience;
@@ -124,10 +110,7 @@ fn placement_ends_where_it_is_told_to() {
 #[test]
 fn a_pool_that_holds_no_boat_says_so() {
     for (outer_radius_cm, inner_radius_cm) in [(7.0, 0.0), (50.0, 41.0), (4.0, 0.0)] {
-        let pool = Pool {
-            outer_radius_cm,
-            inner_radius_cm,
-        };
+        let pool = annulus(outer_radius_cm, inner_radius_cm);
         let result = placed(1, pool, 1);
         let expected = FlockError::Placement {
             requested: 1,

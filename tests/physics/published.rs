@@ -4,6 +4,7 @@
 //!
 //! On paper: 20 boats without any order have Ψ_o = 0.886/sqrt(20) = 0.198.
 
+use crate::support::changed;
 use flockenv::clock::ticks;
 use flockenv::parameters::{Noise, Preset, Scheme, Target};
 use flockenv::{Flock, FlockParameters, OrderParameters};
@@ -41,10 +42,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 fn at_noise(preset: Preset, bw_s: f64) -> FlockParameters {
-    FlockParameters {
-        bw_s,
-        ..FlockParameters::preset(preset)
-    }
+    changed(FlockParameters::preset(preset), |p| p.bw_s = bw_s)
 }
 
 #[test]
@@ -209,10 +207,7 @@ fn white_noise_results_do_not_depend_on_dt() {
     // Beyond the transition there is nothing bistable: Ψ_o is 0.2 at every dt, and ordered below it.
     for dt_s in [0.1, 0.02, 0.005] {
         let order = |bw_s| {
-            let p = FlockParameters {
-                dt_s,
-                ..at_noise(Preset::Simulation, bw_s)
-            };
+            let p = changed(at_noise(Preset::Simulation, bw_s), |p| p.dt_s = dt_s);
             mean(&mean_orders(&p, 4))
         };
         let (ordered, disordered) = (order(0.2), order(0.5));

@@ -4,9 +4,12 @@
 //! j·c0·v0. The `paper` scheme loses its accelerations in every substep with a contact: the half of
 //! that on average, as long as every second substep has one.
 
-use crate::support::{H, R, SCHEMES, VELOCITY_SCHEMES, disc, driven, flock_of, take_substeps};
+use crate::support::{
+    H, R, SCHEMES, VELOCITY_SCHEMES, annulus, assert_near, changed, disc, driven, flock_of,
+    take_substeps,
+};
 use flockenv::contact::Partner;
-use flockenv::parameters::{Pool, Scheme};
+use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
 
 /// c0·v0 of Table 3.
@@ -14,10 +17,7 @@ const PUSH: f64 = 15.0;
 
 /// k boats nose to tail along x, the first of them at the wall of a pool of radius 90 cm.
 fn row(p: &FlockParameters, k: usize) -> Flock {
-    let p = FlockParameters {
-        pool: disc(90.0),
-        ..p.clone()
-    };
+    let p = changed(p.clone(), |p| p.pool = disc(90.0));
     let states: Vec<_> = (0..k)
         .map(|i| ([82.5 - 15.0 * i as f64, 0.0, 0.0], [0.0; 3]))
         .collect();
@@ -48,10 +48,7 @@ fn a_row_of_boats_pushes_the_wall() {
                 for (joint, force) in forces(&flock, k).iter().enumerate() {
                     let expected = (joint + 1) as f64 * PUSH;
                     // The residual of 1e-10 cm/s over the kick of 0.01 s.
-                    assert!(
-                        (force - expected).abs() < 1e-7,
-                        "{scheme:?} {joint}: {force}"
-                    );
+                    assert_near(*force, expected, 1e-7, (scheme, joint));
                 }
             }
             for pose in flock.poses() {
@@ -125,10 +122,7 @@ fn the_paper_scheme_s_force_creeps_up_once_a_push_fits_the_tolerance() {
         let (found, expected) = (force(dt), force_on_a_line(dt, 0.01, SUBSTEPS));
         // The map is chaotic: rounding decides its course, and only the mean over many substeps is
         // its own.
-        assert!(
-            (found - expected).abs() < 2e-3 * PUSH,
-            "{dt}: {found} {expected}"
-        );
+        assert_near(found, expected, 2e-3 * PUSH, dt);
         if dt > 0.026 {
             assert!((found - 0.5 * PUSH).abs() < 1e-6);
         }
@@ -144,10 +138,7 @@ fn a_radial_boat_in_a_channel_of_its_own_length() {
     for scheme in VELOCITY_SCHEMES {
         for (forward, reverse) in [(true, false), (false, true)] {
             let p = FlockParameters {
-                pool: Pool {
-                    outer_radius_cm: 60.0 + 2.0 * (H + R),
-                    inner_radius_cm: 60.0,
-                },
+                pool: annulus(60.0 + 2.0 * (H + R), 60.0),
                 fw_s: f64::from(u8::from(forward)),
                 bw_s: f64::from(u8::from(reverse)),
                 ..driven(scheme)
@@ -180,10 +171,7 @@ fn a_boat_flung_about_in_a_channel_of_its_own_length_stops() {
             let p = FlockParameters {
                 speed_cm_s: 0.0,
                 c0: 0.0,
-                pool: Pool {
-                    outer_radius_cm: 75.0,
-                    inner_radius_cm: 60.0,
-                },
+                pool: annulus(75.0, 60.0),
                 ..driven(scheme)
             };
             let mut flock = flock_of(&p, &[([67.5, 0.0, 0.0], [radial, 0.0, 0.0])]);
@@ -198,10 +186,7 @@ fn a_boat_flung_about_in_a_channel_of_its_own_length_stops() {
 fn clearance_without_contact_gives_exactly_zero_force() {
     // A millionth of a millimeter is no contact for boats that stay or drift along.
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            pool: disc(90.0),
-            ..driven(scheme)
-        };
+        let p = changed(driven(scheme), |p| p.pool = disc(90.0));
         let clear = 1e-7;
         let states = [
             ([0.0, 0.0, 0.0], [0.0; 3]),

@@ -4,10 +4,10 @@
 //! those of the original scene. Scaling by a power of 2 rounds nothing: only the solver's tolerance, an
 //! absolute speed, differs then.
 
-use crate::support::{crowded, deepest_overlap, take_substeps};
+use crate::support::{changed, crowded, deepest_overlap, table_3, take_substeps};
 use flockenv::contact::Statistics;
 use flockenv::geometry::Pose;
-use flockenv::parameters::{Pool, Preset};
+use flockenv::parameters::Pool;
 use flockenv::{Flock, FlockParameters};
 
 /// A scene with all its lengths times k.
@@ -31,10 +31,7 @@ fn scaled(p: &FlockParameters, k: f64) -> FlockParameters {
 }
 
 fn default_scene(n_boats: usize) -> FlockParameters {
-    FlockParameters {
-        n_boats,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
+    changed(table_3(), |p| p.n_boats = n_boats)
 }
 
 fn placed(n_boats: usize, k: f64) -> Vec<Pose> {

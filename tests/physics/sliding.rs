@@ -8,7 +8,7 @@
 //!   Ω²·h·sin ψ = c0·(v0·sin ψ − Ω·(Q − h·cos ψ)),
 //!   N·h·sin ψ/ρ² = c1·Ω³ + c3·Ω²·Q·sin ψ.
 
-use crate::support::{H, R, RHO, SCHEMES, disc, driven, flock_of, root, runge_kutta};
+use crate::support::{H, R, RHO, SCHEMES, assert_near, disc, driven, flock_of, root, runge_kutta};
 use flockenv::geometry::{Pose, Vec2, cross, wrap_angle};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
@@ -67,21 +67,12 @@ fn a_boat_slides_to_its_steady_angle() {
             flock.advance(60.0, None).expect("finite motion");
             let side = f64::signum(start);
             let found = angle_at_bow(&flock.poses()[0]);
-            assert!(
-                (found - side * psi).abs() < error,
-                "{scheme:?}: {found} {psi}"
-            );
+            assert_near(found, side * psi, error, scheme);
             let spin = flock.velocities()[0].angular;
-            assert!(
-                (spin - side * rate).abs() < error * rate,
-                "{scheme:?}: {spin} {rate}"
-            );
+            assert_near(spin, side * rate, error * rate, scheme);
             let contacts = flock.contacts();
             let pressed: f64 = contacts.iter().map(|c| c.force).sum();
-            assert!(
-                (pressed - force).abs() < error * force,
-                "{scheme:?}: {pressed} {force}"
-            );
+            assert_near(pressed, force, error * force, scheme);
         }
     }
 }
@@ -177,10 +168,7 @@ fn the_paper_scheme_without_tolerance_freezes() {
     };
     for dt in [0.05, 0.02, 0.01] {
         let (frozen, first) = (speed(Scheme::Paper, dt), V0 * dt * f64::sin(0.5));
-        assert!(
-            (frozen / first - 1.0).abs() < 1e-3,
-            "{dt}: {frozen} {first}"
-        );
+        assert_near(frozen / first, 1.0, 1e-3, dt);
     }
     // What it should be: v0·sin ψ·(1 − exp(−2)), the wall's bend aside.
     let expected = V0 * f64::sin(0.5) * (1.0 - f64::exp(-2.0));

@@ -4,8 +4,8 @@
 //! On paper: no boat is faster than its preferred speed plus what collisions pass on; 27 boats stay below
 //! 20 cm/s in the default scene whatever the substeps.
 
-use crate::support::VELOCITY_SCHEMES;
-use flockenv::parameters::{Pool, Preset, Scheme};
+use crate::support::{VELOCITY_SCHEMES, table_3};
+use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
 
 const NS: f64 = 1e-9;
@@ -21,14 +21,11 @@ fn crowd(scheme: Scheme, relinearizations: usize, seed: u64) -> Flock {
     let parameters = FlockParameters {
         n_boats: 27,
         n_leaders: 3,
-        pool: Pool {
-            outer_radius_cm: 90.0,
-            inner_radius_cm: 48.5,
-        },
+        pool: Pool::NARROW,
         bw_s: 0.400_000_001,
         scheme,
         relinearizations,
-        ..FlockParameters::preset(Preset::Simulation)
+        ..table_3()
     };
     Flock::new(parameters, seed).unwrap()
 }

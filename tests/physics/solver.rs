@@ -12,6 +12,7 @@ use flockenv::geometry::{Feature, Gap, Vec2, Velocity};
 use flockenv::parameters::Solver;
 use nalgebra::DVector;
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 /// What a [`ContactProblem`] borrows.
 #[derive(Debug, Clone, Default)]
@@ -107,7 +108,7 @@ fn every_contact_three_times_gives_the_same_motion() {
     scene.contacts.push(contact(0, None, 0.0, (0.7, 0.0)));
     scene
         .contacts
-        .extend((0..4).map(|i| contact(i, Some(i + 1), std::f64::consts::PI, (0.3, -0.4))));
+        .extend((0..4).map(|i| contact(i, Some(i + 1), PI, (0.3, -0.4))));
     scene.biases = vec![0.0; 5];
     let (_, impulses, velocities) = scene.solve(Solver::BlockPivoting);
     assert!(impulses.iter().all(|&impulse| impulse > 0.0));
@@ -122,19 +123,22 @@ fn every_contact_three_times_gives_the_same_motion() {
     }
 }
 
+/// A boat in a channel exactly as wide as itself: two normals that are each other's opposite.
+fn between_walls(free: Velocity, bias: f64) -> Owned {
+    Owned {
+        contacts: [PI, 0.0]
+            .map(|angle| contact(0, None, angle, (0.0, 0.0)))
+            .to_vec(),
+        inertia: vec![PLAIN],
+        free: vec![free],
+        biases: vec![bias; 2],
+    }
+}
+
 #[test]
 fn opposite_contacts_hold_a_boat_still() {
-    // A channel exactly as wide as the boat: two normals that are each other's opposite.
     for (push, kept) in [(5.0, 0), (-5.0, 1)] {
-        let scene = Owned {
-            contacts: vec![
-                contact(0, None, std::f64::consts::PI, (0.0, 0.0)),
-                contact(0, None, 0.0, (0.0, 0.0)),
-            ],
-            inertia: vec![PLAIN],
-            free: vec![Velocity::new(push, 3.0, 0.0)],
-            biases: vec![0.0, 0.0],
-        };
+        let scene = between_walls(Velocity::new(push, 3.0, 0.0), 0.0);
         let (report, impulses, velocities) = scene.solve(Solver::BlockPivoting);
         assert!(report.residual <= 1e-10);
         assert!((velocities[0].linear - Vec2::new(0.0, 3.0)).norm() < 1e-10);
@@ -145,21 +149,11 @@ fn opposite_contacts_hold_a_boat_still() {
 #[test]
 fn constraints_that_contradict_each_other_are_reported() {
     // Two walls that both want the boat to come at 1 cm/s.
-    let scene = Owned {
-        contacts: vec![
-            contact(0, None, std::f64::consts::PI, (0.0, 0.0)),
-            contact(0, None, 0.0, (0.0, 0.0)),
-        ],
-        inertia: vec![PLAIN],
-        free: vec![Velocity::default()],
-        biases: vec![-1.0, -1.0],
-    };
+    let scene = between_walls(Velocity::default(), -1.0);
     for kind in Solver::ALL.iter().copied() {
         let (report, impulses, velocities) = scene.solve(kind);
-        assert!(
-            !report.converged && report.residual > 0.1,
-            "{kind:?}: {report:?}"
-        );
+        assert!(!report.converged, "{kind:?}: {report:?}");
+        assert!(report.residual > 0.1, "{kind:?}: {report:?}");
         assert!(impulses.iter().all(|impulse| impulse.is_finite()));
         assert!(velocities.iter().all(Velocity::is_finite));
     }

@@ -4,10 +4,9 @@
 //! On paper: a boat under way for long has the speed v0·factor; the factors' distribution function is
 //! a straight line; its mean is 1 and its variance (spread/v0)²/3.
 
-use crate::support::{SCHEMES, driven};
-use flockenv::geometry::{Pose, Velocity};
+use crate::support::{SCHEMES, assert_near, changed, driven, seeded_flock_of};
+use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;
-use flockenv::{Flock, FlockParameters};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -15,17 +14,8 @@ const SPREAD: f64 = 5.0;
 
 /// Speeds along the heading after 40 s, when exp(−c0·t) is below rounding; every boat on its own row.
 fn final_speeds(p: &FlockParameters, boats: usize, seed: u64) -> Vec<f64> {
-    let p = FlockParameters {
-        n_boats: boats,
-        ..p.clone()
-    };
-    let mut flock = Flock::new(p, seed).expect("open water");
-    let rows = (0..boats).map(|row| Pose::new(0.0, 40.0 * row as f64, 0.0));
-    let poses: Vec<_> = rows.collect();
-    let velocities = vec![Velocity::default(); boats];
-    flock
-        .set_state(&poses, &velocities, 0.0, false)
-        .expect("far apart");
+    let rows = (0..boats).map(|row| ([0.0, 40.0 * row as f64, 0.0], [0.0; 3]));
+    let mut flock = seeded_flock_of(p, &rows.collect::<Vec<_>>(), seed);
     flock.advance(40.0, None).expect("finite motion");
     flock.velocities().iter().map(|v| v.linear.x).collect()
 }
@@ -74,10 +64,7 @@ fn speeds_belong_to_the_seed_in_every_scheme() {
 #[test]
 fn a_boat_that_is_fast_forwards_is_fast_backwards() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            reverse_speed_cm_s: 6.0,
-            ..spread(scheme)
-        };
+        let p = changed(spread(scheme), |p| p.reverse_speed_cm_s = 6.0);
         let forwards = final_speeds(&p, 30, 8);
         let backing = FlockParameters {
             fw_s: 0.0,
@@ -85,10 +72,7 @@ fn a_boat_that_is_fast_forwards_is_fast_backwards() {
             ..p
         };
         for (there, back) in forwards.iter().zip(final_speeds(&backing, 30, 8)) {
-            assert!(
-                (back + 0.4 * there).abs() < 1e-9,
-                "{scheme:?}: {there} {back}"
-            );
+            assert_near(back, -0.4 * there, 1e-9, scheme);
         }
     }
 }
@@ -96,10 +80,9 @@ fn a_boat_that_is_fast_forwards_is_fast_backwards() {
 #[test]
 fn the_width_is_the_parameter() {
     let factors = |spread_cm_s: f64| -> Vec<f64> {
-        let p = FlockParameters {
-            speed_spread_cm_s: spread_cm_s,
-            ..spread(Scheme::Leapfrog)
-        };
+        let p = changed(spread(Scheme::Leapfrog), |p| {
+            p.speed_spread_cm_s = spread_cm_s;
+        });
         let speeds = final_speeds(&p, 20, 5);
         speeds.iter().map(|v| (v - 15.0) / spread_cm_s).collect()
     };

@@ -4,7 +4,7 @@
 //! On paper: backing without steering, w² = (−c0² + sqrt(c0⁴ + 4·c0²·c3·v0/c1))/2 = 1.845² (rad/s)²
 //! for Table 3. Each scheme has a steady turn of its own, which is known on paper too.
 
-use crate::support::{SCHEMES, driven, flock_of, root};
+use crate::support::{SCHEMES, assert_near, backing, changed, driven, flock_of, root};
 use flockenv::boat::{misalignment, steering_law};
 use flockenv::geometry::Vec2;
 use flockenv::parameters::{Scheme, Target};
@@ -39,6 +39,15 @@ pub fn steady_rate(p: &FlockParameters, v0: f64, s: f64, dt: f64, (low, high): (
     })
 }
 
+/// Where the rate of a boat is found that turns with its rudder.
+pub fn turning_with(rudder: f64) -> (f64, f64) {
+    if rudder > 0.0 {
+        (0.0, 1.0)
+    } else {
+        (-1.0, 0.0)
+    }
+}
+
 fn spin_after(flock: &mut Flock, seconds: f64, rudder: Option<&[f64]>) -> f64 {
     flock.advance(seconds, rudder).expect("finite motion");
     flock.velocities()[0].angular
@@ -47,11 +56,7 @@ fn spin_after(flock: &mut Flock, seconds: f64, rudder: Option<&[f64]>) -> f64 {
 #[test]
 fn backing_prefers_one_of_two_turning_rates() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            fw_s: 0.0,
-            bw_s: 1.0,
-            ..driven(scheme)
-        };
+        let p = backing(scheme);
         let paper_value = ((-1.0 + 61_f64.sqrt()) / 2.0).sqrt();
         let continuous = steady_rate(&p, -15.0, 0.0, 0.0, (0.5, 5.0));
         assert!((continuous - paper_value).abs() < 1e-12);
@@ -61,15 +66,11 @@ fn backing_prefers_one_of_two_turning_rates() {
             let spin = spin_after(&mut flock, 60.0, None);
             assert!((spin - side * expected).abs() < 1e-9, "{scheme:?}: {spin}");
             // d(ln w)/d(dt) is of order 1 for Euler; Crank–Nicolson errs by (w·dt)²/12.
-            let bound = if scheme == Scheme::Leapfrog {
-                2e-3
-            } else {
-                5e-2
+            let bound = match scheme {
+                Scheme::Leapfrog => 2e-3,
+                _ => 5e-2,
             };
-            assert!(
-                (spin.abs() - paper_value).abs() < bound,
-                "{scheme:?}: {spin}"
-            );
+            assert_near(spin.abs(), paper_value, bound, scheme);
         }
     }
 }
@@ -77,11 +78,7 @@ fn backing_prefers_one_of_two_turning_rates() {
 #[test]
 fn backing_exactly_straight_stays_straight() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            fw_s: 0.0,
-            bw_s: 1.0,
-            ..driven(scheme)
-        };
+        let p = backing(scheme);
         let mut flock = flock_of(&p, &[([0.0; 3], [0.0; 3])]);
         assert_eq!(spin_after(&mut flock, 60.0, None), 0.0);
         assert!((flock.velocities()[0].linear.x + 15.0).abs() < 1e-9);
@@ -91,21 +88,14 @@ fn backing_exactly_straight_stays_straight() {
 #[test]
 fn a_leader_turns_steadily() {
     for scheme in SCHEMES {
-        for (rudder, speed) in [(1.0, 15.0), (-0.4, 15.0)] {
-            let p = FlockParameters {
-                n_leaders: 1,
-                ..driven(scheme)
-            };
-            let range = if rudder > 0.0 {
-                (0.0, 1.0)
-            } else {
-                (-1.0, 0.0)
-            };
+        for rudder in [1.0, -0.4] {
+            let p = changed(driven(scheme), |p| p.n_leaders = 1);
+            let range = turning_with(rudder);
             let mut flock = flock_of(&p, &[([0.0; 3], [0.0; 3])]);
             let spin = spin_after(&mut flock, 60.0, Some(&[rudder]));
-            let expected = steady_rate(&p, speed, rudder, p.dt_s, range);
+            let expected = steady_rate(&p, 15.0, rudder, p.dt_s, range);
             assert!((spin - expected).abs() < 1e-10, "{scheme:?}: {spin}");
-            let continuous = steady_rate(&p, speed, rudder, 0.0, range);
+            let continuous = steady_rate(&p, 15.0, rudder, 0.0, range);
             assert!((spin - continuous).abs() < 1e-6, "{scheme:?}: {spin}");
             // "about 0.1 rad/s" at full rudder.
             assert!((continuous - 0.1 * rudder).abs() < 0.002);
@@ -142,9 +132,7 @@ fn leaders_back_up_or_drift_as_set() {
             let p = FlockParameters {
                 n_leaders: 1,
                 leaders_reverse,
-                fw_s: 0.0,
-                bw_s: 1.0,
-                ..driven(scheme)
+                ..backing(scheme)
             };
             let mut flock = flock_of(&p, &[([0.0; 3], [0.0; 3]), ([0.0, 100.0, 0.0], [0.0; 3])]);
             flock.advance(10.0, Some(&[0.0])).expect("finite motion");
@@ -191,10 +179,7 @@ fn leaders_head_along_the_target_s_tangent_at_their_own_place() {
 #[test]
 fn without_a_command_a_leader_steers_by_the_law() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            n_leaders: 1,
-            ..driven(scheme)
-        };
+        let p = changed(driven(scheme), |p| p.n_leaders = 1);
         // Moving outward at full speed: the law commands a full turn clockwise, as rudder −1 does.
         let states = [([50.0, 0.0, 0.0], [15.0, 0.0, 0.0])];
         let (mut law, mut held) = (flock_of(&p, &states), flock_of(&p, &states));

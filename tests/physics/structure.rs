@@ -1,17 +1,15 @@
 //! Structure of boats: clusters and jams, the wall, and headings.
 
+use crate::support::{changed, table_3};
 use approx::assert_abs_diff_eq;
 use flockenv::FlockParameters;
 use flockenv::analysis::structure::{jam_sizes, largest_cluster, on_outer_wall, polarization};
 use flockenv::geometry::Pose;
-use flockenv::parameters::{Pool, Preset};
+use flockenv::parameters::Pool;
 use std::f64::consts::FRAC_PI_2;
 
 fn narrow() -> FlockParameters {
-    FlockParameters {
-        pool: Pool::NARROW,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
+    changed(table_3(), |p| p.pool = Pool::NARROW)
 }
 
 #[test]

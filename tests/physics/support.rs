@@ -4,7 +4,9 @@ use flockenv::flock::State;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::{Disc, Noise, Pool, Preset, Scheme, Wall};
 use flockenv::{Flock, FlockError, FlockParameters};
+use proptest::strategy::Strategy;
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
+use std::fmt::Debug;
 
 /// All schemes.
 pub const SCHEMES: [Scheme; 3] = [Scheme::Leapfrog, Scheme::Moreau, Scheme::Paper];
@@ -13,10 +15,7 @@ pub const VELOCITY_SCHEMES: [Scheme; 2] = [Scheme::Leapfrog, Scheme::Moreau];
 /// Both meanings of η.
 pub const NOISES: [Noise; 2] = [Noise::White, Noise::PerStep];
 /// No walls at all.
-pub const OPEN_WATER: Pool = Pool {
-    outer_radius_cm: f64::INFINITY,
-    inner_radius_cm: 0.0,
-};
+pub const OPEN_WATER: Pool = disc(f64::INFINITY);
 
 /// Half-length h of the default hull's core, its radius r and its radius of gyration ρ, in cm.
 pub const H: f64 = 2.5;
@@ -39,11 +38,25 @@ pub fn cases(count: u32) -> ProptestConfig {
 }
 
 /// A disc of water without an obstacle.
-pub fn disc(outer_radius_cm: f64) -> Pool {
+pub const fn disc(outer_radius_cm: f64) -> Pool {
+    annulus(outer_radius_cm, 0.0)
+}
+
+/// A ring of water between two walls.
+pub const fn annulus(outer_radius_cm: f64, inner_radius_cm: f64) -> Pool {
     Pool {
         outer_radius_cm,
-        inner_radius_cm: 0.0,
+        inner_radius_cm,
     }
+}
+
+/// Parameters with something changed.
+pub fn changed(
+    mut parameters: FlockParameters,
+    change: impl FnOnce(&mut FlockParameters),
+) -> FlockParameters {
+    change(&mut parameters);
+    parameters
 }
 
 /// Table 3 without noise, engines always forward, open water.
@@ -58,6 +71,15 @@ pub fn driven(scheme: Scheme) -> FlockParameters {
         nop2_s: 0.0,
         scheme,
         ..FlockParameters::preset(Preset::Simulation)
+    }
+}
+
+/// As [`driven`], but engines always backward.
+pub fn backing(scheme: Scheme) -> FlockParameters {
+    FlockParameters {
+        fw_s: 0.0,
+        bw_s: 1.0,
+        ..driven(scheme)
     }
 }
 
@@ -92,12 +114,14 @@ pub fn busy(scheme: Scheme, noise: Noise) -> FlockParameters {
 }
 
 /// A flock of boats with these poses [cm, cm, rad] and velocities [cm/s, cm/s, rad/s].
-pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
-    let parameters = FlockParameters {
-        n_boats: states.len(),
-        ..parameters.clone()
-    };
-    let mut flock = Flock::new(parameters, 1).expect("the pool holds the flock");
+pub fn flock_of(p: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
+    seeded_flock_of(p, states, 1)
+}
+
+/// The same with a seed for all that is drawn.
+pub fn seeded_flock_of(p: &FlockParameters, states: &[([f64; 3], [f64; 3])], seed: u64) -> Flock {
+    let p = changed(p.clone(), |p| p.n_boats = states.len());
+    let mut flock = Flock::new(p, seed).expect("the pool holds the flock");
     let (poses, velocities) = poses_and_velocities(states);
     flock
         .set_state(&poses, &velocities, 0.0, false)
@@ -107,11 +131,7 @@ pub fn flock_of(parameters: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -
 
 /// A flock in any state, overlapping or not, also where random placement finds no room.
 pub fn crowded(p: &FlockParameters, states: &[([f64; 3], [f64; 3])]) -> Flock {
-    let n_boats = states.len();
-    let p = FlockParameters {
-        n_boats,
-        ..p.clone()
-    };
+    let p = changed(p.clone(), |p| p.n_boats = states.len());
     let (poses, velocities) = poses_and_velocities(states);
     let state = State {
         poses,
@@ -127,6 +147,22 @@ fn poses_and_velocities(states: &[([f64; 3], [f64; 3])]) -> (Vec<Pose>, Vec<Velo
         (Pose::new(*x, *y, *a), Velocity::new(*u, *v, *w))
     };
     states.iter().map(state).unzip()
+}
+
+/// A flock placed at random in which each boat has a velocity of its own.
+pub fn set_off(
+    p: FlockParameters,
+    seed: u64,
+    velocity: impl Fn(usize, &Pose) -> Velocity,
+) -> Flock {
+    let mut flock = Flock::new(p, seed).expect("the pool holds the flock");
+    let poses = flock.poses().to_vec();
+    let boats = poses.iter().enumerate();
+    let velocities: Vec<_> = boats.map(|(boat, pose)| velocity(boat, pose)).collect();
+    flock
+        .set_state(&poses, &velocities, 0.0, false)
+        .expect("as placed");
+    flock
 }
 
 /// Takes `count` full substeps.
@@ -188,14 +224,16 @@ pub fn bits(flock: &Flock) -> Vec<u64> {
     poses.chain(velocities).map(f64::to_bits).collect()
 }
 
+/// The ends of a core segment, stern first.
+pub fn core(pose: &Pose, half_length: f64) -> (Vec2, Vec2) {
+    let axis = Vec2::new(pose.heading.cos(), pose.heading.sin()) * half_length;
+    (pose.position - axis, pose.position + axis)
+}
+
 /// Distance between two core segments, straight from the definition: zero if they cross, else the
 /// least of the four distances from an end to the other segment.
 pub fn core_distance(a: &Pose, b: &Pose, half_length: f64) -> f64 {
-    let ends = |p: &Pose| {
-        let axis = Vec2::new(p.heading.cos(), p.heading.sin()) * half_length;
-        (p.position - axis, p.position + axis)
-    };
-    segment_distance(ends(a), ends(b))
+    segment_distance(core(a, half_length), core(b, half_length))
 }
 
 /// Distance between two segments, given by their ends.
@@ -245,13 +283,13 @@ pub fn deepest_overlap(flock: &Flock) -> f64 {
             let nearest = center(a).position + axis * t.clamp(-1.0, 1.0);
             least = least.min((point.position - nearest).norm() - r - p.pool.inner_radius_cm);
         }
-        let core = (a.position - axis, a.position + axis);
         for disc in &p.discs {
             let center = Vec2::new(disc.x_cm, disc.y_cm);
-            least = least.min(segment_distance(core, (center, center)) - r - disc.radius_cm);
+            let distance = segment_distance(core(a, h), (center, center));
+            least = least.min(distance - r - disc.radius_cm);
         }
         for wall in &p.walls {
-            least = least.min(segment_distance(core, wall_ends(wall)) - r);
+            least = least.min(segment_distance(core(a, h), wall_ends(wall)) - r);
         }
     }
     (-least).max(0.0)
@@ -282,6 +320,19 @@ pub fn disc_at(x_cm: f64, y_cm: f64, radius_cm: f64) -> Disc {
         y_cm,
         radius_cm,
     }
+}
+
+/// A pose at most so far from the center in x and y, and turned by at most so much.
+pub fn pose(reach_cm: f64, turn: f64) -> impl Strategy<Value = Pose> {
+    let place = || -reach_cm..reach_cm;
+    (place(), place(), -turn..turn).prop_map(|(x, y, a)| Pose::new(x, y, a))
+}
+
+/// A pose moved by a step in x (0), in y (1) or in its heading (2).
+pub fn displaced(pose: &Pose, direction: usize, step: f64) -> Pose {
+    let mut numbers = [pose.position.x, pose.position.y, pose.heading];
+    numbers[direction] += step;
+    Pose::new(numbers[0], numbers[1], numbers[2])
 }
 
 /// Classical Runge–Kutta of order 4 over `steps` steps; `rate(state, time)`.
@@ -316,6 +367,50 @@ pub fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
         }
     }
     0.5 * (low + high)
+}
+
+/// Whether two numbers of order 1 to 100 are equal but for rounding.
+pub fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-12
+}
+
+/// Fails unless a number is as near to the expected one as it should be.
+#[track_caller]
+pub fn assert_near(found: f64, expected: f64, tolerance: f64, what: impl Debug) {
+    let error = (found - expected).abs();
+    assert!(error < tolerance, "{what:?}: {found}, not {expected}");
+}
+
+/// Fails unless a velocity [cm/s, cm/s, rad/s] is the expected one, but for the rounding of poses that touch:
+/// about 1e-14 cm, over dt = 0.02 s.
+#[track_caller]
+pub fn assert_velocity(found: &Velocity, expected: [f64; 3], what: impl Debug) {
+    let found = [found.linear.x, found.linear.y, found.angular];
+    let worst = (0..3)
+        .map(|i| (found[i] - expected[i]).abs())
+        .fold(0.0, f64::max);
+    assert!(worst < 1e-11, "{what:?}: {found:?}, not {expected:?}");
+}
+
+/// Fails unless all contact problems so far were solved exactly.
+#[track_caller]
+pub fn assert_solved(flock: &Flock) {
+    let statistics = flock.statistics();
+    assert!(statistics.worst_residual_cm_s <= 1e-10, "{statistics:?}");
+    assert_eq!(statistics.unsolved, 0, "{statistics:?}");
+}
+
+/// The time that velocities belong to: leapfrog has them half a substep earlier.
+pub fn time_of_velocities(scheme: Scheme, time_s: f64, dt_s: f64) -> f64 {
+    match scheme {
+        Scheme::Leapfrog => time_s - 0.5 * dt_s,
+        Scheme::Moreau | Scheme::Paper => time_s,
+    }
+}
+
+/// How long the kick of a run's first substep lasts: until the time that its velocities belong to.
+pub fn first_kick_s(scheme: Scheme, dt_s: f64) -> f64 {
+    time_of_velocities(scheme, dt_s, dt_s)
 }
 
 /// The name of the field that a refusal names.

@@ -3,7 +3,7 @@
 //!
 //! On paper: a boat that heads at the wall from the right and its turned copy from above meet it alike.
 
-use crate::support::{SCHEMES, driven, farthest_apart, flock_of, take_substeps};
+use crate::support::{SCHEMES, changed, driven, farthest_apart, flock_of, take_substeps};
 use flockenv::geometry::{Pose, Vec2, Velocity};
 use flockenv::parameters::{Pool, Scheme};
 use flockenv::{Flock, FlockParameters};
@@ -65,10 +65,7 @@ fn map(
 #[test]
 fn a_turned_wall_hit_is_the_same_hit() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            pool: Pool::NARROW,
-            ..driven(scheme)
-        };
+        let p = changed(driven(scheme), |p| p.pool = Pool::NARROW);
         let mut right = flock_of(&p, &[([80.0, 0.0, 0.4], [15.0, 2.0, 0.0])]);
         let mut above = flock_of(&p, &[([0.0, 80.0, 0.4 + FRAC_PI_2], [-2.0, 15.0, 0.0])]);
         take_substeps(&mut right, 50);

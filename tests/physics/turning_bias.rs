@@ -5,16 +5,13 @@
 //! c1·w³ + c3·w·(u·ẋ) = c2·s·(u·ẋ) with u·ẋ = v0·c0²/(c0² + w²); backing, the bias sets the two
 //! preferred rates apart.
 
-use crate::steady_turning::steady_rate;
-use crate::support::{SCHEMES, bits, driven, flock_of};
+use crate::steady_turning::{steady_rate, turning_with};
+use crate::support::{SCHEMES, backing, bits, changed, driven, flock_of};
 use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;
 
 fn biased(scheme: Scheme, turning_bias: f64) -> FlockParameters {
-    FlockParameters {
-        turning_bias,
-        ..driven(scheme)
-    }
+    changed(driven(scheme), |p| p.turning_bias = turning_bias)
 }
 
 /// Turning rate of a lone boat from this one, after a minute.
@@ -29,9 +26,8 @@ fn a_biased_boat_circles_at_the_steady_rate() {
     for scheme in SCHEMES {
         for bias in [0.3, 1.0, -0.7] {
             let p = biased(scheme, bias);
-            let range = if bias > 0.0 { (0.0, 1.0) } else { (-1.0, 0.0) };
             let found = final_spin(&p, 0.0);
-            let expected = steady_rate(&p, 15.0, bias, p.dt_s, range);
+            let expected = steady_rate(&p, 15.0, bias, p.dt_s, turning_with(bias));
             assert!((found - expected).abs() < 1e-10, "{scheme:?}: {found}");
             // Table 3's boats: 0.1 rad/s at full rudder, in proportion below.
             assert!((found - 0.1 * bias).abs() < 0.002);
@@ -44,9 +40,8 @@ fn backing_the_bias_sets_the_two_preferred_rates_apart() {
     for scheme in SCHEMES {
         let p = FlockParameters {
             c2: 1.0,
-            fw_s: 0.0,
-            bw_s: 1.0,
-            ..biased(scheme, 0.5)
+            turning_bias: 0.5,
+            ..backing(scheme)
         };
         let (left, right) = (final_spin(&p, 0.01), final_spin(&p, -3.0));
         let expected_left = steady_rate(&p, -15.0, 0.5, p.dt_s, (0.6, 5.0));
@@ -86,10 +81,7 @@ fn a_biased_boat_is_a_leader_with_its_rudder_held_there() {
 fn leaders_have_no_bias() {
     for scheme in SCHEMES {
         let run = |turning_bias| {
-            let p = FlockParameters {
-                n_leaders: 1,
-                ..biased(scheme, turning_bias)
-            };
+            let p = changed(biased(scheme, turning_bias), |p| p.n_leaders = 1);
             let mut flock = flock_of(&p, &[([0.0; 3], [0.0; 3])]);
             flock.advance(5.0, Some(&[0.2])).expect("finite motion");
             bits(&flock)

@@ -4,7 +4,7 @@
 //! On paper: boats with preferred speeds v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
 //! flock of equal boats at v0/(1 + κ), or at v0 − cap.
 
-use crate::support::{SCHEMES, driven, flock_of, runge_kutta};
+use crate::support::{SCHEMES, assert_near, driven, flock_of, runge_kutta};
 use flockenv::geometry::Vec2;
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
@@ -40,12 +40,8 @@ fn tangential(flock: &Flock, boat: usize) -> f64 {
     flock.velocities()[boat].linear.dot(&tangent)
 }
 
-fn assert_near(found: f64, expected: f64, what: Scheme) {
-    assert!(
-        (found - expected).abs() < 1e-4,
-        "{what:?}: {found}, not {expected}"
-    );
-}
+/// What is left of an approach by exp(−c0·t), in cm/s.
+const LEFT: f64 = 1e-4;
 
 #[test]
 fn a_flock_slows_itself_down() {
@@ -55,7 +51,8 @@ fn a_flock_slows_itself_down() {
                 let mut flock = ring(&with_current(scheme, gain, 100.0), 5, turn);
                 flock.advance(40.0, None).expect("finite motion");
                 for boat in 0..5 {
-                    assert_near(tangential(&flock, boat), sign * 15.0 / (1.0 + gain), scheme);
+                    let expected = sign * 15.0 / (1.0 + gain);
+                    assert_near(tangential(&flock, boat), expected, LEFT, scheme);
                 }
             }
         }
@@ -68,7 +65,7 @@ fn the_cap_caps_the_current() {
         for (cap, expected) in [(3.0, 12.0), (5.0, 10.0), (7.4, 7.6), (7.6, 7.5)] {
             let mut flock = ring(&with_current(scheme, 1.0, cap), 4, -FRAC_PI_2);
             flock.advance(40.0, None).expect("finite motion");
-            assert_near(tangential(&flock, 2), -expected, scheme);
+            assert_near(tangential(&flock, 2), -expected, LEFT, scheme);
         }
     }
 }
@@ -82,7 +79,7 @@ fn only_the_mean_tangential_velocity_moves_the_water() {
         flock.advance(40.0, None).expect("finite motion");
         for (pose, velocity) in flock.poses().iter().zip(flock.velocities()) {
             let speed = velocity.linear.dot(&pose.position.normalize());
-            assert_near(speed, 15.0, scheme);
+            assert_near(speed, 15.0, LEFT, scheme);
         }
         // Nor do two boats that go opposite ways round.
         let opposite = [
@@ -91,8 +88,8 @@ fn only_the_mean_tangential_velocity_moves_the_water() {
         ];
         let mut flock = flock_of(&p, &opposite);
         flock.advance(40.0, None).expect("finite motion");
-        assert_near(tangential(&flock, 0), 15.0, scheme);
-        assert_near(tangential(&flock, 1), -15.0, scheme);
+        assert_near(tangential(&flock, 0), 15.0, LEFT, scheme);
+        assert_near(tangential(&flock, 1), -15.0, LEFT, scheme);
     }
 }
 
@@ -111,8 +108,8 @@ fn a_boat_without_a_motor_drifts_with_the_water_and_does_not_steer() {
         };
         let mut flock = ring(&p, 10, FRAC_PI_2);
         flock.advance(40.0, Some(&[0.0])).expect("finite motion");
-        assert_near(tangential(&flock, 0), 1.8, scheme);
-        assert_near(tangential(&flock, 1), -8.2, scheme);
+        assert_near(tangential(&flock, 0), 1.8, LEFT, scheme);
+        assert_near(tangential(&flock, 1), -8.2, LEFT, scheme);
         // Full rudder: nothing flows past it.
         flock.advance(10.0, Some(&[1.0])).expect("finite motion");
         assert!(flock.velocities()[0].angular.abs() < 1e-6, "{scheme:?}");

@@ -4,19 +4,16 @@
 //! not worth a factor, whose rows would all be as long as the set. Where boats move by many lengths in a substep, every
 //! pair is in reach, n²/2 of them: the substep is cut until a boat reaches a few.
 
-use crate::support::{bits, driven};
+use crate::support::{annulus, bits, changed, driven, table_3};
 use flockenv::contact::Statistics;
 use flockenv::geometry::{Pose, Vec2, Velocity};
 use flockenv::integrator::Steering;
-use flockenv::parameters::{Pool, Preset, Scheme};
+use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockError, FlockParameters};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 fn crowd(n_boats: usize) -> FlockParameters {
-    FlockParameters {
-        n_boats,
-        ..FlockParameters::preset(Preset::Simulation)
-    }
+    changed(table_3(), |p| p.n_boats = n_boats)
 }
 
 /// What so many steps of `dt_s` did.
@@ -37,10 +34,7 @@ fn boats_far_too_fast_for_their_substep_cost_about_what_others_do() {
         c1: 6.0,
         ..crowd(300)
     };
-    let noisy = FlockParameters {
-        c4: 1000.0,
-        ..crowd(300)
-    };
+    let noisy = changed(crowd(300), |p| p.c4 = 1000.0);
     let long = FlockParameters {
         dt_s: 1.0,
         speed_cm_s: 100.0,
@@ -91,10 +85,7 @@ fn contacts_that_are_too_much_work_are_an_error_and_change_nothing() {
 fn packed_flocks_are_far_from_the_bound() {
     // A ring of 3 000 boats that leave a tenth of it free, half a minute long without a pause.
     let p = FlockParameters {
-        pool: Pool {
-            outer_radius_cm: 440.0,
-            inner_radius_cm: 100.0,
-        },
+        pool: annulus(440.0, 100.0),
         bw_s: 0.0,
         dt_s: 0.1,
         ..crowd(3000)
