@@ -1,10 +1,10 @@
 //! A flock's bits depend neither on the batch that it is in nor on the number of threads; a step or a
 //! reset happens as a whole or not at all.
 
-use crate::support::{batch, parameters, seeded, settings, step};
+use crate::support::{batch, changed, flock, parameters, requested, seeded, settings, step};
 use flockenv::FlockError;
 use flockenv::environment::{
-    Autoreset, Drawn, EnvBatch, EnvSettings, FlockEnv, ResetRequest, Start, TargetChoice, Upcoming,
+    Autoreset, Drawn, EnvBatch, FlockEnv, ResetRequest, Start, TargetChoice, Upcoming,
 };
 use flockenv::parameters::{FlockParameters, Scheme, Target, Targets};
 use rayon::ThreadPoolBuilder;
@@ -70,31 +70,25 @@ fn refused_steps_move_nothing() {
     step(&mut batch, &[f64::INFINITY, -3.0, 0.0, 0.0]).unwrap();
 }
 
+/// Fails unless something is refused for want of an episode.
+#[track_caller]
+fn assert_waits<T>(result: flockenv::Result<T>) {
+    assert!(matches!(result, Err(FlockError::Episode(_))));
+}
+
 #[test]
 fn steps_wait_for_a_reset() {
     let mut fresh = EnvBatch::new(settings(3), vec![parameters(1)]).unwrap();
-    assert!(matches!(
-        step(&mut fresh, &[0.0]),
-        Err(FlockError::Episode(_))
-    ));
-    assert!(matches!(
-        fresh.reset(&[Some(ResetRequest::default())]),
-        Err(FlockError::Episode(_))
-    ));
-    let disabled = EnvSettings {
-        autoreset_mode: Autoreset::Disabled,
-        ..settings(3)
-    };
+    assert_waits(step(&mut fresh, &[0.0]));
+    assert_waits(fresh.reset(&[Some(ResetRequest::default())]));
+    let disabled = changed(settings(3), |own| own.autoreset_mode = Autoreset::Disabled);
     let mut batch = batch(disabled, &[1, 1], 0);
     for time in 0..3 {
         let written = step(&mut batch, &[0.0; 2]).unwrap();
         assert_eq!(written.truncated, [time == 2; 2]);
     }
     let before = batch.to_bytes();
-    assert!(matches!(
-        step(&mut batch, &[0.0; 2]),
-        Err(FlockError::Episode(_))
-    ));
+    assert_waits(step(&mut batch, &[0.0; 2]));
     assert_eq!(before, batch.to_bytes());
     batch.reset(&[None, Some(ResetRequest::default())]).unwrap();
     assert!(step(&mut batch, &[0.0; 2]).is_err());
@@ -106,13 +100,11 @@ fn steps_wait_for_a_reset() {
 fn resets_happen_as_a_whole() {
     let mut batch = batch(settings(30), &[1, 1], 0);
     let before = batch.to_bytes();
-    let bad = ResetRequest {
-        start: Start::Snapshot {
-            bytes: b"no snapshot".to_vec(),
-            noise_seed: None,
-        },
-        ..ResetRequest::default()
+    let start = Start::Snapshot {
+        bytes: b"no snapshot".to_vec(),
+        noise_seed: None,
     };
+    let bad = requested(|request| request.start = start);
     assert!(batch.reset(&[seeded(7), Some(bad)]).is_err());
     assert!(batch.reset(&[seeded(7)]).is_err());
     assert_eq!(before, batch.to_bytes());
@@ -132,10 +124,7 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
         Autoreset::SameStep,
         Autoreset::Disabled,
     ] {
-        let own = EnvSettings {
-            autoreset_mode: mode,
-            ..settings(30)
-        };
+        let own = changed(settings(30), |own| own.autoreset_mode = mode);
         let members = vec![parameters(1), wild.clone(), parameters(1)];
         let mut batch = EnvBatch::new(own.clone(), members).unwrap();
         batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
@@ -157,10 +146,7 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
             [(steps, false), (steps - 1, true), (steps, false)]
         );
         if mode == Autoreset::Disabled {
-            assert!(matches!(
-                step(&mut batch, &[0.5; 3]),
-                Err(FlockError::Episode(_))
-            ));
+            assert_waits(step(&mut batch, &[0.5; 3]));
             batch.reset(&[None, seeded(4), None]).unwrap();
         } else {
             step(&mut batch, &[0.5; 3]).unwrap();
@@ -175,29 +161,14 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
         for _ in 0..episodes(&batch)[2].0 {
             step(&mut alone, &[0.5]).unwrap();
         }
-        let poses = |batch: &EnvBatch, flock: usize| {
-            batch.envs()[flock]
-                .episode()
-                .unwrap()
-                .flock()
-                .poses()
-                .to_vec()
-        };
-        assert_eq!(poses(&batch, 2), poses(&alone, 0));
+        assert_eq!(flock(&batch, 2).poses(), flock(&alone, 0).poses());
     }
 }
 
 #[test]
 fn what_is_upcoming_holds_from_the_next_episode_on() {
     let mut batch = batch(settings(3), &[1, 2], 0);
-    let bw_s = |batch: &EnvBatch, flock: usize| {
-        batch.envs()[flock]
-            .episode()
-            .unwrap()
-            .flock()
-            .parameters()
-            .bw_s
-    };
+    let bw_s = |batch: &EnvBatch, place: usize| flock(batch, place).parameters().bw_s;
     let own = bw_s(&batch, 0);
     let longer = Upcoming {
         bw_s: Some(Drawn::Fixed(1.25)),
@@ -211,10 +182,7 @@ fn what_is_upcoming_holds_from_the_next_episode_on() {
         step(&mut batch, &[0.0; 3]).unwrap();
     }
     assert_eq!((bw_s(&batch, 0), bw_s(&batch, 1)), (own, 1.25));
-    let once = ResetRequest {
-        bw_s: Some(Drawn::Fixed(0.5)),
-        ..ResetRequest::default()
-    };
+    let once = requested(|request| request.bw_s = Some(Drawn::Fixed(0.5)));
     batch.reset(&[None, Some(once)]).unwrap();
     assert_eq!(bw_s(&batch, 1), 0.5);
     batch.reset(&[None, Some(ResetRequest::default())]).unwrap();

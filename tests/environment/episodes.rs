@@ -1,6 +1,6 @@
 //! What a seed fixes, when targets change, what autoresets do, what servos do.
 
-use crate::support::{batch, parameters, settings, step};
+use crate::support::{batch, changed, flock, parameters, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{
     Autoreset, Drawn, EnvSettings, EpisodeSchedule, EpisodeSeeds, TargetChoice,
@@ -10,9 +10,8 @@ use flockenv::parameters::Target;
 #[test]
 fn the_first_episode_has_the_seed_itself() {
     let batch = batch(settings(30), &[2], 17);
-    let own = batch.envs()[0].episode().unwrap().flock();
-    let flock = Flock::new(parameters(2), 17).unwrap();
-    assert_eq!(own.poses(), flock.poses());
+    let expected = Flock::new(parameters(2), 17).unwrap();
+    assert_eq!(flock(&batch, 0).poses(), expected.poses());
     let mut seeds = EpisodeSeeds::new(17);
     let drawn: Vec<u64> = (0..4).map(|_| seeds.next_seed()).collect();
     assert_eq!(drawn[0], 17);
@@ -25,10 +24,8 @@ fn the_first_episode_has_the_seed_itself() {
 
 #[test]
 fn targets_alternate_by_quarters() {
-    let plan = EnvSettings {
-        target: TargetChoice::Alternate,
-        ..EnvSettings::default()
-    };
+    let target = TargetChoice::Alternate;
+    let plan = changed(EnvSettings::default(), |own| own.target = target);
     assert_eq!(plan.steps(), 9600);
     assert_eq!(EnvSettings::default().steps(), 4800);
     let (mut episode, _) = EpisodeSchedule::new(&plan, &plan.target, 0);
@@ -74,10 +71,7 @@ fn random_targets_are_even_and_noise_levels_uniform() {
 
 #[test]
 fn autoresets_start_the_same_episode() {
-    let same_step = EnvSettings {
-        autoreset_mode: Autoreset::SameStep,
-        ..settings(4)
-    };
+    let same_step = changed(settings(4), |own| own.autoreset_mode = Autoreset::SameStep);
     let mut now = batch(same_step, &[2], 0);
     let mut later = batch(settings(4), &[2], 0);
     for time in 0..4 {
@@ -102,24 +96,15 @@ fn autoresets_start_the_same_episode() {
 
 #[test]
 fn servos_move_by_their_lag_and_rate() {
-    let none = EnvSettings::default();
-    assert_eq!(none.servo().moved(-1.0, 1.0), 1.0);
-    let rate = EnvSettings {
-        rudder_rate_per_s: Some(4.0),
-        ..none.clone()
-    };
+    let none = EnvSettings::default;
+    assert_eq!(none().servo().moved(-1.0, 1.0), 1.0);
+    let rate = changed(none(), |own| own.rudder_rate_per_s = Some(4.0));
     assert!((rate.servo().moved(-1.0, 1.0) + 0.6).abs() < 1e-12);
     assert_eq!(rate.servo().moved(0.9, 1.0), 1.0);
-    let lag = EnvSettings {
-        rudder_lag_s: 0.2,
-        ..none.clone()
-    };
+    let lag = changed(none(), |own| own.rudder_lag_s = 0.2);
     let expected = 1.0 - 2.0 * (-0.5_f64).exp();
     assert!((lag.servo().moved(-1.0, 1.0) - expected).abs() < 1e-12);
-    let levels = EnvSettings {
-        rudder_levels: Some(3),
-        ..none
-    };
+    let levels = changed(none(), |own| own.rudder_levels = Some(3));
     assert_eq!(
         [0.0, 1.0, 2.0].map(|level| levels.command(level)),
         [-1.0, 0.0, 1.0]

@@ -1,17 +1,25 @@
 //! With a target for each leader, a leader sees, is rewarded and steers as if its target were everybody's.
 
-use crate::support::{Written, batch, parameters, seeded, settings, step};
+use crate::support::{Written, batch, changed, flock, parameters, seeded, settings, step};
 use flockenv::Flock;
 use flockenv::environment::observation::FlockFeatures;
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, ResetRequest, TargetChoice};
 use flockenv::environment::{RewardWeights, Weights};
 use flockenv::parameters::Target::{self, Clockwise, CounterClockwise};
-use flockenv::parameters::{FlockParameters, Targets, Value};
+use flockenv::parameters::{Targets, Value};
 
 const MIXED: [Target; 3] = [Clockwise, CounterClockwise, Clockwise];
 
 fn each(targets: &[Target]) -> TargetChoice {
     TargetChoice::Fixed(Targets::Each(targets.to_vec()))
+}
+
+fn all(target: Target) -> TargetChoice {
+    TargetChoice::Fixed(target.into())
+}
+
+fn mixed_and_unmixed() -> [TargetChoice; 3] {
+    [each(&MIXED), all(Clockwise), all(CounterClockwise)]
 }
 
 /// Every reward term has a weight, those from contacts too.
@@ -31,12 +39,7 @@ fn rows(written: &Written) -> Vec<(&[f32], f64)> {
 /// Steps three batches whose targets are mixed, all clockwise and all counter-clockwise through the same motion, and
 /// compares each leader of the first with its own in the batch of its target.
 fn compare(change: impl Fn(&mut EnvSettings)) {
-    let choices = [
-        each(&MIXED),
-        TargetChoice::Fixed(Clockwise.into()),
-        TargetChoice::Fixed(CounterClockwise.into()),
-    ];
-    let mut batches = choices.map(|target| {
+    let mut batches = mixed_and_unmixed().map(|target| {
         let mut own = towards(200, target);
         change(&mut own);
         batch(own, &[3], 5)
@@ -58,15 +61,10 @@ fn compare(change: impl Fn(&mut EnvSettings)) {
             .collect();
         for (leader, target) in MIXED.iter().enumerate() {
             let own = if *target == Clockwise { 1 } else { 2 };
-            assert_eq!(
-                rows(&written[0])[leader],
-                rows(&written[own])[leader],
-                "at {time}"
-            );
+            let [found, expected] = [0, own].map(|batch| rows(&written[batch])[leader]);
+            assert_eq!(found, expected, "at {time}");
         }
-        assert_eq!(batches[0].envs()[0].episode().unwrap().flock().poses(), {
-            batches[2].envs()[0].episode().unwrap().flock().poses()
-        });
+        assert_eq!(flock(&batches[0], 0).poses(), flock(&batches[2], 0).poses());
     }
 }
 
@@ -82,12 +80,7 @@ fn a_leader_sees_and_is_rewarded_as_if_its_target_were_everybodys() {
 #[test]
 fn an_action_that_stands_for_a_heading_is_taken_from_the_leaders_own_target() {
     for mode in [ActionMode::Heading, ActionMode::Lean] {
-        let rudders = [
-            each(&MIXED),
-            TargetChoice::Fixed(Clockwise.into()),
-            TargetChoice::Fixed(CounterClockwise.into()),
-        ]
-        .map(|target| {
+        let rudders = mixed_and_unmixed().map(|target| {
             let mut own = towards(5, target);
             own.action_mode = mode;
             let mut batch = batch(own, &[3], 5);
@@ -101,41 +94,28 @@ fn an_action_that_stands_for_a_heading_is_taken_from_the_leaders_own_target() {
 
 #[test]
 fn a_list_of_equal_targets_is_one_target() {
-    let mut one = batch(
-        towards(60, TargetChoice::Fixed(CounterClockwise.into())),
-        &[3],
-        1,
-    );
+    let mut one = batch(towards(60, all(CounterClockwise)), &[3], 1);
     let mut list = batch(towards(60, each(&[CounterClockwise; 3])), &[3], 1);
     for time in 0..60 {
         let actions = [0.3, -1.0, f64::from(time).cos()];
         assert_eq!(step(&mut one, &actions), step(&mut list, &actions));
         let observed = [&one, &list].map(|batch| {
             let env = &batch.envs()[0];
-            let (mut state, mut features) = (
-                vec![0.0; env.state_size()],
-                vec![0.0; 3 * FlockFeatures::SIZE],
-            );
+            let mut state = vec![0.0; env.state_size()];
+            let mut features = vec![0.0; 3 * FlockFeatures::SIZE];
             env.observe_state(&mut state);
             env.observe_features(&mut features);
-            (state, features, env.episode().unwrap().summary())
+            let summary = format!("{:?}", env.episode().unwrap().summary());
+            (state, features, summary)
         });
-        assert_eq!(observed[0].0, observed[1].0);
-        assert_eq!(observed[0].1, observed[1].1);
-        assert_eq!(
-            format!("{:?}", observed[0].2),
-            format!("{:?}", observed[1].2)
-        );
+        assert_eq!(observed[0], observed[1]);
     }
 }
 
 #[test]
 fn the_papers_law_steers_each_leader_to_its_own_target() {
     let law = |target: Targets| {
-        let own = FlockParameters {
-            target,
-            ..parameters(3)
-        };
+        let own = changed(parameters(3), |p| p.target = target);
         let flock = Flock::new(own, 9).unwrap();
         [0, 1, 2].map(|leader| flock.steering_law(leader))
     };
@@ -160,9 +140,9 @@ fn the_summary_is_towards_the_target_of_leader_0() {
         (order, found.share_towards_target)
     };
     let mixed = summary(each(&MIXED));
-    assert_eq!(mixed, summary(TargetChoice::Fixed(Clockwise.into())));
+    assert_eq!(mixed, summary(all(Clockwise)));
     assert!(mixed.0 != 0.0);
-    let ccw = summary(TargetChoice::Fixed(CounterClockwise.into()));
+    let ccw = summary(all(CounterClockwise));
     assert!((ccw.0 + mixed.0).abs() < 1e-12);
 }
 
@@ -174,10 +154,7 @@ fn the_global_state_has_the_mean_of_the_targets() {
         batch.envs()[0].observe_state(&mut state);
         state
     };
-    let (mixed, cw) = (
-        state(each(&MIXED)),
-        state(TargetChoice::Fixed(Clockwise.into())),
-    );
+    let (mixed, cw) = (state(each(&MIXED)), state(all(Clockwise)));
     let place = cw.len() - 2;
     assert_eq!((mixed[place], cw[place]), (1.0 / 3.0, 1.0));
     assert_eq!(mixed[..place], cw[..place]);
@@ -207,10 +184,8 @@ fn lists_of_another_length_are_refused_before_anything_changes() {
     assert!(flock.set_target(Targets::Each(vec![Clockwise])).is_err());
     assert_eq!(flock.parameters().target, Clockwise.into());
     for leaders in [0, 1] {
-        let own = FlockParameters {
-            target: Targets::Each(Vec::new()),
-            ..parameters(leaders)
-        };
+        let none = Targets::Each(Vec::new());
+        let own = changed(parameters(leaders), |p| p.target = none);
         assert!(own.check().is_err());
     }
 }

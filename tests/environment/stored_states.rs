@@ -1,6 +1,6 @@
 //! Bytes of a batch continue bit for bit, and no bytes at all reach a panic.
 
-use crate::support::{batch, settings, step};
+use crate::support::{batch, changed, flock, settings, step};
 use flockenv::Flock;
 use flockenv::environment::{
     Autoreset, Drawn, EnvBatch, EnvSettings, RewardTerm, RewardWeights, TERMS, TargetChoice,
@@ -22,11 +22,8 @@ fn rich_settings() -> EnvSettings {
 #[test]
 fn a_restored_batch_goes_on_bit_for_bit() {
     for autoreset_mode in [Autoreset::NextStep, Autoreset::SameStep] {
-        let settings = EnvSettings {
-            autoreset_mode,
-            ..rich_settings()
-        };
-        let mut original = batch(settings, &[1, 3], 0);
+        let own = changed(rich_settings(), |own| own.autoreset_mode = autoreset_mode);
+        let mut original = batch(own, &[1, 3], 0);
         for time in 0..40 {
             let bytes = original.to_bytes();
             let mut copy = EnvBatch::from_bytes(&bytes).unwrap();
@@ -209,7 +206,7 @@ fn in_parts_of_7_bits(mut number: u64) -> Vec<u8> {
 #[test]
 fn states_with_numbers_that_no_boat_has_are_refused() {
     let batch = batch(settings(12), &[1], 0);
-    let flock = batch.envs()[0].episode().unwrap().flock();
+    let flock = flock(&batch, 0);
     let mut moved = flock.clone();
     moved.advance(0.5, None).unwrap();
     let snapshot = moved.snapshot();
@@ -265,7 +262,7 @@ fn states_with_numbers_that_no_episode_has_are_refused() {
     let mut own = batch(rich_settings(), &[1], 0);
     step(&mut own, &[0.5]).unwrap();
     // A late camera still has what is past for the flock.
-    let past = own.envs()[0].episode().unwrap().flock().poses()[4].heading;
+    let past = flock(&own, 0).poses()[4].heading;
     step(&mut own, &[0.5]).unwrap();
     let bw_s = 0.6180339;
     let upcoming = Upcoming {

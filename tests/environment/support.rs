@@ -1,5 +1,6 @@
 //! Small scenes and a shorthand for steps.
 
+use flockenv::Flock;
 use flockenv::environment::{BatchRows, EnvBatch, EnvSettings, ResetRequest};
 use flockenv::parameters::{FlockParameters, Pool, Preset};
 
@@ -21,12 +22,25 @@ pub fn settings(steps: u32) -> EnvSettings {
     }
 }
 
+/// Settings, parameters or a request with something changed.
+pub fn changed<T>(mut of: T, change: impl FnOnce(&mut T)) -> T {
+    change(&mut of);
+    of
+}
+
 /// A request with a seed.
 pub fn seeded(seed: u64) -> Option<ResetRequest> {
-    Some(ResetRequest {
-        seed: Some(seed),
-        ..ResetRequest::default()
-    })
+    Some(requested(|request| request.seed = Some(seed)))
+}
+
+/// A request for what is changed in it.
+pub fn requested(change: impl FnOnce(&mut ResetRequest)) -> ResetRequest {
+    changed(ResetRequest::default(), change)
+}
+
+/// A flock of a batch, in its episode.
+pub fn flock(batch: &EnvBatch, place: usize) -> &Flock {
+    batch.envs()[place].episode().unwrap().flock()
 }
 
 /// A batch of flocks with these numbers of leaders, seeded one after another.
