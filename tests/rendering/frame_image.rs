@@ -7,10 +7,30 @@ use flockenv::parameters::{Disc, FlockParameters, Pool, Preset, Target, Wall};
 use flockenv::{Flock, FlockError, FrameRenderer};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const OPEN_WATER: Pool = Pool {
-    outer_radius_cm: f64::INFINITY,
-    inner_radius_cm: 0.0,
-};
+const OPEN_WATER: Pool = pool(f64::INFINITY, 0.0);
+
+const fn pool(outer_radius_cm: f64, inner_radius_cm: f64) -> Pool {
+    Pool {
+        outer_radius_cm,
+        inner_radius_cm,
+    }
+}
+
+/// The flock with boats at rest elsewhere.
+fn put(flock: &mut Flock, poses: &[Pose], time_s: f64) {
+    flock
+        .set_state(poses, &[Velocity::default(); 4], time_s, false)
+        .unwrap();
+}
+
+/// The flock where it is, with other parameters.
+fn changed(flock: &Flock, change: impl FnOnce(&mut FlockParameters)) -> Flock {
+    let mut parameters = flock.parameters().clone();
+    change(&mut parameters);
+    let mut other = Flock::new(parameters, 1).unwrap();
+    put(&mut other, flock.poses(), flock.time_s());
+    other
+}
 
 /// Four boats on the axes of a pool, two of them leaders, circling clockwise.
 fn circling(pool: Pool, target: Target) -> Flock {
@@ -28,9 +48,7 @@ fn circling(pool: Pool, target: Target) -> Flock {
         Pose::new(-70.0, 0.0, FRAC_PI_2),
         Pose::new(0.0, -70.0, PI),
     ];
-    flock
-        .set_state(&poses, &[Velocity::default(); 4], 12.5, false)
-        .unwrap();
+    put(&mut flock, &poses, 12.5);
     flock
 }
 
@@ -87,9 +105,7 @@ fn color_shows_the_direction_or_the_role() {
     for (heading, expected) in headings {
         let mut poses = flock.poses().to_vec();
         poses[3].heading = heading;
-        flock
-            .set_state(&poses, &[Velocity::default(); 4], 12.5, false)
-            .unwrap();
+        put(&mut flock, &poses, 12.5);
         let frame = drawn(&flock, 300, 300);
         let stern = (-4.0 * libm::cos(heading), -70.0 - 4.0 * libm::sin(heading));
         assert_eq!(color_at(&frame, stern.0, stern.1), expected);
@@ -151,15 +167,8 @@ const HASHES: [u64; 3] = [
 #[test]
 fn without_leaders_there_is_no_target_in_the_picture() {
     let leaderless = |target| {
-        let mut flock = circling(Pool::NARROW, target);
-        let parameters = FlockParameters {
-            n_leaders: 0,
-            ..flock.parameters().clone()
-        };
-        let (poses, velocities) = (flock.poses().to_vec(), flock.velocities().to_vec());
-        flock = Flock::new(parameters, 1).unwrap();
-        flock.set_state(&poses, &velocities, 12.5, false).unwrap();
-        drawn(&flock, 300, 300)
+        let led = circling(Pool::NARROW, target);
+        drawn(&changed(&led, |p| p.n_leaders = 0), 300, 300)
     };
     let frame = leaderless(Target::Clockwise);
     assert_eq!(frame, leaderless(Target::CounterClockwise));
@@ -175,21 +184,9 @@ fn what_was_drawn_before_leaves_no_trace() {
     let scenes = [
         circling(Pool::NARROW, Target::Clockwise),
         circling(Pool::NARROW, Target::CounterClockwise),
-        circling(
-            Pool {
-                inner_radius_cm: 0.0,
-                ..Pool::NARROW
-            },
-            Target::Clockwise,
-        ),
+        circling(pool(90.0, 0.0), Target::Clockwise),
         circling(OPEN_WATER, Target::Clockwise),
-        circling(
-            Pool {
-                inner_radius_cm: 40.0,
-                ..OPEN_WATER
-            },
-            Target::Clockwise,
-        ),
+        circling(pool(f64::INFINITY, 40.0), Target::Clockwise),
     ];
     let fresh: Vec<_> = scenes.iter().map(|flock| drawn(flock, 200, 150)).collect();
     let mut renderer = FrameRenderer::new(200, 150).unwrap();
@@ -209,9 +206,7 @@ fn open_water_follows_the_flock() {
             .collect()
     };
     for offset in [0.0, 1e3, 1e6, 9e8] {
-        flock
-            .set_state(&away(offset), &[Velocity::default(); 4], 0.0, false)
-            .unwrap();
+        put(&mut flock, &away(offset), 0.0);
         let frame = drawn(&flock, 300, 200);
         let amber = frame
             .chunks_exact(3)
@@ -221,9 +216,7 @@ fn open_water_follows_the_flock() {
     // As far apart as boats may be: small, but there.
     let corners = [(1e9, 1e9), (-1e9, 1e9), (-1e9, -1e9), (1e9, -1e9)];
     let poses = corners.map(|(x, y)| Pose::new(x, y, 0.0));
-    flock
-        .set_state(&poses, &[Velocity::default(); 4], 0.0, false)
-        .unwrap();
+    put(&mut flock, &poses, 0.0);
     drawn(&flock, 64, 4096);
 }
 
@@ -256,10 +249,7 @@ fn extreme_scenes_are_drawn() {
         },
         FlockParameters {
             n_boats: 3,
-            pool: Pool {
-                outer_radius_cm: 1e6,
-                inner_radius_cm: 1e-3,
-            },
+            pool: pool(1e6, 1e-3),
             ..FlockParameters::preset(Preset::Simulation)
         },
         FlockParameters {
@@ -290,40 +280,27 @@ fn extreme_scenes_are_drawn() {
 
 #[test]
 fn obstacles_are_where_they_are_and_end_at_the_pools_wall() {
-    let with = |pool: Pool, obstacles: bool| {
-        let mut flock = circling(pool, Target::Clockwise);
-        let mut parameters = flock.parameters().clone();
-        if obstacles {
-            parameters.discs = vec![
-                Disc {
-                    x_cm: 40.0,
-                    y_cm: 40.0,
-                    radius_cm: 12.0,
-                },
-                Disc {
-                    x_cm: -65.0,
-                    y_cm: -65.0,
-                    radius_cm: 10.0,
-                },
-            ];
-            parameters.walls = vec![Wall {
-                x0_cm: -120.0,
-                y0_cm: 35.0,
-                x1_cm: -20.0,
-                y1_cm: 35.0,
-            }];
-        }
-        let (poses, velocities) = (flock.poses().to_vec(), flock.velocities().to_vec());
-        flock = Flock::new(parameters, 1).unwrap();
-        flock.set_state(&poses, &velocities, 12.5, false).unwrap();
-        flock
+    let disc = |x_cm, y_cm, radius_cm| Disc {
+        x_cm,
+        y_cm,
+        radius_cm,
     };
-    let pool = Pool {
-        outer_radius_cm: 90.0,
-        inner_radius_cm: 0.0,
+    let wall = Wall {
+        x0_cm: -120.0,
+        y0_cm: 35.0,
+        x1_cm: -20.0,
+        y1_cm: 35.0,
     };
+    let without = |pool| circling(pool, Target::Clockwise);
+    let with = |pool| {
+        changed(&without(pool), |p| {
+            p.discs = vec![disc(40.0, 40.0, 12.0), disc(-65.0, -65.0, 10.0)];
+            p.walls = vec![wall];
+        })
+    };
+    let disc_of_water = pool(90.0, 0.0);
     let (ground, wall, water) = ([0xF7, 0xF5, 0xF0], [0x7C, 0x86, 0x90], [0xDC, 0xEA, 0xF3]);
-    let frame = drawn(&with(pool, true), 300, 300);
+    let frame = drawn(&with(disc_of_water), 300, 300);
     assert_eq!(color_at(&frame, 40.0, 40.0), ground);
     assert_eq!(color_at(&frame, 40.0 + 11.7, 40.0), wall);
     assert_eq!(color_at(&frame, 40.0, 40.0 - 13.0), water);
@@ -336,11 +313,11 @@ fn obstacles_are_where_they_are_and_end_at_the_pools_wall() {
     }
     // One renderer draws pools that differ by their obstacles alone.
     let mut renderer = FrameRenderer::new(300, 300).unwrap();
-    let plain = drawn(&with(pool, false), 300, 300);
+    let plain = drawn(&without(disc_of_water), 300, 300);
     for _ in 0..2 {
-        assert!(renderer.draw(&with(pool, true)) == frame);
-        assert!(renderer.draw(&with(pool, false)) == plain);
+        assert!(renderer.draw(&with(disc_of_water)) == frame);
+        assert!(renderer.draw(&without(disc_of_water)) == plain);
     }
-    let open = drawn(&with(OPEN_WATER, true), 300, 300);
-    assert!(open != drawn(&with(OPEN_WATER, false), 300, 300));
+    let open = drawn(&with(OPEN_WATER), 300, 300);
+    assert!(open != drawn(&without(OPEN_WATER), 300, 300));
 }
