@@ -4,9 +4,11 @@ import dataclasses
 import importlib
 import importlib.util
 import inspect
+import io
 import re
 import shlex
 import sys
+import tokenize
 from functools import cache
 from pathlib import Path
 
@@ -27,10 +29,14 @@ WORD = re.compile(r"[^\W\d]\w*")
 CODE = ("*.py", "*.pyi", "*.rs", "*.mjs", "*.js", "*.html", "*.css", "*.toml", "*.yml", "*.slurm")
 #: What readers of a page make themselves, and names in files of other programs.
 OTHERS = {
+    "CONTRIBUTING.md": {"llvm-tools", "x86_64-unknown-linux-musl"},
+    "benches/README.md": {"callgrind_annotate"},
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
     "docs/extend/task.md": {"carousel.monitor.csv"},
     "docs/leaders.md": {"damped-law-POOL.csv", "damped-law-POOL-LEADERS.csv"},
+    "docs/other_learners.md": {"TanhNormal"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
+    "docs/speed_vs_error.md": {"boids"},
     "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
     "docs/tracks.md": {
         "individuals",
@@ -85,19 +91,44 @@ PAGES = _pages()
 
 
 @cache
-def _code() -> str:
+def _files_of_code() -> list[Path]:
     """All code of the repository, this folder of tests aside, which has lists of names."""
     files = [path for each in FOLDERS for kind in CODE for path in _files(each, kind)]
     files += [REPOSITORY / name for name in ("Makefile", "Cargo.toml", "pyproject.toml")]
     files += (*REPOSITORY.glob("*/*.sh"), *REPOSITORY.glob("benches/Makefile"))
     files += (REPOSITORY / ".github").rglob("*.yml")
-    files = [path for path in files if path.parent != Path(__file__).parent]
-    return "\n".join(path.read_text("utf-8", errors="ignore") for path in files)
+    return [path for path in files if path.parent != Path(__file__).parent]
+
+
+@cache
+def _code() -> str:
+    return "\n".join(path.read_text("utf-8", errors="ignore") for path in _files_of_code())
 
 
 @cache
 def _words() -> set[str]:
-    return {*WORD.findall(_code())}
+    """The words of the code. Comments and docstrings may speak of what there was."""
+    texts = (
+        _without_comments(path.suffix, path.read_text("utf-8", errors="ignore"))
+        for path in _files_of_code()
+    )
+    return {word for text in texts for word in WORD.findall(text)}
+
+
+def _without_comments(kind: str, text: str) -> str:
+    if kind in (".rs", ".mjs", ".js"):
+        return re.sub(r"(?<!:)//[^\n]*", "", text)
+    if kind not in (".py", ".pyi"):
+        return re.sub(r"(?m)(?:^|\s)#[^\n]*", "", text)
+    kept, starts = [], True
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        # A string that starts a statement is a docstring.
+        if token.type != tokenize.COMMENT and not (starts and token.type == tokenize.STRING):
+            kept.append(token.string)
+        if token.type not in (tokenize.COMMENT, tokenize.NL):
+            between = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT)
+            starts = token.type in between
+    return "\n".join(kept)
 
 
 @cache
@@ -319,3 +350,13 @@ def test_commands_and_imports_exist(page):
 )
 def test_what_does_not_exist_is_found(name):
     assert wrong_name(name)
+
+
+def test_comments_and_docstrings_name_nothing():
+    code = '"""One."""\ndef two():\n    """Three."""\n    return "four"  # five\n'
+    assert WORD.findall(_without_comments(".py", code)) == ["def", "two", "return", "four"]
+    assert WORD.findall(_without_comments(".rs", "//! One\nlet two = 3; // Four\n")) == [
+        "let",
+        "two",
+    ]
+    assert WORD.findall(_without_comments(".toml", "# One\ntwo = 3\n")) == ["two"]
