@@ -91,7 +91,7 @@ REWARD_TERMS: list[tuple[str, str]]
 _Floats: TypeAlias = NDArray[np.float64]
 _Singles: TypeAlias = NDArray[np.float32]
 _Columns: TypeAlias = dict[str, NDArray[Any]]
-# `flockenv.FlockParameters`, whose attribute core is what is used here.
+# `flockenv.FlockParameters`, whose attribute `_in_core` is what is used here.
 _Parameters: TypeAlias = Any
 
 @final

@@ -175,16 +175,16 @@ class Flock:
         From every method and attribute, while another thread is at work with the flock.
     """
 
-    __slots__ = ("core",)
+    __slots__ = ("_in_core",)
 
     def __init__(self, parameters: FlockParameters, seed: int) -> None:
-        self.core = _core.Flock(parameters, seed)
+        self._in_core = _core.Flock(parameters, seed)
 
     @classmethod
-    def of(cls, core: _core.Flock) -> Self:
+    def _from_core(cls, core: _core.Flock) -> Self:
         """Return the flock of a simulator in the core."""
         flock = cls.__new__(cls)
-        flock.core = core
+        flock._in_core = core
         return flock
 
     @classmethod
@@ -193,7 +193,7 @@ class Flock:
 
         A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
-        return cls.of(_core.Flock.from_snapshot(snapshot, noise_seed))
+        return cls._from_core(_core.Flock.from_snapshot(snapshot, noise_seed))
 
     @classmethod
     def from_state(cls, parameters: FlockParameters, seed: int, state: Mapping[str, Any]) -> Self:
@@ -207,34 +207,34 @@ class Flock:
             ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
             as in `set_state`, whose errors these are. Other keys are refused.
         """
-        return cls.of(_core.Flock.from_state(parameters, seed, state))
+        return cls._from_core(_core.Flock.from_state(parameters, seed, state))
 
     def reset(self, seed: int) -> None:
         """Start over with another seed, as a new flock with these parameters.
 
         If the boats do not fit the pool, a ParameterError leaves the flock unchanged.
         """
-        self.core.reset(seed)
+        self._in_core.reset(seed)
 
     @property
     def parameters(self) -> FlockParameters:
         """The parameters, with the target that holds now."""
-        return FlockParameters.of(self.core.parameters)
+        return FlockParameters._from_core(self._in_core.parameters)
 
     @property
     def seed(self) -> int:
         """Seed of all random streams."""
-        return self.core.seed
+        return self._in_core.seed
 
     @property
     def noise_seed(self) -> int | None:
         """Seed of the noise if the flock continues a snapshot with other noise; None otherwise."""
-        return self.core.noise_seed
+        return self._in_core.noise_seed
 
     @property
     def pose(self) -> NDArray[np.float64]:
         """Poses, a copy: (n, 3) [x cm, y cm, heading rad counter-clockwise from x, not wrapped]."""
-        return self.core.pose
+        return self._in_core.pose
 
     @property
     def velocity(self) -> NDArray[np.float64]:
@@ -242,27 +242,27 @@ class Flock:
 
         With the leapfrog scheme these are means over the last substep.
         """
-        return self.core.velocity
+        return self._in_core.velocity
 
     @property
     def time_s(self) -> float:
         """Time in s."""
-        return self.core.time_s
+        return self._in_core.time_s
 
     @property
     def in_analysis_window(self) -> bool:
         """Whether the flock is in the second half of fw or the first half of nop1 now."""
-        return self.core.in_analysis_window
+        return self._in_core.in_analysis_window
 
     @property
     def phase(self) -> str:
         """Phase that holds from now on: "fw", "nop1", "bw" or "nop2"."""
-        return self.core.phase
+        return self._in_core.phase
 
     @property
     def statistics(self) -> Statistics:
         """Sums and worst cases of the substeps since the flock was made."""
-        return Statistics(**self.core.statistics)
+        return Statistics(**self._in_core.statistics)
 
     def set_state(
         self,
@@ -295,7 +295,7 @@ class Flock:
             For arrays that are not of real numbers.
         """
         state = {"pose": pose, "velocity": velocity, "time_s": time_s}
-        self.core.set_state({**state, "allow_overlap": allow_overlap})
+        self._in_core.set_state({**state, "allow_overlap": allow_overlap})
 
     def set_target(self, target: str | Sequence[str]) -> None:
         """Change the direction that leaders head for by the paper's law.
@@ -308,7 +308,7 @@ class Flock:
         target
             "cw" or "ccw", or a list with one per leader.
         """
-        self.core.set_target(once(target))
+        self._in_core.set_target(once(target))
 
     def advance(self, seconds: float, rudder: ArrayLike | None = None) -> None:
         """Advance by a duration. Substeps end on multiples of dt_s, on phase switches, at the end.
@@ -329,29 +329,29 @@ class Flock:
             If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time
             are those before the call.
         """
-        self.core.advance(seconds, rudder)
+        self._in_core.advance(seconds, rudder)
 
     def steering_law(self) -> NDArray[np.float64]:
         """Return rudders of the paper's law, eq. (10), for where the leaders are now: (k,)."""
-        return self.core.steering_law()
+        return self._in_core.steering_law()
 
     def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
         """Return the order parameters of the normal boats, or of all boats, now.
 
         If there is no such boat, this is a ParameterError.
         """
-        return OrderParameters(*self.core.order_parameters(include_leaders))
+        return OrderParameters(*self._in_core.order_parameters(include_leaders))
 
     def contacts(self) -> Contacts:
         """Return contacts and near-contacts of the last substep.
 
         There are none after a state was set or restored, until the next substep.
         """
-        return Contacts(**self.core.contacts())
+        return Contacts(**self._in_core.contacts())
 
     def snapshot(self) -> bytes:
         """Return the whole state; continuing from it is bit-identical on the same machine."""
-        return self.core.snapshot()
+        return self._in_core.snapshot()
 
     def restore(self, snapshot: bytes, noise_seed: int | None = None) -> None:
         """Continue from a snapshot of a flock with the same parameters, the target aside.
@@ -373,10 +373,10 @@ class Flock:
         TypeError
             For a noise_seed that is no whole number.
         """
-        self.core.restore(snapshot, noise_seed)
+        self._in_core.restore(snapshot, noise_seed)
 
     def __copy__(self) -> Self:
-        return self.of(self.core.copy())
+        return self._from_core(self._in_core.copy())
 
     def __deepcopy__(self, memo: Any) -> Self:
         return self.__copy__()
@@ -394,5 +394,5 @@ class Flock:
 
     def _repr_html_(self) -> str:
         """Return the flock as a picture, for notebooks."""
-        png = base64.b64encode(self.core.png(_NOTEBOOK_PIXELS)).decode("ascii")
+        png = base64.b64encode(self._in_core.png(_NOTEBOOK_PIXELS)).decode("ascii")
         return f'<img alt="{repr(self).strip("<>")}" src="data:image/png;base64,{png}">'

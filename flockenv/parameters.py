@@ -76,19 +76,19 @@ class FlockParameters:
             self._hold(_changed("simulation", values))
 
     @classmethod
-    def of(cls, core: _core.Parameters) -> Self:
+    def _from_core(cls, core: _core.Parameters) -> Self:
         """Return the parameters that the core has checked."""
         parameters = cls.__new__(cls)
         parameters._hold(core)
         return parameters
 
     def _hold(self, core: _core.Parameters) -> None:
-        vars(self).update(core.values, core=core)
+        vars(self).update(core.values, _in_core=core)
 
     @property
-    def core(self) -> _core.Parameters:
+    def _in_core(self) -> _core.Parameters:
         """The checked values, as the core takes them."""
-        core: _core.Parameters = vars(self)["core"]
+        core: _core.Parameters = vars(self)["_in_core"]
         return core
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -113,7 +113,7 @@ class FlockParameters:
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
             ``"experiment"``: Table 1, with constants fitted to Section 4.
         """
-        return cls.of(_core.Parameters(name, {}))
+        return cls._from_core(_core.Parameters(name, {}))
 
     @classmethod
     def preset_sources(cls, name: str) -> dict[str, str]:
@@ -159,7 +159,7 @@ class FlockParameters:
         A hull of another size scales the radius of gyration along, unless ``gyration_radius_cm`` is
         among the changes.
         """
-        return self.of(_changed(self.core, changes))
+        return self._from_core(_changed(self._in_core, changes))
 
     def to_dict(self) -> dict[str, Any]:
         """Every field by name: numbers, bools, words, tuples for unnamed pools and targets."""
@@ -180,7 +180,7 @@ class FlockParameters:
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
         changes = {str(name): value for name, value in values.items()}
-        return cls.of(_changed(changes.pop("preset", "simulation"), changes))
+        return cls._from_core(_changed(changes.pop("preset", "simulation"), changes))
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, every field on a line of its own."""

@@ -172,7 +172,7 @@ def simulate(
         )
 
     try:
-        run = recording(_core.record(flock.core, duration_s, plan))
+        run = recording(_core.record(flock._in_core, duration_s, plan))
     except BaseException as error:
         if (columns := vars(error).pop("columns", None)) is not None:
             vars(error)["recording"] = recording(columns)

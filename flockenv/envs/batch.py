@@ -127,11 +127,11 @@ class LeaderBatch:
 
     def flock(self, flock: int) -> Flock:
         """Return a copy of a flock in its present state."""
-        return Flock.of(self.core.flock(flock))
+        return Flock._from_core(self.core.flock(flock))
 
     def parameters(self, flock: int) -> FlockParameters:
         """Return the parameters of a flock's environment."""
-        return FlockParameters.of(self.core.parameters(flock))
+        return FlockParameters._from_core(self.core.parameters(flock))
 
     def reset_info(self, flock: int) -> dict[str, Any]:
         """Return the infos of the start of an episode."""

@@ -77,4 +77,4 @@ def observe(
     ParameterError
         For unknown blocks, and if a block needs normal boats and there are none.
     """
-    return _core.observe(flock.core, dict(observation or {}), mirror_to_target, rudder)
+    return _core.observe(flock._in_core, dict(observation or {}), mirror_to_target, rudder)

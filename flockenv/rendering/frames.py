@@ -56,7 +56,7 @@ def frame(
     """
     if not isinstance(flock, Flock):
         raise TypeError(f"a frame is of a Flock or a Recording, not of {shown(flock)}")
-    return renderer(width, height).draw(flock.core, colors, caption)
+    return renderer(width, height).draw(flock._in_core, colors, caption)
 
 
 @frame.register
@@ -69,7 +69,7 @@ def _frame_of_recording(
     colors: str = "direction",
     caption: str = "",
 ) -> NDArray[np.uint8]:
-    return renderer(width, height).draw(recording.flock_at(time_s).core, colors, caption)
+    return renderer(width, height).draw(recording.flock_at(time_s)._in_core, colors, caption)
 
 
 @lru_cache(maxsize=4)

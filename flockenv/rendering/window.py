@@ -52,7 +52,7 @@ class Window:
         if not self.is_open:
             return
         # pygame counts columns first.
-        rows = self._renderer.draw(flock.core)
+        rows = self._renderer.draw(flock._in_core)
         self._pygame.surfarray.blit_array(self._surface, rows.swapaxes(0, 1))
         display.flip()
         self._pygame.event.pump()

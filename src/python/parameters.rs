@@ -42,7 +42,7 @@ impl<'py> FromPyObject<'_, 'py> for FlockParameters {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let core = object.getattr_opt("core")?;
+        let core = object.getattr_opt("_in_core")?;
         let core = core
             .as_ref()
             .and_then(|core| core.cast::<PyParameters>().ok());
