@@ -7,10 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "ACTION_MODES",
     "COLLECTIVE_STATES",
-    "COLORINGS",
     "FLOCK_FEATURES",
     "HAS_AVX2",
-    "JAM_ANGLE",
     "LARGEST_LEAN",
     "LAWS",
     "LEAN_FEATURES",
@@ -62,7 +60,6 @@ __all__ = [
 
 __version__: str
 TOWARDS_TARGET: float
-JAM_ANGLE: float
 LARGEST_LEAN: float
 # Whether this build does, and whether the processor could.
 USES_AVX2: bool
@@ -70,7 +67,6 @@ HAS_AVX2: bool
 ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]
-COLORINGS: list[str]
 STYLE_SHEET: str
 LEAN_FEATURES: list[str]
 PHASES: list[str]
@@ -181,7 +177,6 @@ class EnvBatch:
     def is_running(self, flock: int) -> bool: ...
     def flock(self, flock: int) -> Flock: ...
     def episode(self, flock: int) -> dict[str, Any]: ...
-    def summary(self, flock: int) -> dict[str, Any]: ...
     def finished(self, flock: int) -> dict[str, Any] | None: ...
     def to_bytes(self) -> bytes: ...
     @classmethod

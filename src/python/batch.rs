@@ -273,11 +273,6 @@ impl PyEnvBatch {
         })
     }
 
-    /// Summary of the episode under way.
-    fn summary(&self, flock: usize) -> Result<Value> {
-        self.episode_of(flock, |episode| episode.summary().named())
-    }
-
     /// Summary of the last episode that reached its end.
     fn finished(&self, flock: usize) -> Result<Option<Value>> {
         self.env(flock, |env| env.finished().map(EpisodeSummary::named))

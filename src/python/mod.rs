@@ -18,9 +18,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     use super::*;
+    use crate::analysis::CollectiveState;
     use crate::analysis::quantities::{QUANTITIES, Quantity};
-    use crate::analysis::{CollectiveState, structure::JAM_ANGLE};
-    use crate::draw::palette::{Coloring, style_sheet};
+    use crate::draw::palette::style_sheet;
     use crate::environment::observation::{
         LeanFeatures, OBSERVATION_VERSION, flock_feature_entries,
     };
@@ -61,7 +61,6 @@ mod _core {
         crate::parallel::note_process();
         error::add_exceptions(module)?;
         module.add("ACTION_MODES", ActionMode::names())?;
-        module.add("COLORINGS", Coloring::names())?;
         module.add("STYLE_SHEET", style_sheet())?;
         module.add("COLLECTIVE_STATES", CollectiveState::names())?;
         let laws = LawName::ALL.iter().map(|law| law.named());
@@ -84,7 +83,6 @@ mod _core {
         module.add("OBSERVATION_VERSION", OBSERVATION_VERSION)?;
         module.add("TOWARDS_TARGET", TOWARDS_TARGET)?;
         module.add("ORDERED_WITHIN", <(f64, f64)>::from(ORDERED_WITHIN))?;
-        module.add("JAM_ANGLE", JAM_ANGLE)?;
         module.add("LARGEST_LEAN", LARGEST_LEAN)?;
         module.add("USES_AVX2", cfg!(target_feature = "avx2"))?;
         module.add("HAS_AVX2", has_avx2())?;
