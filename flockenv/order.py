@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import with_gaps
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, shown
 
@@ -150,13 +151,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
         return OrderParameters(*(float(column[index]) for column in self.columns()))
 
     def _orders(self) -> dict[str, NDArray[np.float64]]:
-        return {name: self._column(name) for name in ("psi_o", "phi_o", "psi_v")}
-
-    def _column(self, name: str) -> NDArray[np.float64]:
-        try:
-            return np.ascontiguousarray(getattr(self, name), np.float64)
-        except (TypeError, ValueError) as error:
-            raise ParameterError(f"{name} is not accepted: numbers") from error
+        return {name: with_gaps(getattr(self, name), name) for name in ("psi_o", "phi_o", "psi_v")}
 
     def series(self, name: str, target: str | Sequence[str] = "cw") -> NDArray[np.float64]:
         """Return the values of a recorded or derived quantity, shape (t,).
@@ -314,11 +309,8 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     ParameterError
         For other shapes, and for values that are no numbers.
     """
-    try:
-        states = [np.ma.asarray(each, np.float64).filled(np.nan) for each in (pose, velocity)]
-    except (TypeError, ValueError) as error:
-        raise ParameterError("pose and velocity are not accepted: numbers") from error
-    for name, each in zip(("pose", "velocity"), states, strict=True):
+    states = {"pose": with_gaps(pose, "pose"), "velocity": with_gaps(velocity, "velocity")}
+    for name, each in states.items():
         if each.ndim != 3:
             raise ParameterError(f"{name} has shape {each.shape}, expected (t, n, 3)")
-    return OrderSeries(**_core.order_columns(*states))
+    return OrderSeries(**_core.order_columns(**states))

@@ -6,6 +6,7 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from flockenv.errors import ParameterError, shown
 
@@ -72,3 +73,11 @@ def real_numbers(values: Any, name: str) -> Any:
     if found.dtype.kind not in "biuf":
         raise ParameterError(f"{name} is not accepted: real numbers, not {found.dtype}")
     return found
+
+
+def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Return an array of numbers, a copy; what is masked is not there: NaN."""
+    try:
+        return np.array(np.ma.asarray(values, np.float64).filled(np.nan))
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f"{name} is not accepted: numbers") from error

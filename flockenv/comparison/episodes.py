@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +12,7 @@ from flockenv import _core
 from flockenv._io.arguments import by_name, items, whole
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
+from flockenv.envs.vector import LeadersVectorEnv
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import (
@@ -62,9 +62,9 @@ def compare_leaders(
 ) -> "pd.DataFrame":
     """Run seeded episodes for every policy and number of leaders.
 
-    Flocks with leaders are stepped through the Gymnasium vector environment with the observation
-    of their policy; flocks without run in `simulate`. Seed i gives the same initial placement and
-    the same noise whatever the leaders do.
+    Flocks with leaders are stepped in `LeadersVectorEnv` with the observation of their policy;
+    flocks without run in `simulate`. Seed i gives the same initial placement and the same noise
+    whatever the leaders do.
 
     Parameters
     ----------
@@ -207,9 +207,16 @@ def run_episodes(
         "action_mode": action_mode(policy),
         "decision_period_s": options.get("decision_period_s") if own is None else own,
     }
-    env = _environment(parameters, len(seeds), duration_s, {**options, **layout})
+    env = LeadersVectorEnv(
+        len(seeds),
+        params=parameters,
+        episode_s=duration_s,
+        autoreset_mode="disabled",
+        **{**options, **layout},
+    )
     observations, _ = env.reset(seed=list(seeds))
-    state, ended = None, np.zeros(len(seeds), np.bool_)
+    state: Any = None
+    ended = np.zeros(len(seeds), np.bool_)
     infos: dict[str, Any] = {}
     while not ended.all():
         actions, state = policy.predict(observations, state)
@@ -228,20 +235,6 @@ def run_episodes(
 def _first(policies: Mapping[str, Any], leaders: int) -> dict[str, Any]:
     """Return the policies of a flock's leaders: with fewer leaders the first ones."""
     return dict(itertools.islice(policies.items(), leaders))
-
-
-def _environment(
-    parameters: FlockParameters, num_envs: int, duration_s: float, options: Mapping[str, Any]
-) -> Any:
-    return gymnasium.make_vec(
-        "flockenv/Leaders-v0",
-        num_envs=num_envs,
-        vectorization_mode="vector_entry_point",
-        params=parameters,
-        episode_s=duration_s,
-        autoreset_mode="disabled",
-        **options,
-    )
 
 
 def _simulated(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from flockenv._io.arguments import once
@@ -57,6 +58,26 @@ class ManyFlocks(Resumable):
         has no normal boat.
         """
         return self._batch.core.order_parameters()
+
+
+class SpecOfEpisodes:
+    """What an environment of Gymnasium's is registered as."""
+
+    _batch: LeaderBatch
+    _spec: EnvSpec | None = None
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """Gymnasium's spec, with the number of steps of an episode."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        if spec is not None and spec.max_episode_steps is None:
+            # The registered one holds for all options.
+            spec = copy.deepcopy(spec)
+            spec.max_episode_steps = self._batch.decisions
+        self._spec = spec
 
 
 class SingleEnvironmentBase(Resumable):

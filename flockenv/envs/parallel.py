@@ -183,12 +183,9 @@ class LeadersParallelEnv(
                 info.update(self._batch.end_info(0))
         return infos
 
-    def _by_agent(self, rows: NDArray[np.float32]) -> Observations:
-        return dict(zip(self.possible_agents, rows, strict=True))
-
     def observe(self) -> Observations:
         """Return the observations as they are now, by agent."""
-        return self._by_agent(self._batch.core.observe())
+        return dict(zip(self.possible_agents, self._batch.core.observe(), strict=True))
 
     def set_state(self, state: bytes) -> None:
         """Continue from `get_state` of an environment with the same options, bit for bit."""

@@ -4,19 +4,20 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.envs.registration import EnvSpec
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv.envs.base import SingleEnvironmentBase
+from flockenv.envs.base import SingleEnvironmentBase, SpecOfEpisodes
 from flockenv.envs.batch import drawn_seed, is_plain, mean_rows
 from flockenv.envs.options import TERMS, refuse_attribute
 from flockenv.envs.render_mode import RENDER_MODES
-from flockenv.envs.spaces import ObservationSpace, joint_action_space, spec_of_episodes
+from flockenv.envs.spaces import ObservationSpace, joint_action_space
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
-class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArray[Any]]):
+class LeadersEnv(
+    SpecOfEpisodes, SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArray[Any]]
+):
     """Lead a flock of boats around a ring-shaped pool: one policy steers all leaders.
 
     ``gymnasium.make("flockenv/Leaders-v0", **options)``
@@ -142,22 +143,12 @@ class LeadersEnv(SingleEnvironmentBase, gymnasium.Env[NDArray[np.float32], NDArr
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        self._spec: EnvSpec | None = None
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
         self.observation_space = ObservationSpace(settings, self.num_leaders)
         self._levels: int | None = settings["rudder_levels"]
         self._actions_shape = (self.num_leaders,)
         self.action_space = joint_action_space(self._levels, self.num_leaders)
-
-    @property
-    def spec(self) -> EnvSpec | None:
-        """Gymnasium's spec, with the number of steps of an episode."""
-        return self._spec
-
-    @spec.setter
-    def spec(self, spec: EnvSpec | None) -> None:
-        self._spec = spec_of_episodes(spec, self._batch.decisions)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

@@ -1,12 +1,10 @@
-"""What Gymnasium knows of an environment: its spaces, and the length of its episodes."""
+"""What Gymnasium knows of an environment: its spaces."""
 
-import copy
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
-from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from flockenv.envs.observation import (
@@ -82,13 +80,3 @@ def joint_action_space(levels: int | None, leaders: int) -> gymnasium.Space[Any]
     if levels is None:
         return gymnasium.spaces.Box(-1.0, 1.0, (leaders,), np.float32)
     return gymnasium.spaces.MultiDiscrete([levels] * leaders)
-
-
-def spec_of_episodes(spec: EnvSpec | None, decisions: int) -> EnvSpec | None:
-    """Return a registered environment's spec with the decisions of its episodes."""
-    if spec is None or spec.max_episode_steps is not None:
-        return spec
-    # The registered one holds for all options.
-    own = copy.deepcopy(spec)
-    own.max_episode_steps = decisions
-    return own

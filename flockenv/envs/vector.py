@@ -5,24 +5,25 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
-from gymnasium.envs.registration import EnvSpec
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import once
-from flockenv.envs.base import ManyFlocks
+from flockenv.envs.base import ManyFlocks, SpecOfEpisodes
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.options import RESET_OPTIONS, EnvOptions
 from flockenv.envs.render_mode import RenderMode
-from flockenv.envs.spaces import ObservationSpace, joint_action_space, spec_of_episodes
+from flockenv.envs.spaces import ObservationSpace, joint_action_space
 from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
 class LeadersVectorEnv(
-    ManyFlocks, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]
+    SpecOfEpisodes,
+    ManyFlocks,
+    gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]],
 ):
     """Lead many flocks at once, one policy steering all leaders of a flock.
 
@@ -87,7 +88,6 @@ class LeadersVectorEnv(
         render_size: tuple[int, int] = DEFAULT_SIZE,
         **options: Any,
     ) -> None:
-        self._spec: EnvSpec | None = None
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
         parsed = EnvOptions.parse(options, takes_function=True)
@@ -118,15 +118,6 @@ class LeadersVectorEnv(
         self.flock_feature_space = self._batch.flock_feature_space
         self._actions_shape = (num_envs, self.num_leaders)
         self._rewards: NDArray[np.float64] | None = None
-
-    @property
-    def spec(self) -> EnvSpec | None:
-        """Gymnasium's spec, with the number of steps of an episode."""
-        return self._spec
-
-    @spec.setter
-    def spec(self, spec: EnvSpec | None) -> None:
-        self._spec = spec_of_episodes(spec, self._batch.decisions)
 
     def reset(
         self,

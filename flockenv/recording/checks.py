@@ -1,6 +1,7 @@
 """What a recording's arrays must be."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ MOTION = {
 }
 """The columns of poses and velocities in tables, with their units."""
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
-CONTACTS = ("count", "i", "j", "normal", "force", "point_cm", "along_cm")
+CONTACTS = tuple(each.name for each in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
 
@@ -51,6 +52,12 @@ def check_array(
             raise ParameterError(f"{name} must be finite, but for boats that are not there")
     elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
+
+
+def check_seed(seed: Any) -> None:
+    """Refuse what is no seed of a flock."""
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
+        raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
 
 
 def check_ids(ids: Any, boats: int) -> None:

@@ -23,6 +23,7 @@ from flockenv.recording.checks import (
     check_contacts,
     check_ids,
     check_quantities,
+    check_seed,
     checked_functions,
     own_series,
 )
@@ -136,9 +137,7 @@ class Recording:
             options = {"gaps": True} if tracked else {"all_nan": undefined}
             check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **options)
         object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
-        seed: Any = self.seed
-        if not isinstance(seed, int) or not 0 <= seed < 2**64:
-            raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        check_seed(self.seed)
         check_quantities(self.quantities, times)
         if self.rudder is not None:
             check_array("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])

@@ -1,7 +1,7 @@
 """Series of numbers, packed small enough for a page that holds an hour of a flock.
 
 Numbers are rounded to a quantum, differenced along time (twice: boats move smoothly), and split
-into planes of bytes that compress well. ``packing.js`` undoes it.
+into planes of bytes that compress well. ``packing.mjs`` undoes it.
 """
 
 import base64

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.order import QUANTITIES
+from flockenv.order import ORDER, QUANTITIES
 from flockenv.recording import Recording
 
 _MINUTE_S = 60.0
@@ -27,9 +27,8 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
     highest value of its chart, None for those of the data; and ``decimals`` that are shown. Order
     towards the target is among them if in any of the recordings leaders have one.
     """
-    recorded = [each.name for each in QUANTITIES if each.kind == "recorded"]
     has_target = any(each.parameters.common_target is not None for each in recordings)
-    keys = [*(["signed_order"] if has_target else []), "rotation", *recorded]
+    keys = [*(["signed_order"] if has_target else []), "rotation", *ORDER]
     table = {each.name: each for each in QUANTITIES}
     found = []
     for key in keys:

@@ -4,16 +4,16 @@ import hashlib
 import json
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Any
 
 import numpy as np
 
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import POLICIES, POOL_POLICIES
 from flockenv.recording import Recording
+from flockenv.recording.checks import check_seed
 from flockenv.simulation import simulate
 
 _DEFAULTS = FlockParameters().to_dict()
@@ -55,9 +55,7 @@ class RunSpec:
     def __post_init__(self) -> None:
         refuse_unknown((self.policy,), [*POLICIES, *POOL_POLICIES], "policy of a run")
         refuse_unknown((self.keep,), KEEP, "part of a run to keep")
-        seed: Any = self.seed
-        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-            raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        check_seed(self.seed)
         for name in ("duration_s", "sample_hz"):
             value = float(getattr(self, name))
             if not 0.0 < value < math.inf:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import with_gaps
 from flockenv.errors import ParameterError
 from flockenv.parameters import FlockParameters
 
@@ -45,7 +46,7 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
 
 def _poses(pose: ArrayLike) -> NDArray[np.float64]:
-    poses = np.ma.asarray(pose, np.float64).filled(np.nan)
+    poses = with_gaps(pose, "pose")
     if poses.ndim != 3:
         raise ParameterError(f"pose has shape {poses.shape}, expected (t, n, 3)")
     absent = np.isnan(poses).all(axis=-1)

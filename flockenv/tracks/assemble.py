@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import with_gaps
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
@@ -74,7 +75,7 @@ def recording_of(
         boat above 10 m/s or so low that times cannot be in s, centers more than a hull's width
         outside the water, and unknown or repeated names.
     """
-    times, poses = _numbers("time_s", time_s), _numbers("pose", pose)
+    times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)
     check_array("time_s", times, shape[:1], PRECISIONS)
     check_array("pose", poses, shape, PRECISIONS, gaps=True)
@@ -87,7 +88,7 @@ def recording_of(
         raise ParameterError(f"ids holds {len(names)} names for {shape[1]} boats")
     order = _leaders_first(names, [str(each) for each in leaders])
     poses[..., 2] = unwrapped(poses[..., 2])
-    given = None if velocity is None else _numbers("velocity", velocity)
+    given = None if velocity is None else with_gaps(velocity, "velocity")
     motion = Motion.of(times, poses).velocity if given is None else given
     check_array("velocity", motion, shape, PRECISIONS, gaps=True)
     poses, motion = poses[:, order], motion[:, order]
@@ -121,14 +122,6 @@ def recording_of(
         version=_core.__version__,
         ids=np.array(names)[order],
     )
-
-
-def _numbers(name: str, values: ArrayLike) -> Floats:
-    try:
-        # What is masked is not there.
-        return np.array(np.ma.asarray(values, np.float64).filled(np.nan))
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f"{name} is not accepted: numbers") from error
 
 
 def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:

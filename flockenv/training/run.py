@@ -24,16 +24,6 @@ from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.settings import TrainingSettings
 
-__all__ = [
-    "CHECKPOINT",
-    "MODEL",
-    "Progress",
-    "TrainingError",
-    "resume",
-    "stored_settings",
-    "train",
-]
-
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
 
 
