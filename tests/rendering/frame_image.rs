@@ -1,5 +1,7 @@
 //! Law: a frame is a function of the flock and the frame's size, byte for byte, whatever was drawn before.
 
+mod palette;
+
 use flockenv::draw::Look;
 use flockenv::draw::palette::Coloring;
 use flockenv::geometry::{Pose, Velocity};
