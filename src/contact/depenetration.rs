@@ -24,7 +24,7 @@ pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 /// A projection of poses, with its scratch space.
 #[derive(Debug, Clone)]
 pub(super) struct Depenetration {
-    solver: ContactSolver,
+    pub(super) solver: ContactSolver,
     contacts: Vec<Contact>,
     biases: Vec<f64>,
     rest: Vec<Velocity>,
@@ -73,18 +73,13 @@ impl Depenetration {
             // in its order, and results made before rest on that.
             detector.update(boats, wide);
             detector.detect(boats, margin.min(wide), found);
-            if smallest_gap(found) >= -allowed || self.is_exhausted() {
+            if smallest_gap(found) >= -allowed || self.solver.is_exhausted() {
                 break;
             }
         }
         if margin > wide {
             detector.detect(boats, margin, found);
         }
-    }
-
-    /// Whether the last pass was too much work.
-    pub(super) fn is_exhausted(&self) -> bool {
-        self.solver.is_exhausted()
     }
 
     /// One pass, for the contacts at hand.
@@ -153,6 +148,7 @@ pub(crate) fn push_apart(
         if smallest_gap(&projection.contacts) >= 0.0 || !keep_going() {
             return;
         }
+        projection.solver.refill(poses.len());
         projection.displace(poses, &mut boats);
     }
 }

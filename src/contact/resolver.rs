@@ -154,6 +154,7 @@ impl ContactResolver {
         let depenetration = self.depenetration.get_or_insert_with(|| {
             Box::new(Depenetration::new(poses.len(), radius, gyration_radius))
         });
+        depenetration.solver.share_room(&self.solver);
         let passes = depenetration.passes;
         let angular_momentum = orbital_angular_momentum(poses, velocities);
         depenetration.open_overlaps(
@@ -164,7 +165,8 @@ impl ContactResolver {
             margin,
             &mut self.contacts,
         );
-        self.is_exhausted = depenetration.is_exhausted();
+        self.solver.share_room(&depenetration.solver);
+        self.is_exhausted = self.solver.is_exhausted();
         statistics.depenetration_passes += depenetration.passes - passes;
         statistics.displaced_angular_momentum_cm2_s +=
             (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
@@ -214,7 +216,8 @@ impl ContactResolver {
         if self.is_exhausted {
             return ContactOutcome::TooLong;
         }
-        self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
+        self.solver.give_up_early(shorter_possible);
+        self.solve_and_relinearize(poses, free, inertia, bias, statistics);
         let Self {
             trial, detector, ..
         } = &*self;
@@ -222,7 +225,7 @@ impl ContactResolver {
         let is_short = !self.is_exhausted && !self.parting.is_empty();
         if is_short && !self.relinearization.allowed_overlap.is_some_and(is_apart) {
             self.take_parting_back(poses.len(), statistics);
-            self.solve_and_relinearize(poses, free, inertia, bias, shorter_possible, statistics);
+            self.solve_and_relinearize(poses, free, inertia, bias, statistics);
         }
         if !self.is_exhausted && self.stop_driving(free, inertia, bias) {
             if shorter_possible {
@@ -231,7 +234,7 @@ impl ContactResolver {
             // Other biases lead to other poses, at which nobody looks for what was left out.
             if !self.parting.is_empty() {
                 self.take_parting_back(poses.len(), statistics);
-                self.solve_and_relinearize(poses, free, inertia, bias, false, statistics);
+                self.solve_and_relinearize(poses, free, inertia, bias, statistics);
                 self.stop_driving(free, inertia, bias);
             }
             self.solve(None, free, inertia, statistics);
@@ -262,7 +265,6 @@ impl ContactResolver {
         free: &[Velocity],
         inertia: &[InverseInertia],
         bias: VelocityBias,
-        shorter_possible: bool,
         statistics: &mut Statistics,
     ) {
         self.biases.clear();
@@ -271,9 +273,6 @@ impl ContactResolver {
             bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         }));
         self.solver.reset(poses.len(), &self.contacts);
-        if shorter_possible {
-            self.solver.give_up_early();
-        }
         let solved = self.solve(None, free, inertia, statistics);
         if let Some(allowed) = self.relinearization.allowed_overlap
             && solved
@@ -353,11 +352,11 @@ impl ContactResolver {
             biases,
         };
         let is_solved = solver.solve(&problem).converged;
-        *is_exhausted = solver.is_exhausted();
-        if !is_solved && !*is_exhausted {
+        if !is_solved && !solver.is_exhausted() {
             solver.impulses.fill(0.0);
             solver.solve_as(Solver::GaussSeidel, &problem);
         }
+        *is_exhausted = solver.is_exhausted();
         false
     }
 

@@ -255,9 +255,17 @@ impl Flock {
         let shortest = (dt / SHORTEST_SHARE).max(1);
         let unsolved = self.integrator.statistics.unsolved;
         let mut seen = self.work();
+        let mut refilled = 0;
         while self.time < end {
             let moment = self.schedule.at(self.time);
             let grid = (self.time / dt + 1) * dt;
+            if grid > refilled {
+                self.integrator
+                    .contacts
+                    .solver
+                    .refill(self.parameters.n_boats);
+                refilled = grid;
+            }
             let mut substep = Substep {
                 start: self.time,
                 length: end.min(grid).min(self.time + moment.left) - self.time,
@@ -307,6 +315,12 @@ impl Flock {
         let statistics = &self.integrator.statistics;
         let moved = statistics.substeps * self.parameters.n_boats as u64;
         moved + statistics.contacts + statistics.factored_rows
+    }
+
+    /// About how many multiplications the contacts of all substeps took since the flock was made, those that failed
+    /// included: what a whole substep may take of them is bounded.
+    pub fn contact_work(&self) -> u64 {
+        self.integrator.contacts.solver.work().unsigned_abs()
     }
 
     /// Undoes the substeps of an advance.

@@ -26,7 +26,9 @@ fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
         Value::Flag(flag)
     } else if let Ok(count) = object.extract() {
         Value::Count(count)
-    } else if let Ok(real) = object.extract() {
+    } else if !is_complex(object)
+        && let Ok(real) = object.extract()
+    {
         Value::Real(real)
     } else if let Ok(name) = object.extract() {
         Value::Name(name)
@@ -38,6 +40,14 @@ fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
     } else {
         list_from(object, most_items).map_or(Value::Other, Value::List)
     }
+}
+
+/// Whether it is NumPy's complex number, of which extracting a float drops a part.
+fn is_complex(object: &Bound<'_, PyAny>) -> bool {
+    let kind = object
+        .getattr("dtype")
+        .and_then(|dtype| dtype.getattr("kind"));
+    kind.is_ok_and(|kind| kind.eq("c").unwrap_or(false))
 }
 
 fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Value>> {

@@ -81,6 +81,59 @@ fn contacts_that_are_too_much_work_are_an_error_and_change_nothing() {
         .expect("contacts that can be solved");
 }
 
+/// Advances substep by substep until one is too much work, and returns what it took, if there is one.
+fn first_that_is_too_much(p: &FlockParameters, most: u32) -> Option<u64> {
+    let mut flock = Flock::new(p.clone(), 1).expect("room");
+    (0..most).find_map(|_| {
+        let before = (bits(&flock), flock.time(), flock.snapshot());
+        let work = flock.contact_work();
+        let failed = flock.advance(p.dt_s, None).err()?;
+        assert!(matches!(failed, FlockError::Solver(_)), "{failed}");
+        assert!((bits(&flock), flock.time(), flock.snapshot()) == before);
+        Some(flock.contact_work() - work)
+    })
+}
+
+#[test]
+fn all_that_is_tried_for_a_substep_shares_one_room_of_work() {
+    // 1e9 multiplications and 5e5 a boat, and the last round of what is given up.
+    let most = 1_200_000_000;
+    // Backing boats turn by thousands of rad/s: pushed apart, cut and solved again and again.
+    let backing = FlockParameters {
+        fw_s: 0.1,
+        nop1_s: 0.0,
+        c3: 1e6,
+        ..crowd(300)
+    };
+    let trained = FlockParameters {
+        dt_s: 0.05,
+        relinearizations: 1,
+        ..backing.clone()
+    };
+    let noisy = FlockParameters {
+        c4: 1e6,
+        ..crowd(300)
+    };
+    for p in [backing, trained, noisy] {
+        let work = first_that_is_too_much(&p, 30).expect("contacts that are too much work");
+        assert!((500_000_000..most).contains(&work), "{work}");
+    }
+    // What the page and trainings do is far from it.
+    for n_boats in [27, 300] {
+        let p = FlockParameters {
+            dt_s: 0.05,
+            relinearizations: 1,
+            bw_s: 1.0,
+            ..crowd(n_boats)
+        };
+        let mut flock = Flock::new(p, 1).expect("room");
+        flock
+            .advance(10.0, None)
+            .expect("contacts that can be solved");
+        assert!(flock.contact_work() < most / 10);
+    }
+}
+
 #[test]
 fn packed_flocks_are_far_from_the_bound() {
     // A ring of 3 000 boats that leave a tenth of it free, half a minute long without a pause.

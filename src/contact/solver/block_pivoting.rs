@@ -14,11 +14,6 @@ use crate::geometry::Velocity;
 use island_solver::IslandSolver;
 use rows::NONE;
 
-/// About how many multiplications the factors of one set of contacts may take, and how many more per boat: some seconds,
-/// and a millisecond a boat. A densely packed flock takes a hundredth, while it is placed; in the water it takes less.
-const MOST_WORK: i64 = 2_000_000_000;
-const MOST_WORK_A_BOAT: i64 = 500_000;
-
 /// The solvers of islands.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlockPivoting {
@@ -28,7 +23,7 @@ pub(super) struct BlockPivoting {
     /// in the processor's cache.
     pub keeps_factors: bool,
     islands: Vec<IslandSolver>,
-    /// How much work is left; negative once an island was given up.
+    /// How many multiplications are left; negative once an island was given up.
     pub room: i64,
     /// b, contact by contact.
     rights: Vec<f64>,
@@ -43,6 +38,7 @@ impl BlockPivoting {
     pub(super) fn new(regularization: f64) -> Self {
         Self {
             regularization,
+            room: i64::MAX,
             ..Self::default()
         }
     }
@@ -56,7 +52,6 @@ impl BlockPivoting {
         for island in &mut self.islands {
             island.is_built = false;
         }
-        self.room = MOST_WORK + MOST_WORK_A_BOAT * boats as i64;
         self.places.resize(boats, NONE);
     }
 

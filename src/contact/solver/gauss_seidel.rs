@@ -6,24 +6,25 @@ use crate::geometry::Velocity;
 
 /// Sweeps after which the solver gives up.
 const MOST_SWEEPS: u64 = 20_000;
-/// The same for contacts times sweeps, for huge flocks.
-const MOST_UPDATES: u64 = 1_000_000_000;
+/// Multiplications for each contact in a sweep.
+const UPDATE: i64 = 5;
 /// Sweeps between two evaluations of the residual.
 const SWEEPS_BETWEEN_CHECKS: u64 = 10;
 
-/// Solves by sweeping, from the impulses given.
+/// Solves by sweeping, from the impulses given, while there is `room` for so many multiplications.
 pub(super) fn solve(
     problem: &ContactProblem,
     impulses: &mut [f64],
     velocities: &mut Vec<Velocity>,
+    room: &mut i64,
 ) -> SolveReport {
     impulses
         .iter_mut()
         .for_each(|impulse| *impulse = impulse.max(0.0));
     problem.velocities(impulses, velocities);
     let mut report = SolveReport::default();
-    let most_sweeps = MOST_SWEEPS.min(MOST_UPDATES / impulses.len().max(1) as u64);
-    while report.iterations < most_sweeps {
+    while report.iterations < MOST_SWEEPS && *room >= 0 {
+        *room -= UPDATE * impulses.len() as i64;
         for (k, impulse) in impulses.iter_mut().enumerate() {
             let wanted = *impulse - problem.slack(k, velocities) / problem.diagonal(k);
             let change = wanted.max(0.0) - *impulse;

@@ -29,6 +29,11 @@ pub struct SolveReport {
     pub islands: u64,
 }
 
+/// About how many multiplications the contacts of a whole substep may take, and how many more per boat, whatever shorter
+/// ones it is cut into. A densely packed flock takes a hundredth, while it is placed; in the water it takes less.
+const MOST_WORK: i64 = 1_000_000_000;
+const MOST_WORK_A_BOAT: i64 = 500_000;
+
 /// Residual in cm/s that counts as solved.
 pub const EXACT: f64 = 1e-10;
 
@@ -40,6 +45,11 @@ pub struct ContactSolver {
     /// The numbers of all islands.
     all: Vec<u32>,
     pivoting: BlockPivoting,
+    /// The work of a whole substep, and the part of it that is kept back from the contacts at hand.
+    most_work: i64,
+    kept_back: i64,
+    /// What the substeps before took.
+    work_before: i64,
     /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
     pub active: Vec<bool>,
     /// Impulses λ in cm/s (mass 1): a guess for Gauss–Seidel before, the solution after.
@@ -56,6 +66,10 @@ impl ContactSolver {
             islands: Islands::default(),
             all: Vec::new(),
             pivoting: BlockPivoting::new(1e-13),
+            // Without a bound until a substep comes.
+            most_work: 0,
+            kept_back: 0,
+            work_before: i64::MAX,
             active: Vec::new(),
             impulses: Vec::new(),
             velocities: Vec::new(),
@@ -86,9 +100,32 @@ impl ContactSolver {
         self.pivoting.reset(boats, self.islands.count());
     }
 
-    /// Has the contacts taken on last be given up after a small part of the work: the next ones are easier.
-    pub(crate) fn give_up_early(&mut self) {
-        self.pivoting.room /= 16;
+    /// Gives the contacts of a whole substep their room of work.
+    pub(crate) fn refill(&mut self, boats: usize) {
+        if self.pivoting.room + self.kept_back != self.most_work {
+            self.work_before = self.work();
+            self.most_work = MOST_WORK + MOST_WORK_A_BOAT * boats as i64;
+            (self.pivoting.room, self.kept_back) = (self.most_work, 0);
+        }
+    }
+
+    /// Shares the room of another solver, whose work counts in the same substep.
+    pub(crate) fn share_room(&mut self, other: &Self) {
+        let room = other.pivoting.room + other.kept_back;
+        (self.pivoting.room, self.kept_back) = (room, 0);
+    }
+
+    /// Has the next contacts be given up after a small part of the work, if others that are easier can stand for them.
+    pub(crate) fn give_up_early(&mut self, easier_possible: bool) {
+        let room = self.pivoting.room + self.kept_back;
+        let spare = (room - self.most_work / 16).max(0);
+        self.kept_back = if easier_possible { spare } else { 0 };
+        self.pivoting.room = room - self.kept_back;
+    }
+
+    /// About how many multiplications the contacts of all substeps took, those that failed included.
+    pub(crate) fn work(&self) -> i64 {
+        self.work_before + self.most_work - self.pivoting.room - self.kept_back
     }
 
     /// Whether the contacts taken on last were too much work, so that there is no solution.
@@ -153,7 +190,9 @@ impl ContactSolver {
                 self.pivoting
                     .solve(problem, islands, all, active, impulses, velocities)
             }
-            Solver::GaussSeidel => gauss_seidel::solve(problem, impulses, velocities),
+            Solver::GaussSeidel => {
+                gauss_seidel::solve(problem, impulses, velocities, &mut self.pivoting.room)
+            }
             #[cfg(feature = "clarabel")]
             Solver::Clarabel => clarabel::solve(problem, impulses, velocities),
         };

@@ -12,9 +12,6 @@ use crate::contact::solver::{EXACT, SolveReport};
 /// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
 const CONTRADICTION: f64 = 1e9;
 
-/// Multiplications per row in each round, besides the factor's.
-const ROUND: i64 = 10;
-
 impl IslandSolver {
     /// Solves the island again: where it is large from the impulses of the last round that push, and where it is
     /// small, or that fails, from no impulses at all.
@@ -120,8 +117,7 @@ impl IslandSolver {
             report.iterations += 1;
             report.factored_rows += self.solve_active(regularization);
             self.refine(regularization);
-            // Rounds that compute few rows still go through all of them.
-            self.factor.room -= ROUND * self.rows.rows.len() as i64;
+            self.charge_round();
             let step = self.feasible_step(held);
             first.get_or_insert(step);
             for (k, held) in held.iter_mut().enumerate() {

@@ -12,6 +12,10 @@ const PATIENCE: u32 = 5;
 /// Islands of more rows than this are swept before the first round; in smaller ones a round costs less than the
 /// sweeps.
 pub(super) const SWEPT_ROWS: usize = 48;
+/// Multiplications per row in each round, and per entry of the factor: rounds that compute few rows still go through
+/// all of them.
+const ROUND: u64 = 50;
+const ENTRY: u64 = 8;
 /// How many sweeps guess the active rows.
 const SWEEPS: u32 = 2;
 
@@ -121,6 +125,9 @@ impl IslandSolver {
             } else {
                 return self.descend(regularization, report);
             }
+            if self.rows.rows.len() > SWEPT_ROWS {
+                self.charge_round();
+            }
             if self.are_dependent(regularization, |row| row.is_active != row.is_violated()) {
                 return self.descend(regularization, report);
             }
@@ -174,6 +181,13 @@ impl IslandSolver {
             row.impulse += value;
         }
         (self.violations, self.worst) = self.rows.update();
+    }
+
+    /// Takes what a round that was not the last one cost off the room, apart from long rows of the factor.
+    #[cold]
+    pub(super) fn charge_round(&mut self) {
+        let rows = ROUND * self.rows.rows.len() as u64;
+        self.factor.room -= (rows + ENTRY * self.factor.len()) as i64;
     }
 
     fn flip_violated(&mut self) {
