@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import items
+from flockenv._io.arguments import items, real_numbers
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
@@ -211,6 +211,11 @@ class _Seat:
             return self.held
         self.wait = self.period - 1
         actions, self.state = self.policy.predict(observation[self.leaders], self.state)
+        actions = real_numbers(actions, "what a policy returns")
+        if np.ma.is_masked(actions):
+            raise ParameterError(
+                "what a policy returns is not accepted: numbers, none of them masked"
+            )
         rudders = np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
         # A mirrored policy steers as if every target were clockwise.
         self.held = signs[self.leaders] * rudders if self.is_mirrored else rudders
@@ -264,6 +269,11 @@ def _control(
     seats: Sequence[_Seat], n_leaders: int, control_hz: float | None
 ) -> dict[str, Any] | None:
     if not seats:
+        if control_hz is not None:
+            raise ParameterError(
+                f"control_hz = {shown(control_hz)} is not accepted: without a policy the paper's "
+                "law steers at every substep"
+            )
         return None
     first = seats[0].policy
     if isinstance(first, LawPolicy) and seats[0].is_alone:

@@ -102,7 +102,9 @@ class SingleEnvironmentBase(Resumable):
             # Of several flocks a list has one entry per flock; here it is a value.
             held = {name: once(value) for name, value in options.items()}
             options = {
-                name: tuple(value) if isinstance(value, list | np.ndarray) else value
+                name: tuple(value)
+                if isinstance(value, list | np.ndarray) and np.ndim(value)
+                else value
                 for name, value in held.items()
             }
         self._batch.reset([seed], options, new_seed)

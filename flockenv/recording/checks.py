@@ -103,10 +103,11 @@ def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDA
     found = real_numbers(values, f"quantity {name!r}")
     with np.errstate(over="ignore"):
         doubles = np.ma.asarray(found.astype(np.float64))
-    if (np.isinf(doubles) & np.isfinite(found)).any():
-        raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")
     # What is masked is not there.
-    return np.ma.filled(doubles, np.nan).copy()
+    series = np.ma.filled(doubles, np.nan).copy()
+    if (np.isinf(series) & np.isfinite(np.ma.filled(found, 0))).any():
+        raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")
+    return series
 
 
 def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:

@@ -157,7 +157,7 @@ class TrackLayout:
     least_confidence: float | None = None
     unassigned: tuple[str, ...] = (
         *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
-        *("unidentified", "untracked", "unlabeled"),
+        *("unidentified", "untracked", "unlabeled", "?", "undefined", "lost"),
     )
     lost: tuple[tuple[float, float], ...] = ()
     missing: tuple[str, ...] = ()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import check_order, frames_of
@@ -52,6 +52,8 @@ def read_tracks(
     MissingExtraError
         Without the extra ``plot``.
     """
+    if not isinstance(layout, TrackLayout | None):
+        raise TypeError(f"layout must be a TrackLayout, not {shown(layout)}")
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table in memory has no file beside it")
@@ -106,6 +108,7 @@ def _recording(
             lone=int((there & np.isnan(velocity[..., 0])).sum()),
             cosine=motion.cosine(pose),
             stuck=_stuck(rows, layout),
+            held=_held(rows),
         )
     )
     return recording
@@ -157,3 +160,14 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
     share = counts["id"].map(used["id"].value_counts()) / 10
     counts = counts[(counts["count"] >= _STUCK) & (counts["count"] >= share)]
     return {str(n): (float(x), float(y), int(c)) for n, x, y, c in counts.itertuples(index=False)}
+
+
+def _held(rows: "pd.DataFrame") -> dict[str, int]:
+    """Return boats that move with one heading in many samples, and with any other in few."""
+    # A boat that is seen at one point keeps its heading, too.
+    used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
+    counts = used.value_counts(["id", "heading"]).groupby("id")
+    table = counts.nth([0, 1]).groupby("id").agg(["max", "min", "size"])
+    table = table[(table["max"] >= _STUCK) & (table["size"] > 1)]
+    table = table[table["max"] >= 10 * table["min"]]
+    return {str(name): int(count) for name, count in table["max"].items()}

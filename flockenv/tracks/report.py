@@ -34,6 +34,9 @@ class TrackReport:
     stuck : dict of (float, float, int)
         Boats that are at one point in at least 20 samples and a tenth of theirs: x and y in units
         of the file, and the number of samples.
+    held : dict of int
+        Boats that move, and have one heading in at least 20 samples and any other in a tenth of
+        them at most: the number of samples.
     """
 
     frames: int
@@ -47,6 +50,7 @@ class TrackReport:
     lone: int = 0
     cosine: float = float("nan")
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
+    held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:
         """Return the attributes by name, None for a cosine that is undefined."""
@@ -85,6 +89,11 @@ class TrackReport:
             lines.append(
                 f"the same point in many frames: {', '.join(points)}{more}; "
                 "if one stands for a lost boat, name it in `lost`"
+            )
+        if self.held:
+            lines.append(
+                f"the same heading in many frames{_by_boat(self.held)}; "
+                "if a number stands for no heading, name it in `missing`"
             )
         return "\n  ".join(lines)
 

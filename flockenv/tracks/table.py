@@ -133,6 +133,8 @@ def _is_value(cell: Any) -> bool:
 
 def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
     """Return a table whose columns have one name each, those of the index among them."""
+    if not hasattr(table, "columns") or not hasattr(table, "index"):
+        raise TypeError(f"tracks must be a file or a DataFrame of pandas, not {shown(table)}")
     columns: Any = table.columns
     index: Any = table.index
     if columns.nlevels > 1 and "coords" in columns.names:

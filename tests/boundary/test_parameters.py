@@ -60,8 +60,13 @@ def test_numbers_out_of_range_are_refused_by_name(parameters, name, value):
 
 @pytest.mark.parametrize("name", [*COUNTS, *NUMBERS])
 @pytest.mark.parametrize(
-    "value", [None, "1", [1], 1j, True, np.array([1.0, 2.0]), object(), b"1", "\ud800"]
+    "value",
+    [
+        *(None, "1", [1], 1j, True, np.array([1.0, 2.0]), object(), b"1", "\ud800"),
+        *(np.complex128(1.0), np.complex64(1j), np.array(1j)),
+    ],
 )
+@pytest.mark.filterwarnings("ignore:Casting complex values")
 def test_values_that_are_no_numbers_are_type_errors_by_name(parameters, name, value):
     with pytest.raises(TypeError, match=name):
         parameters.replace(**{name: value})

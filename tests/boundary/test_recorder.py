@@ -96,9 +96,9 @@ def test_a_policy_without_leaders_is_not_asked():
 
 
 def test_progress_is_reported_with_and_without_a_policy():
-    for policy in (None, Watching()):
+    for how in ({}, {"policy": Watching(), "control_hz": 1.0}):
         reported = []
-        simulate(PARAMETERS, 3, 1800.0, 1.0, policy, control_hz=1.0, progress=reported.append)
+        simulate(PARAMETERS, 3, 1800.0, 1.0, progress=reported.append, **how)
         assert len(reported) > 2
         assert 1200.0 < sum(reported) <= 1800.0
         assert min(reported) > 0.0

@@ -23,6 +23,14 @@ class Held:
         return np.full(len(observation), self.rudder), state
 
 
+class Masked(Held):
+    """The same, but masked."""
+
+    def predict(self, observation, state=None, episode_start=None):
+        rudders, state = super().predict(observation, state)
+        return np.ma.masked_equal(rudders, self.rudder), state
+
+
 @pytest.mark.parametrize(
     ("schedule", "words"),
     [
@@ -221,11 +229,20 @@ def test_a_mirrored_policy_follows_a_target_that_changes():
         ({"leader_0": "paper's law", "leader_1": "low"}, "'low' is no policy"),
         ({"leader_0": Held(0.0), "leader_1": Held(0.0, 1 / 997)}, "no common multiple"),
         ({"leader_0": Held(0.0), "leader_1": 7}, "policy = 7"),
+        (Held(1j), "what a policy returns is not accepted: real numbers, not complex128"),
+        (Held("0.5"), "what a policy returns is not accepted: real numbers, not <U"),
+        (Masked(0.5), "what a policy returns is not accepted: numbers, none of them masked"),
     ],
 )
 def test_policies_that_do_not_fit_the_leaders_are_refused(policy, words):
     with pytest.raises(ParameterError, match=words):
         simulate(PARAMETERS, 3, 2.0, policy=policy)
+
+
+@pytest.mark.parametrize("control_hz", [5.0, -1.0, "often"])
+def test_a_rate_without_a_policy_is_refused(control_hz):
+    with pytest.raises(ParameterError, match=r"control_hz = .* is not accepted: without a policy"):
+        simulate(PARAMETERS, 3, 2.0, control_hz=control_hz)
 
 
 def spread_cm(run: Recording) -> np.ndarray:
@@ -265,6 +282,7 @@ def test_own_quantities_go_where_the_recording_goes(tmp_path):
         ("mine", lambda run: [None] * len(run), "real numbers, not object"),
         ("mine", lambda run: np.full(len(run), "1e4000", np.longdouble), "numbers that fit"),
         ("mine", lambda run: [[1.0], [1.0, 2.0]], "'mine' is not accepted: real numbers"),
+        ("mine", lambda run: np.ma.masked, r"shape \(\), expected \(21,\)"),
         ("mine", lambda run: 1 / 0, "'mine' failed: ZeroDivisionError"),
         ("mine", lambda run: run.pose.sort(), "'mine' failed: ValueError.*read-only"),
         ("mine", lambda run: run.order.psi_o.fill(1), "read-only"),

@@ -288,6 +288,8 @@ def test_lists_of_one_environment_and_of_many():
     for bw_s in ([0.25, 0.75], (0.25, 0.75), np.array([0.25, 0.75]), iter([0.25, 0.75])):
         env.reset(seed=0, options={"bw_s": bw_s})
         assert 0.25 < env.episode()["bw_s"] < 0.75
+    env.reset(seed=0, options={"bw_s": np.array(0.5)})
+    assert env.episode()["bw_s"] == 0.5
     for target in (["cw", "ccw"], np.array(["cw", "ccw"]), (each for each in ("cw", "ccw"))):
         env.reset(seed=0, options={"target": target})
         assert env.episode()["target"] == ("cw", "ccw")

@@ -64,7 +64,37 @@ def test_a_point_in_the_water_is_said_and_can_be_left_out(seen):
     assert (found.order.psi_o == read_tracks(seen.table[~lost], LAYOUT).order.psi_o).all()
 
 
-@pytest.mark.parametrize("name", ["", "-1", "unassigned", "Unassigned", "None", "nan", "null", -1])
+@pytest.mark.parametrize("number", [-1, 0])
+def test_a_heading_that_is_held_is_said_and_can_be_left_out(seen, number):
+    table = seen.table.astype({"angle": float})
+    # As a tracker that does not round.
+    table["angle"] = (table["angle"] + 1e-5 * np.arange(len(table))) % 360
+    lost = lost_rows(seen.table)
+    assert read_and_counted(table, LAYOUT)[1].held == {}
+    assert read_and_counted(seen.table, LAYOUT)[1].held == {}
+    table.loc[lost, "angle"] = number
+    _, report = read_and_counted(table, LAYOUT)
+    moving = table[lost].drop_duplicates(["track", "x_px", "y_px"]).groupby("track").size()
+    assert report.held == {name: count for name, count in moving.items() if count >= 20}
+    assert report.held
+    assert "the same heading in many frames: boat" in str(report)
+    if number < 0:
+        _, report = read_and_counted(table, but(LAYOUT, missing=("-1",)))
+        assert report.held == {}
+        assert set(report.left_out) == {"without a heading"}
+
+
+@pytest.mark.parametrize("source", [{"x": [1.0]}, np.zeros(3), 3, None])
+def test_what_is_no_table_or_layout_is_named(seen, source):
+    with pytest.raises(TypeError, match="tracks must be a file or a DataFrame"):
+        read_tracks(source, LAYOUT)
+    with pytest.raises(TypeError, match="layout must be a TrackLayout"):
+        read_tracks(seen.table, "tracks.toml" if source is None else source)
+
+
+@pytest.mark.parametrize(
+    "name", ["", "-1", "unassigned", "Unassigned", "None", "nan", "null", -1, "?"]
+)
 def test_what_is_assigned_to_nobody_is_no_boat(seen, name, tmp_path):
     extra = seen.table.iloc[::7].assign(
         track=name, x_px=600.0 + np.arange(len(seen.table[::7])) % 9
