@@ -171,12 +171,7 @@ def test_habits_of_trackers(lost, heading, clock, films, spelling, is_spelled, s
     assert (report.boats, len(found)) == (BOATS, FRAMES + 1)
     for values, known in zip(quantities(found), quantities(expected), strict=True):
         off = np.nanmean(np.abs(values - known)) / np.nanmean(known)
-        assert off < 0.05, (
-            lost,
-            heading,
-            clock,
-            films,
-        )
+        assert off < 0.05, (lost, heading, clock, films)
     assert report.samples + report.missing == BOATS * (FRAMES + 1)
     assert report.missing == gone.sum()
 

@@ -81,29 +81,28 @@ def test_damaged_checkpoints(tiny: TrainingSettings, tmp_path: Path, content: by
         training.resume(tmp_path)
 
 
+def say_in_checkpoint(path: Path, data: bytes) -> None:
+    """Let a checkpoint say other things of itself, beside the same weights."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in {**parts, "data": data}.items():
+            archive.writestr(name, content)
+
+
 def test_resuming_executes_nothing_in_a_checkpoint(tiny: TrainingSettings, tmp_path: Path) -> None:
     # Without the objects that stable-baselines3 pickles: only weights and a number are read.
     training.train(tiny, tmp_path)
-    path = tmp_path / "checkpoint.zip"
-    with zipfile.ZipFile(path) as archive:
-        parts = {name: archive.read(name) for name in archive.namelist()}
-    parts["data"] = b'{"num_timesteps": 192, "policy_class": {":serialized:": "not to be read"}}'
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in parts.items():
-            archive.writestr(name, content)
+    data = b'{"num_timesteps": 192, "policy_class": {":serialized:": "not to be read"}}'
+    say_in_checkpoint(tmp_path / "checkpoint.zip", data)
     assert training.resume(tmp_path).num_timesteps == 192
 
 
 @pytest.mark.parametrize("samples", [-5, -192, 7, 64.0, True, "192", None, [192]])
 def test_a_checkpoint_after_no_whole_rollouts_is_refused(tiny, tmp_path, samples) -> None:
     training.train(tiny, tmp_path)
-    path = tmp_path / "checkpoint.zip"
-    with zipfile.ZipFile(path) as archive:
-        parts = {name: archive.read(name) for name in archive.namelist()}
-    parts["data"] = json.dumps({"num_timesteps": samples}).encode()
-    with zipfile.ZipFile(path, "w") as archive:
-        for name, content in parts.items():
-            archive.writestr(name, content)
+    data = json.dumps({"num_timesteps": samples}).encode()
+    say_in_checkpoint(tmp_path / "checkpoint.zip", data)
     before = sorted(each.name for each in tmp_path.iterdir())
     with pytest.raises(ParameterError, match="are no whole number of rollouts"):
         training.resume(tmp_path)
