@@ -64,5 +64,5 @@ def _draw_motor(axes: Axes) -> None:
     )
 
 
-PLOTS = {"results/frame.png": Plot(["model_plots.py"], frame_and_signs, (8.4, 4.0))}
+PLOTS = {"results/frame.png": Plot(["model_plots.py"], frame_and_signs, (7.2, 3.6))}
 """How it is drawn, by its file below docs. It shows no data: this file is its source."""

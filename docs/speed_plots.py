@@ -11,12 +11,12 @@ LEARNERS = "throughput/learners.csv"
 MANY_AGENTS = "throughput/many_agents.csv"
 SHOWN = {
     "leapfrog": "leapfrog / exact / r0",
-    "leapfrog, 1 relinearization": "leapfrog / exact / r1",
-    "leapfrog, 2 relinearizations": "leapfrog / exact / r2",
+    "leapfrog, r1": "leapfrog / exact / r1",
+    "leapfrog, r2": "leapfrog / exact / r2",
     "moreau": "moreau / exact / r0",
     "paper": "paper / exact / r0",
-    "rapier2d-f64, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
-    "rapier2d-f64, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
+    "rapier, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
+    "rapier, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
     "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
     "pymunk": "pymunk 10 iterations",
     "MuJoCo": "MuJoCo Newton",
@@ -33,7 +33,7 @@ def engines(figure: Figure) -> None:
     for axes, columns, label in zip(
         panels,
         ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "overlap, cm"}, {"": "slide, cm"}),
-        ("time of a step [µs]", "overlap in the jam [cm]", "error after sliding [cm]"),
+        ("step [µs]", "overlap [cm]", "slide error [cm]"),
         strict=True,
     ):
         for name, column in columns.items():
@@ -106,13 +106,13 @@ def many_agents(figure: Figure) -> None:
     axes.set(xscale="log", xlabel="environment steps per second of one core")
     axes.set_yticks(range(len(lines)), lines)
     axes.invert_yaxis()
-    axes.legend(title="batch", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    axes.legend(title="batch", loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
 
 
 PLOTS = {
-    "speed_vs_error/engines.png": Plot([ENGINES], engines, (9.0, 4.2)),
+    "speed_vs_error/engines.png": Plot([ENGINES], engines, (7.2, 4.4)),
     "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
-    "throughput/learners.png": Plot([LEARNERS], learners, (8.4, 3.8)),
-    "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (9.0, 3.2)),
+    "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
+    "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
 }
 """How each is drawn, by its file below docs."""
