@@ -2,7 +2,9 @@
 
 use crate::support::{batch, parameters, settings, step};
 use flockenv::environment::EnvSettings;
-use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
+use flockenv::environment::observation::{
+    Block, FlockView, ObservationLayout, Observer, observe_flock,
+};
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::Pool;
@@ -132,5 +134,23 @@ fn the_nearest_come_first_and_equally_near_ones_in_the_order_of_boats() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn the_nearest_do_not_depend_on_those_seen_before() {
+    // A dense flock and one spread over the pool take turns: limits kept from one are far too narrow or wide for the other.
+    let own = FlockParameters {
+        n_boats: 27,
+        ..parameters(6)
+    };
+    let (dense, spread) = (grid(27, 6), Flock::new(own, 1).unwrap());
+    let mut layout = ObservationLayout::of(&[Block::Neighbors]);
+    layout.repeat(Block::Neighbors, 6);
+    let mut observer = Observer::new(layout, spread.parameters()).unwrap();
+    for flock in [&dense, &spread, &dense, &dense, &spread] {
+        let mut observed = vec![0.0; 6 * layout.size()];
+        observer.observe(&FlockView::new(flock, &[], None), &mut observed);
+        assert_eq!(observed, observe_flock(flock, layout, &[]).unwrap());
     }
 }

@@ -8,14 +8,17 @@ use wide::f64x4;
 const AT_ONCE: usize = 4;
 /// Up to this many boats are found and sorted without branches.
 const FEW: usize = 16;
+/// Where a leader's boats were found by its last observation, they are looked for within this times the square of the
+/// farthest one's distance.
+const GROWTH: f64 = 1.1;
 
 /// Finds the nearest boats, with its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
     /// Squared distances of every boat from the leaders at hand, which are infinitely far from themselves.
     squares: Vec<[f64; AT_ONCE]>,
-    /// Within these, and not much more, every leader at hand has as many boats as are wanted.
-    limits: [f64; AT_ONCE],
+    /// Within these, and not much more, every leader has as many boats as are wanted, or had so when it last looked.
+    limits: Vec<f64>,
     /// A leader's nearest boats, in front.
     found: Vec<u32>,
 }
@@ -31,21 +34,36 @@ impl Nearest {
     ) -> impl Iterator<Item = usize> {
         let lane = leader % AT_ONCE;
         if lane == 0 {
-            self.measure(hulls, leader, wanted);
+            self.measure(hulls, leader);
         }
-        let limit = self.limits[lane];
+        let mut count = self.find(leader);
+        if count < wanted.min(hulls.len() - 1) || wanted <= FEW && count > FEW {
+            self.set_limits(leader - lane, wanted);
+            count = self.find(leader);
+        }
+        let found = &mut self.found[..count];
+        sort(found, |boat| self.squares[boat as usize][lane]);
+        let last = found.get(wanted - 1);
+        let square = last.map_or(f64::MAX, |&boat| self.squares[boat as usize][lane]);
+        self.limits[leader] = (GROWTH * square).min(f64::MAX);
+        self.found[..count.min(wanted)]
+            .iter()
+            .map(|&boat| boat as usize)
+    }
+
+    /// Lists the boats within a leader's limit; returns how many.
+    fn find(&mut self, leader: usize) -> usize {
+        let (lane, limit) = (leader % AT_ONCE, self.limits[leader]);
         let mut count = 0;
         for (boat, squares) in self.squares.iter().enumerate() {
             self.found[count] = boat as u32;
             count += usize::from(squares[lane] <= limit);
         }
-        let found = &mut self.found[..count];
-        sort(found, |boat| self.squares[boat as usize][lane]);
-        found.iter().take(wanted).map(|&boat| boat as usize)
+        count
     }
 
-    /// Works out distances from some leaders, and their limits.
-    fn measure(&mut self, hulls: &[HullPose], first: usize, wanted: usize) {
+    /// Works out distances from some leaders.
+    fn measure(&mut self, hulls: &[HullPose], first: usize) {
         let others = hulls[first..].iter().map(|hull| hull.center);
         let (mut x, mut y) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
         for (lane, center) in others.take(AT_ONCE).enumerate() {
@@ -53,6 +71,7 @@ impl Nearest {
         }
         let (x, y) = (f64x4::new(x), f64x4::new(y));
         self.found.resize(hulls.len() + 1, 0);
+        self.limits.resize(hulls.len() + AT_ONCE, f64::MAX);
         self.squares.clear();
         self.squares.extend(hulls.iter().map(|hull| {
             let (dx, dy) = (hull.center.x - x, hull.center.y - y);
@@ -61,12 +80,17 @@ impl Nearest {
         for (lane, own) in self.squares[first..].iter_mut().take(AT_ONCE).enumerate() {
             own[lane] = f64::INFINITY;
         }
+    }
+
+    /// Sets the limits of the leaders at hand by their distances.
+    fn set_limits(&mut self, first: usize, wanted: usize) {
         let limits = if wanted <= FEW {
             self.largest_of_smallest(wanted)
         } else {
             f64x4::splat(f64::INFINITY)
         };
-        self.limits = limits.fast_min(f64x4::splat(f64::MAX)).to_array();
+        let limits = limits.fast_min(f64x4::splat(f64::MAX)).to_array();
+        self.limits[first..first + AT_ONCE].copy_from_slice(&limits);
     }
 
     /// The largest of the `wanted` smallest squares, at most [`FEW`], for each leader at hand.
