@@ -117,9 +117,11 @@ impl Factor {
         let mut computed = 0;
         for (k, row) in rows.rows.iter().enumerate() {
             if row.is_active {
-                computed += u64::from(self.visit(&rows.rows, k, regularization));
-                if self.room < 0 {
-                    break;
+                if self.visit(&rows.rows, k, regularization) {
+                    computed += 1;
+                    if self.room < 0 {
+                        break;
+                    }
                 }
             } else if self.nodes[k].is_factored {
                 self.release(k);
