@@ -60,6 +60,7 @@ fn work(name: &str) -> Option<Work> {
         "cycle of 27, 1 relinearization" => flock(Scene::Cycle, 27, 1),
         "cycle of 27 with 300 posts" => Work::Flock(with_posts(Scene::Cycle.parameters(27))),
         "jam of 1000" => flock(Scene::Jam, 1000, 0),
+        "jam of 1000, 1 relinearization" => flock(Scene::Jam, 1000, 1),
         "control step in wide" => Work::Environment(environment(Pool::WIDE, 0.3)),
         "control step in narrow" => Work::Environment(environment(Pool::NARROW, 0.4)),
         "training control step in wide" => Work::Environment(training(Pool::WIDE, 0.31)),
@@ -95,7 +96,7 @@ fn with_posts(parameters: FlockParameters) -> FlockParameters {
     }
 }
 
-const SCENES: [&str; 13] = [
+const SCENES: [&str; 14] = [
     "jam of 27",
     "jam of 27, 1 relinearization",
     "jam of 27, 2 relinearizations",
@@ -103,6 +104,7 @@ const SCENES: [&str; 13] = [
     "cycle of 27, 1 relinearization",
     "cycle of 27 with 300 posts",
     "jam of 1000",
+    "jam of 1000, 1 relinearization",
     "control step in wide",
     "control step in narrow",
     "training control step in wide",
