@@ -4,7 +4,8 @@
 //! Otherwise: a Runge–Kutta solution of order 4 with steps of 0.1 ms.
 
 use crate::support::{
-    SCHEMES, changed, driven, flock_of, inert, runge_kutta, take_substeps, time_of_velocities,
+    SCHEMES, changed, driven, equations_of_motion, flock_of, inert, runge_kutta, take_substeps,
+    time_of_velocities,
 };
 use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;
@@ -96,7 +97,6 @@ fn cycle_s(p: &FlockParameters) -> f64 {
 
 /// The same by Runge–Kutta, phase by phase.
 fn exact_two_cycles(p: &FlockParameters, rudder: f64) -> [f64; 3] {
-    let (c0, c1, c2, c3) = (p.c0, p.c1, p.c2, p.c3);
     let mut state = [3.0, -2.0, 0.4, 2.0, 1.0, 0.3];
     for _ in 0..2 {
         for (length, speed) in [
@@ -110,17 +110,7 @@ fn exact_two_cycles(p: &FlockParameters, rudder: f64) -> [f64; 3] {
                 continue;
             }
             state = runge_kutta(state, (0.0, length), steps, |y, _| {
-                let [_, _, heading, vx, vy, spin] = *y;
-                let (sin, cos) = heading.sin_cos();
-                let along = cos * vx + sin * vy;
-                [
-                    vx,
-                    vy,
-                    spin,
-                    c0 * (speed * cos - vx),
-                    c0 * (speed * sin - vy),
-                    -c1 * spin.powi(3) + (c2 * rudder - c3 * spin) * along,
-                ]
+                equations_of_motion(p, speed, rudder, y)
             });
         }
     }

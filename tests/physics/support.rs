@@ -354,6 +354,22 @@ pub fn runge_kutta<const N: usize>(
     })
 }
 
+/// Eqs (8) and (9) of a lone boat with a preferred speed and a rudder, in the current that it makes itself: d/dt of
+/// [x, y, α, ẋ, ẏ, α̇].
+pub fn equations_of_motion(p: &FlockParameters, speed: f64, rudder: f64, y: &[f64; 6]) -> [f64; 6] {
+    let [px, py, heading, vx, vy, spin] = *y;
+    let far = px.hypot(py);
+    let (tx, ty) = (-py / far, px / far);
+    let current = -p.current_gain * (vx * tx + vy * ty);
+    let current = current.clamp(-p.current_cap_cm_s, p.current_cap_cm_s);
+    let (rx, ry) = (vx - current * tx, vy - current * ty);
+    let (sin, cos) = heading.sin_cos();
+    let along = cos * rx + sin * ry;
+    let turning = -p.c1 * spin.powi(3) + (p.c2 * rudder - p.c3 * spin) * along;
+    let accelerations = [speed * cos - rx, speed * sin - ry].map(|lag| p.c0 * lag);
+    [vx, vy, spin, accelerations[0], accelerations[1], turning]
+}
+
 /// The root of a function that changes sign in an interval, by bisection to rounding.
 pub fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(high) > 0.0;

@@ -4,7 +4,7 @@
 //! On paper: boats with preferred speeds v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
 //! flock of equal boats at v0/(1 + κ), or at v0 − cap.
 
-use crate::support::{SCHEMES, assert_near, driven, flock_of, runge_kutta};
+use crate::support::{SCHEMES, assert_near, driven, equations_of_motion, flock_of, runge_kutta};
 use flockenv::geometry::Vec2;
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
@@ -116,27 +116,6 @@ fn a_boat_without_a_motor_drifts_with_the_water_and_does_not_steer() {
     }
 }
 
-/// A lone boat that circles the center with its rudder held, current and all: d/dt of
-/// [x, y, α, ẋ, ẏ, α̇].
-fn rate(p: &FlockParameters, rudder: f64, y: &[f64; 6]) -> [f64; 6] {
-    let [px, py, heading, vx, vy, spin] = *y;
-    let far = px.hypot(py);
-    let (tx, ty) = (-py / far, px / far);
-    let current = -p.current_gain * (vx * tx + vy * ty);
-    let current = current.clamp(-p.current_cap_cm_s, p.current_cap_cm_s);
-    let (rx, ry) = (vx - current * tx, vy - current * ty);
-    let (sin, cos) = heading.sin_cos();
-    let along = cos * rx + sin * ry;
-    [
-        vx,
-        vy,
-        spin,
-        p.c0 * (p.speed_cm_s * cos - rx),
-        p.c0 * (p.speed_cm_s * sin - ry),
-        -p.c1 * spin.powi(3) + (p.c2 * rudder - p.c3 * spin) * along,
-    ]
-}
-
 #[test]
 fn each_scheme_keeps_its_order_with_the_current_on() {
     for (scheme, least, most) in [
@@ -154,7 +133,8 @@ fn each_scheme_keeps_its_order_with_the_current_on() {
             let start = [60.0, 0.0, 0.4 * PI, 0.0, 5.0, 0.0];
             let mut flock = flock_of(&p, &[([60.0, 0.0, 0.4 * PI], [0.0, 5.0, 0.0])]);
             flock.advance(6.0, Some(&[0.8])).expect("finite motion");
-            let exact = runge_kutta(start, (0.0, 6.0), 6000, |y, _| rate(&p, 0.8, y));
+            let rate = |y: &_, _| equations_of_motion(&p, p.speed_cm_s, 0.8, y);
+            let exact = runge_kutta(start, (0.0, 6.0), 6000, rate);
             let position = flock.poses()[0].position;
             (position - Vec2::new(exact[0], exact[1])).norm()
         };
