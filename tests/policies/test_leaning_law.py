@@ -127,7 +127,7 @@ def text(change) -> str:
         (lambda law: law.update(bound="relu"), "unknown variant `relu`"),
         (lambda law: law["gains"].pop("gain"), "missing field `gain`"),
         (lambda law: law.update(decision_period_s=-1.0), "decision_period_s = -1"),
-        (lambda law: law.update(gains=GAINS, decision_period_s=1.0), "none with gains other than"),
+        (lambda law: law.update(gains=GAINS, decision_period_s=1.0), "none, unless the gains are"),
         (lambda law: law.update(judged={"signed_order": 0.5}), "missing field `interval`"),
     ],
 )
