@@ -83,7 +83,11 @@ export async function readNpz(buffer) {
     if (entry.length !== size || crc32(entry) !== sum) {
       throw new Error(`Bad CRC-32 for file '${name}'`);
     }
-    arrays[name.replace(/\.npy$/, "")] = readNpy(entry);
+    const plain = name.replace(/\.npy$/, "");
+    if (Object.hasOwn(arrays, plain)) {
+      throw new Error(`it holds '${plain}' twice`);
+    }
+    arrays[plain] = readNpy(entry);
   }
   return arrays;
 }

@@ -42,12 +42,14 @@ def read_arrays(
                 if held > most:
                     raise ValueError(f"it holds {held} bytes of {most} that are accepted")
                 # Whole entries, whose checksums are compared; NumPy alone may stop before the end.
-                parts = {name: io.BytesIO(archive.read(name)) for name in archive.namelist()}
-            arrays = {
-                name.removesuffix(".npy"): np.lib.format.read_array(part, allow_pickle=False)
-                for name, part in parts.items()
-            }
-            for name, array in arrays.items():
+                parts = [(each.filename, archive.read(each)) for each in archive.infolist()]
+            arrays: dict[str, NDArray[Any]] = {}
+            for path_within, data in parts:
+                name = path_within.removesuffix(".npy")
+                if name in arrays:
+                    raise ValueError(f"it holds {name!r} twice")
+                array = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+                arrays[name] = array
                 if array.dtype.kind not in "biufU":
                     raise ValueError(f"{name} holds {array.dtype}, which is not accepted")
         except Exception as error:

@@ -4,6 +4,8 @@ import dataclasses
 import math
 import re
 import tempfile
+import warnings
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -135,6 +137,17 @@ def test_without_poses_a_quantity_that_is_missing_is_undefined():
     half = np.where(np.arange(11) > 5, np.nan, RUN.order.nematic)
     with pytest.raises(ParameterError, match=r"order\.nematic must be finite"):
         load(with_arrays(**{**columns, "order_nematic": half}))
+
+
+@pytest.mark.parametrize("name", ["pose.npy", "pose"])
+def test_an_array_that_is_there_twice_is_refused(name, tmp_path):
+    path = tmp_path / "run.npz"
+    RUN.save(path)
+    with zipfile.ZipFile(path, "a") as archive, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        archive.writestr(name, archive.read("velocity.npy"))
+    with pytest.raises(ParameterError, match="it holds 'pose' twice"):
+        Recording.load(path)
 
 
 def test_what_is_unknown_is_dropped_with_a_word():

@@ -82,3 +82,9 @@ test("bytes after the archive are no part of it, as for NumPy", async () => {
   const { numbers } = await readNpz(Uint8Array.of(...whole, 1, 2, 3).buffer);
   assert.deepEqual([...numbers.values], [1, 2]);
 });
+
+test("an array that is there twice is refused", async () => {
+  const letters = writeNpz({ one: array.reals([1], [1]), two: array.reals([2], [1]) });
+  const twice = Buffer.from(Buffer.from(letters).toString("latin1").replaceAll("two.npy", "one.npy"), "latin1");
+  await assert.rejects(readNpz(Uint8Array.from(twice).buffer), { message: "it holds 'one' twice" });
+});
