@@ -132,7 +132,7 @@ docs: $(STAMPS)/test $(STAMPS)/docs $(CORE) ## build the pages, warnings are err
 extend: $(STAMPS)/venv ## follow the pages of docs/extend, or PAGE=policy alone, in a copy of the tree
 	$(BIN)/python docs/extend/follow.py $(PAGE)
 
-test-processors: ## the tests of the same bits on aarch64 and riscv64, emulated
+test-processors: ## the tests of the same bits on aarch64, riscv64 and i686, emulated
 	tests/processors.sh
 
 paper: build ## make every figure and question of paper/ that has runs missing, or draw it again
