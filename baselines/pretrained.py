@@ -1,8 +1,11 @@
-"""Make the pretrained leaders of both pools from nothing but these settings.
+"""Make the pretrained leaders from nothing but these settings.
 
     make pretrained                              # an hour and a half of one core
     python baselines/pretrained.py --trial       # all of it with little of everything, a minute
-    python baselines/pretrained.py --ship        # copies what it made to baselines/policies
+    python baselines/pretrained.py --ship        # copies what passes to baselines/policies
+
+In `wide` three leaders reach a signed order of 0.503 in the mean of eight seeds, 0.481 to 0.520,
+where the tuned law reaches 0.451. In `narrow` no seed passes the tuned law.
 
 The design was fixed before the first training. In `wide` eight trainings differ from
 `flockenv train` in the number of leaders alone: flocks with one, two, three and four are dealt
@@ -22,9 +25,8 @@ PPO also keeps its policy after 500 flock-hours. This compares all seeds:
     python baselines/judge_trainings.py results/pretrained/wide/* results/pretrained/wide-500/* \\
         --out docs/training/pretrained
 
-The policy of a pool replaces the one that ships if it leads at least as well in the validation
-flocks. In `narrow` it counts as learned only if it passes the tuned law by more than 0.008 in 2048
-fresh flocks with some number of leaders.
+The policy of a pool ships if it leads at least as well in the validation flocks as the tuned law
+and as the policy that ships already.
 """
 
 import argparse
@@ -32,7 +34,8 @@ import shlex
 import shutil
 import sys
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -58,8 +61,9 @@ class Settings:
     """Everything that the policies depend on."""
 
     seeds: tuple[int, ...] = tuple(range(8))
-    #: Leaders of the flocks of PPO, dealt out in turn, and the flock-hours of each training.
-    n_leaders: tuple[int, ...] = (1, 2, 3, 4)
+    #: The flocks of PPO: numbers of leaders are dealt out in turn.
+    environment: Mapping[str, Any] = field(default_factory=lambda: {"n_leaders": [1, 2, 3, 4]})
+    #: Flock-hours of each training.
     wide_hours: float = 1100.0
     kept_hours: float = 500.0
     narrow_hours: float = 400.0
@@ -111,7 +115,7 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
         seed=seed,
         flock_hours=given.wide_hours,
         num_flocks=given.num_flocks,
-        environment={"n_leaders": list(given.n_leaders)},
+        environment=given.environment,
     )
     env = settings.venv()
     env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
@@ -186,8 +190,8 @@ def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.Data
     return pd.DataFrame(rows)
 
 
-def make(given: Settings, pool: str, out: Path, command: str) -> LeaningLaw:
-    """Train what is not yet there, choose, judge and write the policy of a pool."""
+def make(given: Settings, pool: str, out: Path, command: str) -> bool:
+    """Train what is not yet there, choose, judge and write a pool's policy; whether it ships."""
     laws = {}
     for seed in given.seeds:
         folder = out / pool / str(seed)
@@ -197,7 +201,9 @@ def make(given: Settings, pool: str, out: Path, command: str) -> LeaningLaw:
             MAKERS[pool](given, seed, folder, command).save(path)
         laws[f"seed {seed}"] = LeaningLaw.load(path)
     mean = mean_of(list(laws.values()))
-    others = {"tuned law": DampedLaw.tuned(pool), "ships": LeaningLaw.learned(pool)}
+    others: dict[str, Any] = {"tuned law": DampedLaw.tuned(pool)}
+    if (SHIPPED / f"{pool}.json").exists():
+        others["ships"] = LeaningLaw.learned(pool)
     candidates = {**others, "mean": mean, **laws}
     scores = validated(given, pool, candidates)
     scores.round(4).to_csv(out / f"validation-{pool}.csv", index=False)
@@ -241,14 +247,16 @@ def make(given: Settings, pool: str, out: Path, command: str) -> LeaningLaw:
     )
     law.save(out / f"{pool}.json")
     print(f"{pool}: {chosen}, signed order {signed_order:.3f} [{low:.3f}, {high:.3f}]", flush=True)
-    return law
+    return bool(score[chosen] >= score[list(others)].max())
 
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=tuple(MAKERS), action="append", help="[both]")
     parser.add_argument("--trial", action="store_true", help="little of everything")
-    parser.add_argument("--ship", action="store_true", help="copy the files to baselines/policies")
+    parser.add_argument(
+        "--ship", action="store_true", help="copy to baselines/policies if it passes"
+    )
     parser.add_argument("--out", type=Path, default=Path("results/pretrained"))
     options = parser.parse_args(arguments)
     if options.trial and options.ship:
@@ -256,8 +264,8 @@ def main(arguments: list[str] | None = None) -> None:
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "baselines/pretrained.py", *given])
     for pool in options.pool or MAKERS:
-        make(TRIAL if options.trial else Settings(), pool, options.out, command)
-        if options.ship:
+        passes = make(TRIAL if options.trial else Settings(), pool, options.out, command)
+        if options.ship and passes:
             shutil.copyfile(options.out / f"{pool}.json", SHIPPED / f"{pool}.json")
 
 
