@@ -23,33 +23,35 @@ from flockenv.policies.registry import named_policy
 _TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
 
 
-class AgainstWhatItIsTold:
-    """A law towards the other direction than the one in its observation."""
+(TASK,) = tasks_named("v2", ["misinformed"])
 
-    def __init__(self, law: Any) -> None:
-        self.law = law
+
+class Heeds:
+    """A law towards the direction that it is told, times 1 or -1."""
+
+    def __init__(self, law: Any, sign: float) -> None:
+        self.law, self.sign = law, sign
 
     def predict(
         self, observation: ArrayLike, state: Any = None, episode_start: Any = None
     ) -> tuple[Any, Any]:
-        """Return the law's rudders for an observation with the opposite target."""
+        """Return the law's rudders."""
         seen = np.array(observation, np.float32)
-        seen[..., _TOLD] *= -1.0
+        seen[..., _TOLD] *= self.sign
         return self.law.predict(seen, state, episode_start)
 
     def __repr__(self) -> str:
-        return f"AgainstWhatItIsTold({self.law!r})"
+        return f"Heeds({self.law!r}, {self.sign:g})"
 
 
 def main() -> None:
     """Print the order with the pair, and with the tuned law for both leaders."""
-    (task,) = tasks_named("v2", ["misinformed"])
-    law = named_policy(REFERENCE, task.parameters.pool)()
+    law = named_policy(REFERENCE, TASK.parameters.pool)()
     policies = {
-        "pair": {"leader_0": law, "leader_1": AgainstWhatItIsTold(law)},
+        "pair": {"leader_0": law, "leader_1": Heeds(law, -1.0)},
         REFERENCE: law,
     }
-    result = ComparisonReport([task], list(policies), task.run(policies))
+    result = ComparisonReport([TASK], list(policies), TASK.run(policies))
     for row in result.means.to_dict("records"):
         ends = f"[{row['signed_order_low']:.3f}, {row['signed_order_high']:.3f}]"
         print(f"{row['policy']}: {row['signed_order']:.3f} {ends} in {row['runs']} episodes")
