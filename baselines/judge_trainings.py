@@ -1,8 +1,5 @@
 """Judge trainings by `examples/train_leaders.py` in the same fresh flocks.
 
-    for seed in 0 1 2; do python examples/train_leaders.py $seed 2000 16; done
-    python baselines/judge_trainings.py results/train_leaders/* --out docs/training/wide
-
     for seed in 0 1 2 3 4; do
         python examples/train_leaders.py $seed 500 16
         python baselines/train_with_trpo.py $seed 500 results/trpo/$seed
@@ -18,17 +15,21 @@ differences are paired by flock. 512 flocks take half a minute of one core for e
 
 Each design was fixed before its trainings. All trainings count, and none was chosen:
 
-- PPO: seeds 0 to 2 with 500, 1000, 1100 and 2000 flock-hours. Trainings with other seeds, 1500
-  flock-hours together, chose the reward, the exploration and the time between decisions before, in
-  512 other flocks. The 1100 were fixed when 1000 had taken 4.4 minutes and left one seed at 0.497.
-- Algorithms: PPO, TRPO and an evolution strategy, seeds 0 to 4 with 500 flock-hours each. The mean
-  of an algorithm has an interval of Student's distribution. Four target divergences of TRPO and six
-  settings of the evolution strategy were tried before, with seed 10 and 250 flock-hours each.
+- PPO, TRPO and an evolution strategy, seeds 0 to 4 with 500 flock-hours each. The mean of an
+  algorithm has an interval of Student's distribution. Before, trainings with other seeds, 1500
+  flock-hours together, chose PPO's reward, exploration and time between decisions, in 512 other
+  flocks; four target divergences of TRPO and six settings of the evolution strategy were tried with
+  seed 10 and 250 flock-hours each.
 - Paired branches: seeds 0 to 4 with 200 flock-hours each. Ten searches, 1200 flock-hours together,
   chose the length of a branch, the changes and the learning rate, in 256 or 384 other flocks.
 
     for seed in 0 1 2 3 4; do python baselines/paired_branches.py --seed $seed; done
     python baselines/judge_trainings.py results/paired/* --out docs/training/paired
+
+- What `make pretrained` makes: seeds 0 to 7, after 500 and 1101 flock-hours, no setting searched.
+
+    python baselines/judge_trainings.py results/pretrained/wide/* --out docs/training/pretrained
+    python baselines/judge_trainings.py results/pretrained/wide-500/* --out results/wide-500
 """
 
 import argparse

@@ -2,7 +2,7 @@
 
     python baselines/paired_signal.py
 
-With 1024 states the signal after 48 s is 0.94 in pairs and 0.31 in other flocks, per square root of
+With 1024 states the signal after 48 s is 1.10 in pairs and 0.38 in other flocks, per square root of
 a flock-hour.
 
 Flocks led by the tuned law for 4 minutes are branched in two under one noise: one continues by the

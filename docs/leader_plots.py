@@ -1,7 +1,5 @@
 """The plots of the README and of the page about leaders."""
 
-from collections.abc import Mapping
-
 from committed_data import DIFFERENCES, MEANS, Row, one, rows
 from interval_plots import Interval, Plot, across, grouped, listed
 from leader_words import CASES, CLOSE, LEARNED, TUNED, planned
@@ -20,8 +18,8 @@ PLANS = {"planner, noise known": "known", "planner, noise unknown": "fresh"}
 def leader_count(figure: Figure) -> None:
     """Draw what `make compare` prints."""
     axes = figure.subplots()
-    laws = [row for name in LADDER if name != "damped law" for row in rows(COUNT, policy=name)]
-    across(axes, (row for row in laws if row["leaders"] != "slope"), "leaders")
+    laws = (row for name in LADDER if name != "damped law" for row in rows(COUNT, policy=name))
+    across(axes, laws, "leaders")
     across(axes, rows(COUNT, policy="no leaders"), "leaders")
     axes.set(xlabel="leaders among 27 boats", ylabel="signed order", xticks=range(5))
     axes.legend(loc="upper left")
@@ -31,8 +29,9 @@ def both_pools(figure: Figure) -> None:
     """Draw the order by the number of leaders in both pools."""
     panels = figure.subplots(1, 2, sharey=True)
     for axes, (pool, case) in zip(panels, CASES.items(), strict=True):
+        names = LADDER if pool == "wide" else LADDER[1:]
         across(
-            axes, (row for name in LADDER for row in rows(MEANS, case=case, policy=name)), "leaders"
+            axes, (row for name in names for row in rows(MEANS, case=case, policy=name)), "leaders"
         )
         axes.set(title=pool, xlabel="leaders among 27 boats", xticks=range(1, 5))
     panels[0].set_ylabel("signed order")
@@ -41,7 +40,9 @@ def both_pools(figure: Figure) -> None:
 
 def learned_minus_tuned(figure: Figure) -> None:
     """Draw what learning adds to the tuned law, in the larger of the two sets of flocks."""
-    _by_leaders(figure, {pool: _added(case) for pool, case in CASES.items()}, "learned")
+    axes, found = figure.subplots(), _added(CASES["wide"])
+    listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
+    axes.set(xlabel="learned minus tuned law", ylabel="leaders")
 
 
 def tuned_laws(figure: Figure) -> None:
@@ -51,7 +52,11 @@ def tuned_laws(figure: Figure) -> None:
     shown = {
         pool: {k: _ends(row, *ends) for k, row in each.items()} for pool, each in found.items()
     }
-    _by_leaders(figure, shown, "searched gains")
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axes, (pool, gains) in zip(panels, shown.items(), strict=True):
+        listed(axes, gains, dict.fromkeys(gains, "0.15"), 0.0)
+        axes.set(title=pool, xlabel="searched gains minus tuned law")
+    panels[0].set_ylabel("leaders")
 
 
 def beyond(figure: Figure) -> None:
@@ -62,7 +67,7 @@ def beyond(figure: Figure) -> None:
         for row in rows(BEYOND)
     }
     listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
-    axes.set(xlabel="learned minus tuned law")
+    axes.set(xlabel="learned minus tuned law", xticks=(-0.05, 0.0, 0.05, 0.1))
 
 
 def _added(case: str) -> dict[str, Interval]:
@@ -74,14 +79,6 @@ def _added(case: str) -> dict[str, Interval]:
 
 def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
     return float(row[mean]), float(row[low]), float(row[high])
-
-
-def _by_leaders(figure: Figure, shown: Mapping[str, Mapping[str, Interval]], name: str) -> None:
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
-    for axes, (pool, found) in zip(panels, shown.items(), strict=True):
-        listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
-        axes.set(title=pool, xlabel=f"{name} minus tuned law")
-    panels[0].set_ylabel("leaders")
 
 
 def plans(figure: Figure) -> None:
@@ -126,7 +123,7 @@ def motion(figure: Figure) -> None:
 PLOTS = {
     "leaders/leader_count.png": Plot([COUNT], leader_count),
     "leaders/both_pools.png": Plot([MEANS], both_pools, (8.4, 4.2)),
-    "leaders/learned_minus_tuned.png": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (8.4, 2.6)),
+    "leaders/learned_minus_tuned.png": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (6.8, 2.4)),
     "leaders/beyond.png": Plot([BEYOND], beyond, (6.8, 6.2)),
     "leaders/tuned_laws.png": Plot([GAINS], tuned_laws, (8.4, 2.6)),
     "leaders/plans.png": Plot(

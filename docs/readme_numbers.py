@@ -156,3 +156,11 @@ def figures() -> str:
         body.append([f"[{number}](pictures/{picture}.png)", *map(str, found)])
     body.append(["all", *map(str, total)])
     return markdown(["figure", *VERDICTS], body)
+
+
+def variants() -> str:
+    """Return in how many variants the headlines hold, for paper/headlines.md."""
+    found = [row["verdict"] for row in rows(CLAIMS, figure="headlines")]
+    held, failed, free = (found.count(each) for each in VERDICTS)
+    end = f"{failed} fail" if failed else "none fails"
+    return f"**Mostly: {held} of {len(found)} answers hold, {free} are open, and {end}.**"

@@ -10,14 +10,14 @@ from pathlib import Path
 
 from floors import floors
 from leader_words import plans, summary, verdict
-from readme_numbers import figures, findings, speed
-from training_words import example, pretrained
+from readme_numbers import figures, findings, speed, variants
+from training_words import pretrained
 
 DOCS = Path(__file__).parent
 PAGES = (
     DOCS.parent / "README.md",
     DOCS.parent / "ARCHITECTURE.md",
-    DOCS.parent / "paper" / "README.md",
+    *sorted((DOCS.parent / "paper").glob("*.md")),
     *sorted(DOCS.glob("*.md")),
 )
 MARKED = re.compile(r"(<!-- table: (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
@@ -45,8 +45,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "leaders-summary": summary,
     "leaders-plans": plans,
     "speed": speed,
-    "training-example": example,
     "training-pretrained": pretrained,
+    "variants": variants,
 }
 """How each table is made."""
 

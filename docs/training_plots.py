@@ -12,15 +12,13 @@ from matplotlib.figure import Figure
 EASY = "easy/curve.csv"
 SIGNALS = "results/signals.csv"
 PAIRED = "training/paired/signal.csv"
-BUDGETS = {
-    500: "training/algorithms/evaluation.csv",
-    1000: "training/wide_1000/evaluation.csv",
-    1100: "training/wide_1100/evaluation.csv",
-    2000: "training/wide/evaluation.csv",
+EXAMPLE = "training/algorithms/evaluation.csv"
+"""The evaluation of trainings by the example, 500 flock-hours each."""
+MIXED = {
+    500: "training/pretrained/evaluation-500.csv",
+    1101: "training/pretrained/evaluation.csv",
 }
-"""Evaluations of trainings by the example, by their flock-hours."""
-MIXED = "training/pretrained/evaluation.csv"
-"""The evaluation of trainings with one to four leaders, 1101 flock-hours each."""
+"""Evaluations of the trainings with one to four leaders of `make pretrained`, by flock-hours."""
 NOTHING = {
     pool: [f"training/from_nothing/{pool}_{seed}/curve.csv" for seed in seeds]
     for pool, seeds in {"wide": (0, 1, 2), "narrow": (2, 3, 4)}.items()
@@ -51,17 +49,17 @@ def easy(figure: Figure) -> None:
 def budgets(figure: Figure) -> None:
     """Draw the order of each seed against the flock-hours of its training."""
     axes = figure.subplots()
-    for hours, file in BUDGETS.items():
-        # The example's trainings are called `seed N`, or `train_leaders N` beside other algorithms.
-        found = [each for each in rows(file) if each["policy"].startswith(("seed", "train"))]
-        for place, row in enumerate(found):
-            at = hours + 22.0 * (place - (len(found) - 1) / 2)
-            _seed(axes, [{**row, "at": str(at)}], "at", fmt="o")
-    mixed = [each for each in rows(MIXED) if each["policy"].startswith("seed")]
-    for place, row in enumerate(mixed):
-        _seed(axes, [{**row, "at": str(1160 + 22 * place)}], "at", fmt="s", mfc="white")
-    _levels(axes, rows(BUDGETS[2000])[:2])
-    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(100, 2350))
+    # Beside other algorithms the example is called `train_leaders`.
+    found = [each for each in rows(EXAMPLE) if each["policy"].startswith("train")]
+    for place, row in enumerate(found):
+        _seed(axes, [{**row, "at": str(400 + 12 * place)}], "at", fmt="o")
+    for hours, file in MIXED.items():
+        mixed = [each for each in rows(file) if each["policy"].startswith("seed")]
+        for place, row in enumerate(mixed):
+            at = hours + 12.0 * place
+            _seed(axes, [{**row, "at": str(at)}], "at", fmt="s", mfc="white")
+    _levels(axes, rows(MIXED[1101])[:2])
+    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(120, 1300))
 
 
 def algorithms(figure: Figure) -> None:
@@ -151,7 +149,7 @@ def _levels(axes: Axes, laws: Sequence[Row]) -> None:
 
 PLOTS = {
     "easy/curve.png": Plot([EASY], easy),
-    "training/budgets.png": Plot([*BUDGETS.values(), MIXED], budgets),
+    "training/budgets.png": Plot([EXAMPLE, *MIXED.values()], budgets),
     "training/algorithms/gains.png": Plot(
         [
             f"training/{each}/{file}.csv"

@@ -1,31 +1,24 @@
-"""What the pages say in numbers about trainings by the example."""
+"""What the pages say in numbers about the trainings of `make pretrained`."""
 
-from committed_data import one, rows
+from committed_data import Row, one
 
 NUMERALS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
+SUMMARIES = {"500": "algorithms-500", "1 101": "algorithms"}
+"""Files of the means over seeds, by the flock-hours of each."""
 
 
-def example() -> str:
-    """Return what the longest trainings by the example reached."""
-    found = rows("training/wide/evaluation.csv")
-    trained = [float(row["signed_order"]) for row in found if row["policy"].startswith("seed")]
-    law = float(one("training/wide/evaluation.csv", policy="tuned law")["signed_order"])
-    return (
-        f"**After 2 000 flock-hours, {NUMERALS[len(trained)]} seeds reach {min(trained):.3f} to "
-        f"{max(trained):.3f}, and the tuned law {law:.3f}.**"
-    )
+def _reached(row: Row) -> tuple[str, str]:
+    names = ("signed_order", "lowest", "highest", "gain", "gain_low", "gain_high")
+    mean, low, high, gain, least, most = (f"{float(row[name]):.3f}" for name in names)
+    return f"{mean} in the mean ({low} to {high})", f"{gain} ({least} to {most})"
 
 
 def pretrained() -> str:
-    """Return what the trainings of `make pretrained` in `wide` reached."""
-    row = one("training/pretrained/algorithms.csv")
-    mean, low, high, *gain = (
-        float(row[name])
-        for name in ("signed_order", "lowest", "highest", "gain", "gain_low", "gain_high")
-    )
+    """Return what the trainings in `wide` reached."""
+    few, many = (one(f"training/pretrained/{file}.csv") for file in SUMMARIES.values())
+    (few_reached, few_gain), (many_reached, many_gain) = _reached(few), _reached(many)
+    seeds = NUMERALS[int(many["seeds"])]
     return (
-        f"The {NUMERALS[int(row['seeds'])]} seeds of `make pretrained`, which train with one to "
-        f"four leaders for 1 101 flock-hours each, reach {mean:.3f} in the mean ({low:.3f} to "
-        f"{high:.3f}) with three leaders: {gain[0]:.3f} ({gain[1]:.3f} to {gain[2]:.3f}) more "
-        "than the tuned law."
+        f"**After 1 101 flock-hours, {seeds} seeds reach {many_reached}: {many_gain} more than the "
+        f"tuned law.** After 500 they reach {few_reached}: {few_gain} more."
     )

@@ -23,9 +23,6 @@ from flockenv.policies.network import NetworkPolicy
 FILES = (".json", ".npz", ".zip")
 """How the files of policies end: laws, networks, and models of stable-baselines3."""
 
-POOLS = ("wide", "narrow")
-"""The pools for which laws were tuned and leaders were trained."""
-
 POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
     TUNED_LAW: lambda pool: DampedLaw.tuned(_named(pool)),
     LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
@@ -47,10 +44,10 @@ _LONGEST_NAME = 200
 
 
 def _named(pool: Any) -> str:
-    if not isinstance(pool, str) or pool not in POOLS:
+    if not isinstance(pool, str):
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted: tuned and learned leaders are for "
-            f"{', '.join(POOLS)}"
+            f"pool = {shown(pool)} is not accepted: tuned and learned leaders are for pools with a "
+            "name"
         )
     return pool
 

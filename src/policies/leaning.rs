@@ -118,11 +118,8 @@ mod by_feature {
     }
 }
 
-/// The pretrained leaders, by the name of their pool.
-const LEARNED: [(&str, &str); 2] = [
-    ("wide", include_str!("learned/wide.json")),
-    ("narrow", include_str!("learned/narrow.json")),
-];
+/// The pretrained leaders, by the name of their pool: those that lead better than the tuned law.
+const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {
     /// The law of a JSON text.
@@ -155,8 +152,8 @@ impl LeaningLaw {
         let found = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
         let (_, text) = found.ok_or_else(|| {
             let pools = LEARNED.map(|(name, _)| name).join(" and ");
-            let accepted = format!("leaders are trained only in the pools {pools}");
-            FlockError::parameter("law", "learned", accepted)
+            let accepted = format!("learned leaders are for {pools}: nowhere else have any led better than the tuned law");
+            FlockError::parameter("pool", pool.unwrap_or("without a name"), accepted)
         })?;
         Self::from_json(text)
     }

@@ -59,9 +59,28 @@ def test_the_mean_ships_unless_a_seed_leads_better(script, trial, monkeypatch, o
         return order + 0.01 * script.np.sin(seeds)  # Some spread, for the interval.
 
     monkeypatch.setattr(script, "orders", orders)
-    law = script.make(script.TRIAL, "narrow", trial, "a command")
+    assert script.make(script.TRIAL, "narrow", trial, "a command")
+    law = load(trial / "narrow.json")
     assert law.provenance["chosen"].startswith(chosen)
     assert law.weights == {"mean": mean, "seed 1": best}[chosen].weights
+
+
+@pytest.mark.parametrize(("tuned", "ships"), [(0.44, True), (0.46, False)])
+def test_what_leads_worse_than_the_tuned_law_does_not_ship(
+    script, trial, monkeypatch, tmp_path, tuned, ships
+):
+    learned = [load(trial / f"narrow/{seed}/policy.json") for seed in "01"]
+    weights = [law.weights for law in (*learned, script.mean_of(learned))]
+
+    def orders(policy, pool, leaders, seeds, episode_s):
+        order = 0.45 if getattr(policy, "weights", None) in weights else tuned
+        return order + 0.01 * script.np.sin(seeds)
+
+    monkeypatch.setattr(script, "orders", orders)
+    monkeypatch.setattr(script, "Settings", lambda: script.TRIAL)
+    monkeypatch.setattr(script, "SHIPPED", tmp_path)
+    script.main(["--pool", "narrow", "--ship", "--out", str(trial)])
+    assert (tmp_path / "narrow.json").exists() == ships
 
 
 def test_a_trial_does_not_ship(script, capsys):

@@ -232,7 +232,8 @@ class Waiting:
 
 
 def test_what_steered_is_recorded():
-    learned = flockenv.policies.load("learned", pool="narrow")
+    parameters = PARAMETERS.replace(pool="wide")
+    learned = flockenv.policies.load("learned", pool="wide")
     tuned = flockenv.policies.DampedLaw(gain=2.0)
     named = {
         "paper's law at every substep": None,
@@ -241,7 +242,7 @@ def test_what_steered_is_recorded():
         f"{learned!r} {learned.digest}": learned,
     }
     for name, policy in named.items():
-        run = simulate(PARAMETERS, 3, 1.0, policy=policy)
+        run = simulate(parameters, 3, 1.0, policy=policy)
         assert run.policy == name
         assert load(saved(run)).policy == name
     assert re.fullmatch(r"sha256:[0-9a-f]{12}", learned.digest)

@@ -50,19 +50,19 @@ def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_i
 
 def test_ones_own_policy_comes_first_and_has_a_card(cli, tmp_path: Path) -> None:
     arguments = ["--n-leaders", "1,2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(tmp_path)]
-    words = ["compare", "--policy", learned(tmp_path), "--name", "mine", *NARROW, *arguments]
+    words = ["compare", "--policy", learned(tmp_path), "--name", "mine", *SHORT, *arguments]
     done = cli.succeeds(*words, "--full")
     assert done.stderr == ""
-    assert "narrow-bw-0.2, learned: signed_order = " in done.stdout
-    assert f"narrow-bw-0.4, mine minus {REFERENCES[0]}, k = 2: " in done.stdout
+    assert "wide-bw-0.2, learned: signed_order = " in done.stdout
+    assert f"wide-bw-0.4, mine minus {REFERENCES[0]}, k = 2: " in done.stdout
     card = (tmp_path / "card.md").read_text("utf-8")
     assert card.startswith("# mine\n")
-    for text in ("by hand", "narrow-bw-0.4", f"mine minus {REFERENCES[1]}", "3 episodes of 30 s"):
+    for text in ("by hand", "wide-bw-0.4", f"mine minus {REFERENCES[1]}", "3 episodes of 30 s"):
         assert text in card
     run = tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))
     assert run["command"] == shlex.join(["flockenv", *words, "--full"])
-    assert run["cases"]["narrow-bw-0.2"]["seeds"] == {"first": 0, "number": 3}
-    stored = (tmp_path / "narrow-bw-0.2.toml").read_text("utf-8")
+    assert run["cases"]["wide-bw-0.2"]["seeds"] == {"first": 0, "number": 3}
+    stored = (tmp_path / "wide-bw-0.2.toml").read_text("utf-8")
     assert flockenv.FlockParameters.from_toml(stored).bw_s == 0.2
 
 
@@ -70,10 +70,10 @@ def test_saved_parameters_compare_the_same_again(cli, tmp_path: Path) -> None:
     first = cli("compare", *NARROW, "--json", "--out", tmp_path / "a")
     found = json.loads(first.stdout)
     means = [(row["policy"], row["leaders"]) for row in found["means"]]
-    assert means == [("no leaders", 0), *((name, 1) for name in REFERENCES)]
+    assert means == [("no leaders", 0), *((name, 1) for name in REFERENCES[1:])]
     assert all(row["psi_o_low"] <= row["psi_o"] <= row["psi_o_high"] for row in found["means"])
     row = found["differences"][0]
-    assert (row["policy"], row["reference"], row["n"]) == (*REFERENCES[:2], 3)
+    assert (row["policy"], row["reference"], row["n"]) == (*REFERENCES[1:], 3)
     params = tmp_path / "a" / "narrow-bw-0.45.toml"
     assert flockenv.FlockParameters.from_toml(params.read_text()).pool == "narrow"
     again = cli("compare", "--params", params, *BRIEF, "--json", "--out", tmp_path / "b")
@@ -97,11 +97,11 @@ def test_names_of_references(cli, tmp_path: Path) -> None:
     """A policy that is one is run once under any name; a file that is called like one is not."""
     file = learned(tmp_path, "learned.npz")
     two = ["--policy", REFERENCES[2], "--policy", file, "--n-leaders", "1", "--json"]
-    done = cli.succeeds("compare", *NARROW, *two, "--out", tmp_path)
+    done = cli.succeeds("compare", *SHORT, *two, "--out", tmp_path)
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == [REFERENCES[2], file, *REFERENCES[:2]]
     alias = ["--policy", REFERENCES[1], "--name", "mine", "--n-leaders", "1", "--json"]
-    done = cli("compare", *NARROW, *alias, "--out", tmp_path)
+    done = cli("compare", *SHORT, *alias, "--out", tmp_path)
     policies = [row["policy"] for row in json.loads(done.stdout)["means"]]
     assert policies == ["mine", REFERENCES[0], REFERENCES[2]]
 
@@ -123,7 +123,8 @@ def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path
     assert "nan" not in done.stdout
     lines = (tmp_path / "runs.csv").read_text().splitlines()
     assert lines[0].split(",")[:6] == ["case", "policy", "leaders", "seed", "psi_o", "signed_order"]
-    assert len(lines) == 1 + 2 * (1 + 4 * len(REFERENCES))
+    assert "Left out, learned: pool = narrow" in done.stderr
+    assert len(lines) == 1 + 2 * (1 + 4 * len({*REFERENCES} - {"learned"}))
 
 
 def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:

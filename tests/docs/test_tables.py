@@ -17,3 +17,17 @@ spec.loader.exec_module(tables)
 def test_pages_show_the_committed_data(page):
     text = page.read_text(encoding="utf-8")
     assert tables.filled(text) == text, "`make tables` writes them again"
+
+
+def test_lessons_of_the_live_page_quote_the_committed_data():
+    from committed_data import MEANS, one
+
+    lessons = (REPOSITORY / "web/lessons.mjs").read_text(encoding="utf-8")
+
+    def order(policy, leaders):
+        row = one(MEANS, case="wide-bw-0.31", policy=policy, leaders=str(leaders))
+        return f"{float(row['signed_order']):.2f}"
+
+    law, learned, single = order("paper's law", 4), order("learned", 4), order("paper's law", 1)
+    assert f"Over 256 flocks the learned leaders reach {learned}, the law {law}." in lessons
+    assert f"is {single} with one leader and {law} with four." in lessons

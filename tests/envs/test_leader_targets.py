@@ -75,14 +75,14 @@ def test_flock_features_of_slots_are_towards_their_own_targets():
 @pytest.mark.parametrize("mirror_to_target", [False, True])
 def test_policies_steer_each_leader_to_its_own_target(mirror_to_target):
     def rudders(policy, target):
-        parameters = FlockParameters(n_boats=9, n_leaders=3, pool="narrow", target=target)
+        parameters = FlockParameters(n_boats=9, n_leaders=3, pool="wide", target=target)
         # The first decision is held when the second sample is taken.
-        run = flockenv.simulate(parameters, 5, 0.1, policy=policy, control_hz=1.0)
+        run = flockenv.simulate(parameters, 6, 0.1, policy=policy, control_hz=1.0)
         return run.rudder[1]
 
     for policy in (
         DampedLaw(mirror_to_target=mirror_to_target),
-        flockenv.policies.load("learned", pool="narrow"),
+        flockenv.policies.load("learned", pool="wide"),
         StraightAhead(mirror_to_target=mirror_to_target),
     ):
         cw, ccw, mixed = (rudders(policy, target) for target in ("cw", "ccw", MIXED))

@@ -19,7 +19,6 @@ from flockenv.policies.laws import LEAN_FEATURES
 
 GAINS = {"gain": 0.5, "backward_gain": 2.0, "damping": 9.0}
 OWN = len(observation_entries(LeaningLaw("wide", 0.0, {}).observation)) - len(LEAN_FEATURES)
-POOLS = ("wide", "narrow")
 
 
 def row(**features: float) -> np.ndarray:
@@ -176,15 +175,10 @@ def test_bad_numbers(arguments, options, message):
         LeaningLaw(*arguments, **options)
 
 
-@pytest.mark.parametrize("pool", POOLS)
-def test_learned_leaders_lead_better_than_the_papers(pool: str) -> None:
-    """By more than twice in `narrow` and half as much again in `wide`, where measured."""
-    parameters = flockenv.FlockParameters(
-        n_boats=27,
-        n_leaders=3,
-        pool=pool,
-        bw_s=flockenv.FlockParameters.critical_bw_s("simulation", pool),
-    )
+def test_learned_leaders_lead_better_than_the_papers() -> None:
+    """By half as much again, where measured."""
+    bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "wide")
+    parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="wide", bw_s=bw_s)
     differences = []
     for seed in range(32):
         ours, papers = (

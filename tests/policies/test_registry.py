@@ -10,6 +10,7 @@ from flockenv import _core
 from flockenv.comparison.figure import COLORS
 from flockenv.policies.names import LAWS
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
+from flockenv.runs.seeds import release_seeds
 
 REPOSITORY = Path(__file__).parents[2]
 PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
@@ -18,31 +19,43 @@ RUN = {"seed": 3, "duration_s": 5.0}
 
 @pytest.mark.parametrize("name", [*POLICIES, *POOL_POLICIES])
 def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
-    policy = named_policy(name, PARAMETERS.pool)()
-    assert flockenv.simulate(PARAMETERS, policy=name, **RUN) == flockenv.simulate(
-        PARAMETERS, policy=policy, **RUN
+    parameters = PARAMETERS.replace(pool="wide")
+    policy = named_policy(name, "wide")()
+    assert flockenv.simulate(parameters, policy=name, **RUN) == flockenv.simulate(
+        parameters, policy=policy, **RUN
     )
 
 
 def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
-    for pool in ("wide", "narrow"):
-        named = flockenv.policies.load("learned", pool=pool)
-        assert named.law == named_policy("learned", pool)().law
-        file = REPOSITORY / "baselines" / "policies" / f"{pool}.json"
-        assert named.to_json() == flockenv.policies.load(file).to_json()
-        assert named.judged["seeds"] == [0, 511]
-        assert {"command", "seed", "commit", "samples"} <= named.provenance.keys()
-        assert "baselines/" in named.provenance["command"]
+    named = flockenv.policies.load("learned", pool="wide")
+    assert named.law == named_policy("learned", "wide")().law
+    file = REPOSITORY / "baselines" / "policies" / "wide.json"
+    assert named.to_json() == flockenv.policies.load(file).to_json()
+
+
+def test_learned_leaders_are_what_the_recipe_made() -> None:
+    named = flockenv.policies.load("learned", pool="wide")
+    made = REPOSITORY / "docs" / "training" / "pretrained" / "wide" / named.provenance["seed"]
+    trained = flockenv.policies.load(made / "policy.json")
+    assert (named.bias, named.weights) == (trained.bias, trained.weights)
+    assert trained.provenance["command"] == named.provenance["command"]
+    script, *arguments = named.provenance["command"].split()[1:]
+    assert (REPOSITORY / script).exists()
+    assert arguments == ["--pool", "wide"]
+    seeds = release_seeds("pretrained", 512)
+    assert named.judged["seeds"] == [seeds[0], seeds[-1]]
 
 
 def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
     elsewhere = PARAMETERS.replace(pool=(150.0, 30.0))
-    for call in (
-        lambda: flockenv.policies.load("learned", pool="bath"),
-        lambda: flockenv.policies.load("learned"),
-        lambda: flockenv.simulate(elsewhere, policy="learned", **RUN),
+    for call, words in (
+        (lambda: flockenv.policies.load("learned", pool="narrow"), "pool = narrow .* are for wide"),
+        (lambda: flockenv.policies.load("learned", pool="bath"), "pool = bath .* are for wide"),
+        (lambda: flockenv.policies.load("learned"), "pools with a name"),
+        (lambda: flockenv.simulate(PARAMETERS, policy="learned", **RUN), "better than the tuned"),
+        (lambda: flockenv.simulate(elsewhere, policy="learned", **RUN), "pools with a name"),
     ):
-        with pytest.raises(flockenv.ParameterError, match="wide, narrow"):
+        with pytest.raises(flockenv.ParameterError, match=words):
             call()
     with pytest.raises(flockenv.ParameterError, match="'wide' is not accepted with the file"):
         flockenv.policies.load("other.npz", pool="wide")

@@ -242,7 +242,7 @@ def test_the_numbers_belong_to_this_results_version() -> None:
     ],
 )
 def test_a_run_of_another_spec_is_not_taken(spec, tmp_path, keep, other, words) -> None:
-    spec = replace(spec, keep=keep, parameters=spec.parameters.replace(n_leaders=2))
+    spec = replace(spec, keep=keep, parameters=spec.parameters.replace(n_leaders=2, pool="wide"))
     notes: list[str] = []
     store = RunStore(tmp_path, notes.append)
     store.save(spec, execute(replace(spec, **other)))

@@ -55,7 +55,7 @@ def test_each_policy_has_a_trial_of_its_middle_run(tmp_path, monkeypatch):
     monkeypatch.setattr("time.process_time", lambda: next(clock))
     specs = [
         RunSpec(parameters=NARROW, seed=0, duration_s=minutes * 60.0, policy=policy)
-        for policy in ("damped law", "learned")
+        for policy in ("damped law", "tuned law")
         for minutes in (5.0, 10.0, 15.0)
     ]
     work = measure_workload(specs, RunStore(tmp_path))
