@@ -33,8 +33,8 @@ def design() -> list[Row]:
     return [
         {"coverage": COVERAGE, "dt_s": 0.1, "n_boats": n, "minutes": minutes, "seed": FIRST + seed}
         for minutes, sizes in ((LEVEL_MIN, BOATS), (SLOW * LEVEL_MIN, BOATS[:3]))
-        for seed in range(SEEDS)
         for n in sizes
+        for seed in range(SEEDS)
     ]
 
 

@@ -23,6 +23,7 @@ from worth_runs import DENSITY_BOATS, LAW, POLICIES
 from worth_runs import measure as measure_led
 
 import flockenv
+from flockenv.comparison.figure import policy_colors
 
 BOATS = (27, 50, 100, 200, 400)
 NOISES_S = (0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.8)
@@ -136,15 +137,16 @@ def draw(options: Options, found: dict[int, Interval], table: pd.DataFrame) -> N
     """Draw the critical noise, and m with one leader and with one in 27, against the size."""
     with picture(options, "sizes", height_cm=6.0) as figure:
         left, middle, right = figure.subplots(1, 3)
+        names = ["paper's law" if policy == LAW else policy for policy in LED]
+        colors = policy_colors(names)
         curve(left, found, found.values(), color=COLORS[6])
         left.set(ylabel="critical bw (s), no leaders")
         for axes, place, title in ((middle, 0, "one leader"), (right, -1, "one leader in 27")):
-            for color, policy in zip(COLORS, LED, strict=False):
+            for name, policy in zip(names, LED, strict=True):
                 runs = {n: of(table, n, leaders(n)[place], policy) for n in found}
                 known = {n: mean(each) for n, each in runs.items() if len(each)}
-                label = "paper's law" if policy == LAW else policy
                 if known:
-                    curve(axes, known, known.values(), color=color, label=label)
+                    curve(axes, known, known.values(), color=colors[name], label=name)
             axes.set(title=title, ylabel="m towards the target")
         for axes in (left, middle, right):
             axes.set(xscale="log", xlabel="number of boats", xticks=BOATS, xticklabels=BOATS)
