@@ -23,10 +23,10 @@ import pandas as pd
 from cmaes import CMA
 from misinformed_pair import TASK, Heeds
 from numpy.typing import ArrayLike
+from tune_laws import SEEDS
 
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics import mean_interval
 
 MIDDLE, WIDTH = np.array([1.9, 1.9, 6.0]), 1.0
@@ -74,7 +74,7 @@ def search(seed: int, generations: int, flocks: int, minutes: float) -> pd.DataF
     cma = CMA(mean=np.zeros(LEADERS * NUMBERS), sigma=0.5, seed=seed)
     rows = []
     for generation in range(generations):
-        seeds = POLICY_SEEDS["law tuning"].seeds(flocks, seed, generation * flocks)
+        seeds = SEEDS.seeds(flocks, seed, generation * flocks)
         asked = [cma.ask() for _ in range(cma.population_size)]
         scores = [float(orders(each, seeds, minutes, "training").mean()) for each in asked]
         cma.tell([(each, -score) for each, score in zip(asked, scores, strict=True)])
