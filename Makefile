@@ -138,7 +138,7 @@ test-processors: ## the tests of the same bits on aarch64, riscv64 and i686, emu
 paper: build ## make every figure and question of paper/ that has runs missing, or draw it again
 	OMP_NUM_THREADS=1 $(BIN)/python paper/make.py $(PAPER_ARGS)
 
-pretrained: $(STAMPS)/test $(CORE) ## train the leaders of both pools again (hours; PRETRAINED_ARGS=--trial shortly)
+pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
 tables: build ## fill the tables and draw the curves of README and docs from the committed data

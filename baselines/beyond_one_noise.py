@@ -1,6 +1,6 @@
 """Measure where learned leaders lead better than the tuned law: other noises, flocks and tasks.
 
-    python baselines/beyond_one_noise.py --out docs/leaders/beyond.csv    # a quarter of an hour
+    python baselines/beyond_one_noise.py --out results/beyond.csv    # a quarter of an hour
     python baselines/beyond_one_noise.py --policy mine.json --out results/mine.csv
 
 The pretrained leaders of `wide` were made with 27 boats, one to four leaders, bw = 0.31 s and

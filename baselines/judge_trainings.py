@@ -29,7 +29,10 @@ Each design was fixed before its trainings. All trainings count, and none was ch
 - What `make pretrained` makes: seeds 0 to 7, after 500 and 1101 flock-hours, no setting searched.
 
     python baselines/judge_trainings.py results/pretrained/wide/* --out docs/training/pretrained
-    python baselines/judge_trainings.py results/pretrained/wide-500/* --out results/wide-500
+    python baselines/judge_trainings.py results/pretrained/wide-500/* --out results/judged-500
+
+  docs/training/pretrained keeps the second pair of files as evaluation-500.csv and
+  algorithms-500.csv.
 """
 
 import argparse

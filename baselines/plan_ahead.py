@@ -10,7 +10,7 @@ This is no policy: it clones the whole flock, which no robot can do. It shows ho
 the dynamics and the leans allow than the learned leaders reach. Every 8 s each flock is branched
 from its snapshot. The first candidate is what the learned leaders do. The others add a constant
 offset to each leader's lean for 16 s. A candidate's score is the mean signed order from 24 s to
-32 s after the branch; before 16 s the order answers the wrong way. With `fresh` noise each
+32 s after the branch; in the first 8 s the order answers the wrong way. With `fresh` noise each
 candidate meets the same continuations of the noise, which the flock itself does not meet
 (`noise_seed`); with `known` it meets the flock's own. The flock follows the best candidate for 8 s.
 

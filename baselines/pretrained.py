@@ -20,10 +20,8 @@ flocks each, at the default physics. Flocks that nobody has used then judge the 
 leaders, and the file has that order beside the command, the seeds and the flock-hours.
 
 A training whose policy stands in `--out` is not made again, so that an interrupted command resumes.
-PPO also keeps its policy after 500 flock-hours. This compares all seeds:
-
-    python baselines/judge_trainings.py results/pretrained/wide/* results/pretrained/wide-500/* \\
-        --out docs/training/pretrained
+PPO also keeps its policy after 500 flock-hours. judge_trainings.py has the commands that compare
+all seeds.
 
 The policy of a pool ships if it leads at least as well in the validation flocks as the tuned law
 and as the policy that ships already.
@@ -122,7 +120,7 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
     model = settings.model(env)
     model.set_logger(configure(str(folder), ["csv"]))
     kept = settings.replace(flock_hours=given.kept_hours)
-    beside = folder.parent.with_name(f"wide-{given.kept_hours:g}")
+    beside = folder.parent.with_name(f"{folder.parent.name}-{given.kept_hours:g}")
     model.learn(
         settings.samples(env),
         callback=Keep(kept.samples(env), "wide", beside / str(seed) / "policy.json"),

@@ -118,7 +118,7 @@ mod by_feature {
     }
 }
 
-/// The pretrained leaders, by the name of their pool: those that lead better than the tuned law.
+/// The pretrained leaders, by the name of their pool: those that the rule of `baselines/pretrained.py` lets ship.
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {
@@ -152,7 +152,9 @@ impl LeaningLaw {
         let found = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
         let (_, text) = found.ok_or_else(|| {
             let pools = LEARNED.map(|(name, _)| name).join(" and ");
-            let accepted = format!("learned leaders are for {pools}: nowhere else have any led better than the tuned law");
+            let accepted = format!(
+                "learned leaders are for {pools}: in narrow none led better than the tuned law"
+            );
             FlockError::parameter("pool", pool.unwrap_or("without a name"), accepted)
         })?;
         Self::from_json(text)

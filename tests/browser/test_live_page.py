@@ -94,11 +94,14 @@ def test_leaders_steer_as_they_are_told(live):
     live.choose("#leaders", "tuned law")
     assert live.script("return page.shown.flock.leaders") == "tuned law"
     live.choose("#pool", "180,0")
-    assert "this law is for the pools that have a name" in live.status()
+    assert "the damped law is tuned only in the pools" in live.status()
     # What was refused is not shown.
     assert live.find("#pool").get_attribute("value") == "wide"
     assert live.parameters()["pool"] == "wide"
     live.choose("#leaders", "learned")
+    live.choose("#pool", "narrow")
+    assert "in narrow none led better than the tuned law" in live.status()
+    assert live.parameters()["pool"] == "wide"
     live.run_to(2.0)
     assert live.complaints() == []
 

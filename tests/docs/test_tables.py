@@ -29,5 +29,7 @@ def test_lessons_of_the_live_page_quote_the_committed_data():
         return f"{float(row['signed_order']):.2f}"
 
     law, learned, single = order("paper's law", 4), order("learned", 4), order("paper's law", 1)
-    assert f"Over 256 flocks the learned leaders reach {learned}, the law {law}." in lessons
+    assert (
+        f"Over 256 flocks at 0.31 s the learned leaders reach {learned}, the law {law}." in lessons
+    )
     assert f"is {single} with one leader and {law} with four." in lessons

@@ -27,8 +27,8 @@ fn holding(period_s: f64) -> Law {
 fn laws() -> Vec<(Law, Option<f64>)> {
     let named = LawName::names().into_iter().skip(1);
     let mut laws: Vec<_> = named
-        .filter_map(|name| Law::named(name, Some("narrow")).ok())
-        .map(|law| (law, None))
+        .filter(|name| *name != "learned")
+        .map(|name| (Law::named(name, Some("narrow")).unwrap(), None))
         .collect();
     laws.push((Law::Leaning(Box::new(learned())), None));
     laws.push((holding(0.5), Some(0.5)));

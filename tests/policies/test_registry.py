@@ -3,6 +3,7 @@
 import ast
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 import flockenv
@@ -42,8 +43,15 @@ def test_learned_leaders_are_what_the_recipe_made() -> None:
     script, *arguments = named.provenance["command"].split()[1:]
     assert (REPOSITORY / script).exists()
     assert arguments == ["--pool", "wide"]
+    scores = pd.read_csv(made.parents[1] / "validation-wide.csv", index_col="policy")["score"]
+    assert scores.idxmax() == f"seed {made.name}"
     seeds = release_seeds("pretrained", 512)
     assert named.judged["seeds"] == [seeds[0], seeds[-1]]
+
+
+def test_no_search_in_narrow_passes_the_tuned_law() -> None:
+    file = REPOSITORY / "docs" / "training" / "pretrained" / "validation-narrow.csv"
+    assert pd.read_csv(file, index_col="policy")["score"].idxmax() == "tuned law"
 
 
 def test_a_pool_without_learned_leaders_says_which_have_some() -> None:

@@ -113,7 +113,10 @@ fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
         return Err(refused(name, &format!("{}, you", names.join(", "))));
     }
     let found = Law::named(name, parameters.pool.name());
-    found.map_err(|_| refused(name, "this law is for the pools that have a name"))
+    found.map_err(|error| match error {
+        FlockError::Parameter { accepted, .. } => refused(name, &accepted),
+        other => other,
+    })
 }
 
 /// What a leader observes by default.
