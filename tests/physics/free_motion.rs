@@ -3,9 +3,9 @@
 //! On paper: a boat that holds its heading reaches v = v0·(1 − exp(−c0·t)), x = v0·(t − (1 − exp(−c0·t))/c0).
 //! Otherwise: a Runge–Kutta solution of order 4 with steps of 0.1 ms.
 
+use crate::reference::{equations_of_motion, runge_kutta};
 use crate::support::{
-    SCHEMES, changed, driven, equations_of_motion, flock_of, inert, runge_kutta, take_substeps,
-    time_of_velocities,
+    SCHEMES, changed, driven, flock_of, inert, take_substeps, time_of_velocities,
 };
 use flockenv::FlockParameters;
 use flockenv::parameters::Scheme;

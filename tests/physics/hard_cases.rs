@@ -2,9 +2,10 @@
 //!
 //! On paper: a boat flat on the wall can only slide about the pool's center, with inertia Y² + ρ².
 
+use crate::reference::root;
 use crate::support::{
     H, R, RHO, SCHEMES, VELOCITY_SCHEMES, assert_near, assert_solved, changed, crowded,
-    deepest_overlap, disc, driven, first_kick_s, flock_of, inert, root, take_substeps,
+    deepest_overlap, disc, driven, first_kick_s, flock_of, inert, take_substeps,
 };
 use flockenv::contact::{Contact, ContactDetector};
 use flockenv::geometry::{HullPose, Pose, Velocity};

@@ -6,6 +6,7 @@
 )]
 
 mod dense_reference;
+mod reference;
 mod support;
 
 mod bad_input;

@@ -8,7 +8,8 @@
 //!   Ω²·h·sin ψ = c0·(v0·sin ψ − Ω·(Q − h·cos ψ)),
 //!   N·h·sin ψ/ρ² = c1·Ω³ + c3·Ω²·Q·sin ψ.
 
-use crate::support::{H, R, RHO, SCHEMES, assert_near, disc, driven, flock_of, root, runge_kutta};
+use crate::reference::{root, runge_kutta};
+use crate::support::{H, R, RHO, SCHEMES, assert_near, disc, driven, flock_of};
 use flockenv::geometry::{Pose, Vec2, cross, wrap_angle};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};

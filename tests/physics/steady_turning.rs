@@ -4,7 +4,8 @@
 //! On paper: backing without steering, w² = (−c0² + sqrt(c0⁴ + 4·c0²·c3·v0/c1))/2 = 1.845² (rad/s)²
 //! for Table 3. Each scheme has a steady turn of its own, which is known on paper too.
 
-use crate::support::{SCHEMES, assert_near, backing, changed, driven, flock_of, root};
+use crate::reference::root;
+use crate::support::{SCHEMES, assert_near, backing, changed, driven, flock_of};
 use flockenv::boat::{misalignment, steering_law};
 use flockenv::geometry::Vec2;
 use flockenv::parameters::{Scheme, Target};

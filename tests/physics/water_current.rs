@@ -4,7 +4,8 @@
 //! On paper: boats with preferred speeds v_i along the tangent end at v_i + w with w = −κ·mean(v_i)/(1 + κ): a
 //! flock of equal boats at v0/(1 + κ), or at v0 − cap.
 
-use crate::support::{SCHEMES, assert_near, driven, equations_of_motion, flock_of, runge_kutta};
+use crate::reference::{equations_of_motion, runge_kutta};
+use crate::support::{SCHEMES, assert_near, driven, flock_of};
 use flockenv::geometry::Vec2;
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockParameters};
