@@ -1,8 +1,8 @@
 """Figure 14: the density of φ_o against noise, n = 20 and 50, without and with leaders."""
 
 import numpy as np
-from claim import Claims, mean, write_claims
-from section5 import LOW_S, PRESETS, SERIES, STUDY, Evidence, panel_title
+from claim import Claims, mean
+from section5 import LOW_S, SERIES, Evidence, judging_presets, panel_title
 from study import PHI_EDGES, Options, density_map, histograms, main, picture
 
 
@@ -57,37 +57,31 @@ def judge(e: Evidence) -> Claims:
     return claims
 
 
-def draw(options: Options, e: Evidence) -> None:
-    """Draw the densities of a reading."""
-    with picture(options, f"fig14_{e.name}", height_cm=9.0) as figure:
-        image = None
-        panels = figure.subplots(2, 2, sharex=True, sharey=True)
-        for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
-            runs = e.of(n, k)
-            if not len(runs):
-                axes.set_title(f"n = {n}, k = {k}: no runs yet")
-                continue
-            groups = runs.groupby("bw_s")["phi_histogram"]
-            found = [histograms(each) for _, each in groups]
-            image = density_map(axes, list(groups.groups), PHI_EDGES, found, 8.0)
-            axes.set(title=panel_title(n, k, runs), yticks=[-np.pi / 2, 0, np.pi / 2])
-            axes.set_yticklabels(["−π/2", "0", "π/2"])
-        for axes in panels[1]:
-            axes.set_xlabel("bw (s)")
-        for axes in panels[:, 0]:
-            axes.set_ylabel("φ_o")
-        if image is not None:
-            figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
-
-
-def script(options: Options) -> None:
-    """Make, judge and draw the runs of both presets."""
-    table = STUDY.results(options)
-    evidence = [Evidence(table, name) for name in PRESETS]
-    write_claims(options, "fig14", [claim for e in evidence for claim in judge(e)])
+def draw(options: Options, evidence: list[Evidence]) -> None:
+    """Draw the densities of each reading."""
     for e in evidence:
-        draw(options, e)
+        with picture(options, f"fig14_{e.name}", height_cm=9.0) as figure:
+            image = None
+            panels = figure.subplots(2, 2, sharex=True, sharey=True)
+            for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
+                runs = e.of(n, k)
+                if not len(runs):
+                    axes.set_title(f"n = {n}, k = {k}: no runs yet")
+                    continue
+                groups = runs.groupby("bw_s")["phi_histogram"]
+                found = [histograms(each) for _, each in groups]
+                image = density_map(axes, list(groups.groups), PHI_EDGES, found, 8.0)
+                axes.set(title=panel_title(n, k, runs), yticks=[-np.pi / 2, 0, np.pi / 2])
+                axes.set_yticklabels(["−π/2", "0", "π/2"])
+            for axes in panels[1]:
+                axes.set_xlabel("bw (s)")
+            for axes in panels[:, 0]:
+                axes.set_ylabel("φ_o")
+            if image is not None:
+                figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
+
+script = judging_presets("fig14", judge, draw)
 
 if __name__ == "__main__":
     main(script)

@@ -1,9 +1,11 @@
 """Figure 15: Ψ_o against noise, n = 20 and 50, without and with leaders."""
 
+from functools import partial
+
 import numpy as np
-from claim import Claims, bca, mean, write_claims
-from section5 import HIGH_S, LOW_S, PRESETS, SERIES, STUDY, Evidence, draw_means
-from study import Options, main
+from claim import Claims, bca, mean
+from section5 import HIGH_S, LOW_S, SERIES, Evidence, draw_means, judging_presets
+from study import main
 
 
 def judge(e: Evidence) -> Claims:
@@ -52,13 +54,9 @@ def _steepest(means: list[np.ndarray]) -> np.ndarray:
     return np.asarray((psi_o[:-1] - psi_o[1:]).max(0) / (psi_o.max(0) - psi_o.min(0)))
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs of both presets."""
-    table = STUDY.results(options)
-    evidence = [Evidence(table, name) for name in PRESETS]
-    write_claims(options, "fig15", [claim for e in evidence for claim in judge(e)])
-    draw_means(options, "fig15", evidence, "psi_o", "mean Ψ_o")
-
+script = judging_presets(
+    "fig15", judge, partial(draw_means, name="fig15", column="psi_o", label="mean Ψ_o")
+)
 
 if __name__ == "__main__":
     main(script)

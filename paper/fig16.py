@@ -1,11 +1,12 @@
 """Figure 16: C_v against noise, n = 20 and 50, without and with leaders."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
-from claim import Claims, bca, mean, write_claims
-from section5 import LOW_S, PRESETS, STUDY, Evidence, draw_means
-from study import Options, main
+from claim import Claims, bca, mean
+from section5 import LOW_S, Evidence, draw_means, judging_presets
+from study import main
 
 
 def judge(e: Evidence) -> Claims:
@@ -52,13 +53,9 @@ def _best(groups: Any, column: int = 0) -> Any:
     return np.stack(np.broadcast_arrays(*(group[..., column].mean(-1) for group in groups))).max(0)
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs of both presets."""
-    table = STUDY.results(options)
-    evidence = [Evidence(table, name) for name in PRESETS]
-    write_claims(options, "fig16", [claim for e in evidence for claim in judge(e)])
-    draw_means(options, "fig16", evidence, "c_v", "mean C_v (cm²/s²)")
-
+script = judging_presets(
+    "fig16", judge, partial(draw_means, name="fig16", column="c_v", label="mean C_v (cm²/s²)")
+)
 
 if __name__ == "__main__":
     main(script)

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
-from claim import Claims, bca, mean, write_claims
-from section5 import PRESETS, STUDY, Evidence
+from claim import Claims, bca, mean
+from section5 import Evidence, judging_presets
 from study import MOSTLY, PHI_EDGES, PSI_EDGES, Options, density_map, histograms, main, picture
 
 
@@ -80,13 +80,7 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
             figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs of both presets."""
-    table = STUDY.results(options)
-    evidence = [Evidence(table, name) for name in PRESETS]
-    write_claims(options, "fig17", [claim for e in evidence for claim in judge(e)])
-    draw(options, evidence)
-
+script = judging_presets("fig17", judge, draw)
 
 if __name__ == "__main__":
     main(script)

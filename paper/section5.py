@@ -1,9 +1,10 @@
 """The runs of Section 5 in every reading: scheme, noise, tolerance, dt and pool are axes."""
 
+from collections.abc import Callable
 from typing import Any
 
 import pandas as pd
-from claim import Interval, critical_bw, mean, unknown
+from claim import Claim, Claims, Interval, critical_bw, judging, mean, unknown
 from study import COLORS, SEEDS, Options, Row, Study, curve, order_row, picture, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
@@ -102,8 +103,25 @@ class Evidence:
         return critical_bw(noises, self.groups(n, k, "psi_o", "abs_m"))
 
 
+def judging_presets(
+    figure: str,
+    judge: Callable[[Evidence], Claims],
+    draw: Callable[[Options, list[Evidence]], None],
+) -> Callable[[Options], None]:
+    """Return the script of a figure that judges and draws the runs of both presets."""
+
+    def evidence(table: pd.DataFrame) -> list[Evidence]:
+        return [Evidence(table, name) for name in PRESETS]
+
+    def claims(table: pd.DataFrame) -> list[Claim]:
+        return [claim for e in evidence(table) for claim in judge(e)]
+
+    claims.__module__ = judge.__module__
+    return judging(figure, STUDY, claims, lambda options, table: draw(options, evidence(table)))
+
+
 def draw_means(
-    options: Options, name: str, evidence: list[Evidence], column: str, label: str
+    options: Options, evidence: list[Evidence], name: str, column: str, label: str
 ) -> None:
     """Draw the means of a column against noise with their intervals, a panel per series."""
     with picture(options, name, height_cm=9.0) as figure:
