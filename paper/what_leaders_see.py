@@ -7,17 +7,19 @@ flock; the constant lean explains the learned leaders where it leads within 0.02
 """
 
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from claim import Claims, Interval, judging, mean
 from study import COLORS, FIRST_SEED, Options, Row, Study, flock, main, picture
 
-import flockenv
-from flockenv.comparison import compare_leaders
+from flockenv.comparison import compare_leaders, run_episodes
 from flockenv.policies import LeaningLaw
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 
+CELL: Row = {"pool": "wide", "n_boats": 27, "n_leaders": 3, "bw_s": 0.31}
 BLOCKS, FLOCKS = 16, 32
 """Blocks of flocks; a run is a block with one policy."""
 FIRST = 100_000
@@ -67,35 +69,25 @@ def policy(case: str) -> LeaningLaw | str:
 
 @cache
 def mean_lean_rad() -> float:
-    """Return the learned leaders' mean lean in a block of flocks that no case has."""
-    law = LeaningLaw.learned("wide")
-    venv = flockenv.LeadersVectorEnv(
-        FLOCKS,
-        pool="wide",
-        n_leaders=3,
-        bw_s=0.31,
-        episode_s=480.0,
-        observation=law.observation,
-        mirror_to_target=True,
-        physics="default",
-    )
-    seen, _ = venv.reset(seed=FIRST_SEED + FIRST - 1)
+    """Return the learned leaders' mean lean in 256 flocks that no case has."""
+    law, leans = LeaningLaw.learned("wide"), list[float]()
     weights = np.array([law.weights[name] for name in LEAN_FEATURES])
-    leans: list[float] = []
-    for _ in range(4800):
-        features = seen[..., -len(LEAN_FEATURES) :]
-        bounded = np.tanh((law.bias + features @ weights) / LARGEST_LEAN)
-        leans.append(float(LARGEST_LEAN * bounded.mean()))
-        actions, _ = law.predict(seen)
-        seen, *_ = venv.step(actions)
+
+    def noted(seen: Any, state: Any = None) -> Any:
+        features = np.reshape(seen, (len(seen) * CELL["n_leaders"], -1))[:, -len(LEAN_FEATURES) :]
+        leans.extend(LARGEST_LEAN * np.tanh((law.bias + features @ weights) / LARGEST_LEAN))
+        return law.predict(seen, state)
+
+    steers = SimpleNamespace(observation=law.observation, mirror_to_target=True, predict=noted)
+    last = FIRST_SEED + FIRST * FLOCKS
+    run_episodes(flock(CELL), steers, range(last - 256, last), 480.0)
     return float(np.mean(leans))
 
 
 def design() -> list[Row]:
     """Return blocks of 32 episodes, every case before the next block."""
     return [
-        {"pool": "wide", "n_boats": 27, "n_leaders": 3, "bw_s": 0.31, "case": case}
-        | {"flocks": FLOCKS, "minutes": 8.0, "seed": FIRST + block}
+        CELL | {"case": case, "flocks": FLOCKS, "minutes": 8.0, "seed": FIRST + block}
         for block in range(BLOCKS)
         for case in CASES
     ]
