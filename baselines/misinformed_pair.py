@@ -26,8 +26,8 @@ _TOLD = [place for place, each in enumerate(observation_entries()) if each.block
 (TASK,) = tasks_named("v2", ["misinformed"])
 
 
-class Heeds:
-    """A law towards the direction that it is told, times 1 or -1."""
+class Signed:
+    """A law towards its target (1), or against it (-1)."""
 
     def __init__(self, law: Any, sign: float) -> None:
         self.law, self.sign = law, sign
@@ -41,14 +41,14 @@ class Heeds:
         return self.law.predict(seen, state, episode_start)
 
     def __repr__(self) -> str:
-        return f"Heeds({self.law!r}, {self.sign:g})"
+        return f"Signed({self.law!r}, {self.sign:g})"
 
 
 def main() -> None:
     """Print the order with the pair, and with the tuned law for both leaders."""
     law = named_policy(REFERENCE, TASK.parameters.pool)()
     policies = {
-        "pair": {"leader_0": law, "leader_1": Heeds(law, -1.0)},
+        "pair": {"leader_0": law, "leader_1": Signed(law, -1.0)},
         REFERENCE: law,
     }
     result = ComparisonReport([TASK], list(policies), TASK.run(policies))

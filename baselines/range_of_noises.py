@@ -6,9 +6,9 @@
 
 It is not: it leads better than the tuned law in 13 of the twenty.
 
-The trainings are those of pretrained.py in `wide`, but the backward duration of each episode is
-drawn from 0.2 to 0.4 s. The rule was fixed before the first training: the policy is the mean of the
-weights of three seeds, so that none is chosen. It is better everywhere if it leads better than the
+pretrained.py trains them, as in `wide`, with one change: each episode draws its backward duration
+from 0.2 to 0.4 s. The rule was fixed before the first training: the policy is the mean of the
+weights of three seeds, and none is chosen. It is better everywhere if it leads better than the
 tuned law in each of the twenty kinds of flocks, by the whole interval.
 """
 

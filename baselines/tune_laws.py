@@ -49,7 +49,6 @@ RANGES: dict[str, tuple[float, float]] = {
     "damping": (6.0, 1.0),
 }
 POOLS = ("wide", "narrow")
-SEEDS = POLICY_SEEDS["law tuning"]
 
 
 def flock_parameters(pool: str, leaders: int) -> flockenv.FlockParameters:
@@ -73,7 +72,7 @@ def search(pool: str, leaders: int, seed: int, options: argparse.Namespace) -> p
     parameters, rows = flock_parameters(pool, leaders), []
     for generation in range(options.generations):
         start = generation * options.episodes
-        seeds = SEEDS.seeds(options.episodes, seed, start)
+        seeds = POLICY_SEEDS["law tuning"].seeds(options.episodes, seed, start)
         reported = []
         for _ in range(cma.population_size):
             place = cma.ask()

@@ -61,6 +61,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         _search("easy environment", 5),
         _search("paired branches", 6),
         _search("offline data", 7),
+        _search("roles", 8),
     )
 }
 """Seeds of what makes and judges policies, by use; no two ranges meet."""

@@ -99,6 +99,12 @@ def test_the_home_page_opens_with_a_flock():
     assert not (DOCS / "flock.md").exists()
 
 
+def test_the_readme_names_both_front_doors():
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    assert "\nmake compare " in readme
+    assert "\nmake test " in readme
+
+
 def test_every_public_name_has_a_reference():
     reference = "".join(page.read_text() for page in (DOCS / "reference").glob("*.md"))
     documented = re.findall(r"\.\. auto(?:class|exception|function):: ([\w.]+)", reference)
