@@ -44,10 +44,10 @@ def pages() -> dict[Path, str]:
 
 def classes() -> str:
     """Return the page of the classes, which are their docstrings."""
-    told = "\n\n".join(f"# {each.__name__}\n\n{inspect.getdoc(each)}" for each in CLASSES)
-    told = told.replace("docs/environments/tables.md", "[Tables](tables.md)")
-    told = re.sub("^(#+ )", r"#\1", told, flags=re.MULTILINE)
-    return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{told}\n"
+    docs = "\n\n".join(f"# {each.__name__}\n\n{inspect.getdoc(each)}" for each in CLASSES)
+    docs = docs.replace("docs/environments/tables.md", "[Tables](tables.md)")
+    docs = re.sub("^(#+ )", r"#\1", docs, flags=re.MULTILINE)
+    return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{docs}\n"
 
 
 def tables() -> str:
