@@ -22,7 +22,7 @@ from claim import (
     write_claims,
 )
 from study import COLORS, Options, curve, main, picture, write
-from transition_runs import AFTER_MIN, LONG, STARTED, STUDY
+from transition_runs import AFTER_MIN, LITERAL, LONG, STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
 
@@ -214,7 +214,7 @@ def _panels(
 
 def script(options: Options) -> None:
     """Make the map, judge and draw it."""
-    table = STUDY.results(options)
+    table = pd.concat([STUDY.results(options), LITERAL.results(options)], ignore_index=True)
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
     long = LONG.results(options)
     words = ", two hours after a split"

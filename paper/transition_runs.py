@@ -38,9 +38,8 @@ def design() -> list[Row]:
     """Return the map, small flocks first.
 
     Between 0.25 and 0.4 at the lowest noise, and at 0.3 and c4 = 0.03, both states may last in
-    flocks of up to 400: there are more runs. The literal noise and a finer step are run at 0.5.
+    flocks of up to 400: there are more runs. A finer step is run at 0.5.
     """
-    literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02, "c4": 0.1}
     white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
     cells = [
         (n, coverage, white | {"c4": c4})
@@ -48,8 +47,7 @@ def design() -> list[Row]:
         for coverage in (*COVERAGES, 0.35, 0.25)
         for c4 in (C4 if coverage in COVERAGES else C4[:1])
     ]
-    finer = white | {"c4": C4[0], "dt_s": 0.02}
-    cells += [(n, 0.5, noise) for noise in (literal, finer) for n in (100, 200)]
+    cells += [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     return [
         {
             **noise,
@@ -61,6 +59,20 @@ def design() -> list[Row]:
         }
         for n, coverage, noise in cells
         for seed in range(MORE_RUNS if _both_may_last(n, coverage, noise["c4"]) else RUNS)
+        for start in STARTED
+    ]
+
+
+def literal_design() -> list[Row]:
+    """Return runs with the literal noise, at three coverages and sizes."""
+    literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02, "c4": 0.1}
+    return [
+        literal
+        | {"n_boats": n, "coverage": coverage, "start": start, "minutes": 120.0}
+        | {"seed": seed}
+        for n in (100, 200, 400)
+        for coverage in (0.5, 0.3, 0.7)
+        for seed in range(RUNS)
         for start in STARTED
     ]
 
@@ -139,6 +151,7 @@ def long_design() -> list[Row]:
     ]
 
 
+LITERAL = Study("transition_literal", literal_design, measure, lambda row: row["n_boats"] == 100)
 LONG = Study("transition_long", long_design, measure, lambda row: row["n_boats"] == 100)
 STUDY = Study(
     "transition", design, measure, lambda row: row["coverage"] == 0.5 and row["n_boats"] <= 200
