@@ -107,15 +107,20 @@ def ranks(values: np.ndarray) -> np.ndarray:
     return found / (len(values) - 1) - 0.5
 
 
-def next_generation(state: dict[str, Any], env: Any, options: argparse.Namespace) -> dict[str, Any]:
-    """Try the candidates of a generation, and return the state after it."""
+def next_generation(
+    state: dict[str, Any], env: Any, options: argparse.Namespace, steer: Any = None
+) -> dict[str, Any]:
+    """Try the candidates of a generation, and return the state after it.
+
+    `steer` maps weights and the number of leaders to a policy, as `linear`, which is the default.
+    """
     weights, number = state["weights"], int(state["generation"])
     # A generator of its own for each generation: nothing but the number has to be remembered.
     random = np.random.default_rng([options.seed, number])
     half = random.standard_normal((options.pairs, len(weights)))
     candidates = weights + options.sigma * np.concatenate([half, -half])
     seeds = list(SEEDS.seeds(1, options.seed, number)) * len(candidates)
-    rewards, orders = episode(env, seeds, linear(candidates, env.num_leaders))
+    rewards, orders = episode(env, seeds, (steer or linear)(candidates, env.num_leaders))
     scores = ranks(rewards)
     gradient = (scores[: options.pairs] - scores[options.pairs :]) @ half
     gradient /= 2 * options.pairs * options.sigma

@@ -11,6 +11,7 @@ Flocks, reward, policy and exploration are those of `flockenv train`; the algori
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from sb3_contrib import TRPO
 
@@ -19,20 +20,29 @@ from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import SharedNoisePolicy
 from flockenv.training import TrainingSettings
 
-seed, hours, out = int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3])
-settings = TrainingSettings(seed=seed, flock_hours=hours)
-venv = settings.venv()
-ppo = settings.model(venv)
-options = {name: getattr(ppo, name) for name in ("n_steps", "batch_size", "gamma", "gae_lambda")}
-options |= {"policy_kwargs": ppo.policy_kwargs, "use_sde": True, "seed": seed, "device": "cpu"}
-model = TRPO(SharedNoisePolicy, venv, target_kl=0.01, **options)
-# TRPO refuses a parameter that is not learned: the exploration stays as wide as it starts.
-log_std = model.policy.log_std.detach()
-del model.policy.log_std
-model.policy.log_std = log_std
-venv.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
-model.learn(settings.samples(venv))
-out.mkdir(parents=True, exist_ok=True)
-law = LeaningLaw.from_model(model, "wide")  # its copy decides at every control step:
-LeaningLaw("wide", law.bias, law.weights).save(out / "policy.json")
-print(f"{time.process_time() / 60:.1f} minutes of one core")
+
+def trpo(settings: TrainingSettings, venv: Any, target_kl: float) -> TRPO:
+    """Return TRPO before its first sample."""
+    ppo = settings.model(venv)
+    names = ("n_steps", "batch_size", "gamma", "gae_lambda", "policy_kwargs")
+    options = {name: getattr(ppo, name) for name in names}
+    options |= {"use_sde": True, "seed": settings.seed, "device": "cpu"}
+    model = TRPO(SharedNoisePolicy, venv, target_kl=target_kl, **options)
+    # TRPO refuses a parameter that is not learned: the exploration stays as wide as it starts.
+    log_std = model.policy.log_std.detach()
+    del model.policy.log_std
+    model.policy.log_std = log_std
+    return model
+
+
+if __name__ == "__main__":
+    seed, hours, out = int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3])
+    settings = TrainingSettings(seed=seed, flock_hours=hours)
+    venv = settings.venv()
+    model = trpo(settings, venv, target_kl=0.01)
+    venv.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
+    model.learn(settings.samples(venv))
+    out.mkdir(parents=True, exist_ok=True)
+    law = LeaningLaw.from_model(model, "wide")  # its copy decides at every control step:
+    LeaningLaw("wide", law.bias, law.weights).save(out / "policy.json")
+    print(f"{time.process_time() / 60:.1f} minutes of one core")

@@ -1,0 +1,196 @@
+"""Compare algorithms and inputs with equal budgets, on three tasks of suite v2.
+
+    make env-benchmarl
+    OMP_NUM_THREADS=1 .venv-benchmarl/bin/python baselines/suite_grid.py
+    OMP_NUM_THREADS=1 .venv-benchmarl/bin/python baselines/suite_grid.py --flock-hours 1000 \\
+        --algorithms ppo trpo evolution
+
+Seven algorithms learn from three inputs: the 29 lean features with a linear actor, the same with
+two hidden layers of 32, and the default observation with those layers. All leaders of a flock share
+the policy. Everything else about the task is that of `flockenv train`: three leaders in `wide` at
+the critical noise lean about the heading of the tuned law, decide once per second, and are paid the
+order plus 30 times `contact_alignment` (physics of trainings). How an algorithm explores is its
+own: PPO and TRPO perturb the weights of the last layer, one perturbation for all leaders of a
+flock (gSDE); recurrent PPO and SAC do so for each leader; IPPO and MAPPO add noise to each action;
+evolution perturbs all weights. Recurrent PPO has a layer of 32 LSTM cells before the actor, so that
+its "linear" actor is linear in them. The critic of MAPPO sees features of the whole flock.
+
+The design was committed before the first run:
+
+- Settings. For each algorithm and input two settings of its step (`SETTINGS`) are trained with seed
+  100 for 25 flock-hours. The one with the higher mean order in 64 flocks of validation seeds is
+  taken. Nothing else is searched here. But the exploration and the horizons of PPO are those of
+  `flockenv train`, which were searched before, with the first input.
+- Trainings. Seeds 0 to 4 with 100 flock-hours each, seed by seed, each for all algorithms and
+  inputs. If the time ends early, a seed counts if all of them have had it. Then 1000 flock-hours,
+  PPO, TRPO and evolution first. Budgets are rounded up to whole rollouts or generations.
+- Judgment. The first 40 seeds of `three-leaders`, `one-leader` and `camera`, where each policy
+  decides as in its training. A score is the difference from the tuned law in the same flock. Over
+  the three tasks there are the interquartile mean and the probability of improvement.
+- Answer. A cell (an algorithm with an input) gains if the 95 % interval of its interquartile mean,
+  of differences averaged over its seeds, is above 0, and loses if it is below. The interval draws
+  flocks. If it holds 0 and reaches above 0.03, which PPO gains in 500 flock-hours, the grid says
+  nothing about that cell.
+
+What is there is not made again. A folder OUT/ALGORITHM/INPUT/HOURS/SEED holds the policy
+(policy.npz, or model.zip for recurrent PPO), what made it and its orders; OUT/grid.csv has all.
+"""
+
+import argparse
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import torch
+from provenance import commit
+from suite_learners import INPUTS, Training, learn
+
+from flockenv.comparison import run_episodes
+from flockenv.comparison.suite import REFERENCE, tasks_named
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.statistics import bootstrap_interval, interquartile_mean
+
+#: Two of each, as `Training.setting`.
+SETTINGS = {
+    "ppo": (2e-3, 5e-4),
+    "trpo": (0.01, 0.03),
+    "evolution": (0.3, 0.1),
+    "recurrent-ppo": (2e-3, 5e-4),
+    "sac": (1e-3, 3e-4),
+    "ippo": (2e-3, 5e-4),
+    "mappo": (2e-3, 5e-4),
+}
+SEEDS, SEARCH_SEED = range(5), 100
+JUDGED = ("three-leaders", "one-leader", "camera")
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What is spent."""
+
+    flock_hours: float = 100.0
+    searched_hours: float = 25.0
+    #: Flocks that are stepped together, and pairs of a generation of the evolution strategy.
+    together: tuple[int, int] = (128, 16)
+    #: Flocks that choose the setting, and those of each task that judge.
+    validated: int = 64
+    judged: int = 40
+
+
+TRIAL = Budget(0.1, 0.1, (2, 2), 2, 2)
+
+
+def setting(algorithm: str, named: str, budget: Budget, folder: Path) -> float:
+    """Return the better of the two settings in flocks of validation seeds."""
+    path = folder / "settings.json"
+    found = json.loads(path.read_text()) if path.exists() else {}
+    (task,) = tasks_named("v2", ["three-leaders"])
+    seeds = POLICY_SEEDS["validation"].seeds(budget.validated)
+    options = {"target": "random", "physics": "training"}
+    for tried in SETTINGS[algorithm]:
+        if str(tried) in found:
+            continue
+        hours, together = budget.searched_hours, budget.together
+        policy, cpu_s = learn(Training(algorithm, named, tried, SEARCH_SEED, hours, *together))
+        orders = run_episodes(task.parameters, policy, seeds, task.episode_s, options=options)
+        found[str(tried)] = float(orders["signed_order"].mean())
+        print(f"{folder}: {tried:g} has {found[str(tried)]:.3f}, {cpu_s:.0f} s", flush=True)
+        folder.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(found))
+    return float(max(found, key=lambda tried: found[tried]))
+
+
+def judge(policy: Any, budget: Budget, path: Path) -> None:
+    """Write the order in each flock of the tasks."""
+    cases = [replace(each, seeds=each.seeds[: budget.judged]) for each in tasks_named("v2", JUDGED)]
+    runs = pd.concat([case.run({"policy": policy}) for case in cases])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    runs[["case", "seed", "signed_order"]].to_csv(path, index=False)
+
+
+def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> None:
+    """Train and judge a policy, unless it is there."""
+    folder = out / algorithm / named / f"{budget.flock_hours:g}" / str(seed)
+    if (folder / "orders.csv").exists():
+        return
+    chosen = setting(algorithm, named, budget, out / algorithm / named)
+    given = Training(algorithm, named, chosen, seed, budget.flock_hours, *budget.together)
+    policy, cpu_s = learn(given)
+    folder.mkdir(parents=True, exist_ok=True)
+    policy.save(folder / ("policy.npz" if isinstance(policy, NetworkPolicy) else "model.zip"))
+    made = {"setting": chosen, "flock_hours": budget.flock_hours, "cpu_s": cpu_s}
+    made["searched_hours"] = len(SETTINGS[algorithm]) * budget.searched_hours
+    (folder / "made.json").write_text(json.dumps({**made, "commit": commit()}))
+    judge(policy, budget, folder / "orders.csv")
+    print(f"{folder}: {cpu_s:.0f} s", flush=True)
+
+
+def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataFrame:
+    """Return a row for each training that counts, and one for the mean over them."""
+
+    def orders(path: Path) -> np.ndarray:
+        read = pd.read_csv(path)
+        return np.array([own["signed_order"] for _, own in read.groupby("case", sort=False)])
+
+    folders = {cell: out.joinpath(*cell, f"{hours:g}") for cell in cells}
+    counted = [s for s in SEEDS if all((f / f"{s}/orders.csv").exists() for f in folders.values())]
+    tuned, rows = orders(out / "tuned.csv"), list[dict[str, Any]]()
+    for (algorithm, named), folder in folders.items() if counted else ():
+        paths = [folder / str(seed) for seed in counted]
+        beyond = np.array([orders(path / "orders.csv") - tuned for path in paths])
+        made = pd.DataFrame([json.loads((path / "made.json").read_text()) for path in paths])
+        for seed, own in [*zip(counted, beyond[:, None], strict=True), ("mean", beyond)]:
+            row = {"algorithm": algorithm, "input": named, "seed": seed}
+            row |= made.drop(columns="commit").mean().to_dict()
+            if seed != "mean":
+                row["cpu_s"] = made["cpu_s"][counted.index(seed)]
+            row |= dict(zip(JUDGED, own.mean(axis=(0, 2)), strict=True))
+            rows.append(row | over_all(own))
+    return pd.DataFrame(rows)
+
+
+def over_all(beyond: np.ndarray) -> dict[str, float]:
+    """Return both statistics of differences (seeds, tasks, flocks), averaged over the seeds."""
+    better = (beyond > 0.0) + 0.5 * (beyond == 0.0)
+    statistics = {"iqm": (beyond, interquartile_mean), "improvement": (better, mean_of_tasks)}
+    found = {}
+    for name, (values, statistic) in statistics.items():
+        ends = bootstrap_interval(values.mean(axis=0), statistic, paired=False)
+        found |= dict(zip((name, f"{name}_low", f"{name}_high"), ends, strict=True))
+    return found
+
+
+def mean_of_tasks(*tasks: np.ndarray, axis: int = -1) -> Any:
+    """Return the mean over tasks of equally many flocks."""
+    return np.mean([task.mean(axis) for task in tasks], axis=0)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--flock-hours", type=float, default=100.0)
+    parser.add_argument("--algorithms", nargs="+", choices=SETTINGS, default=[*SETTINGS])
+    parser.add_argument("--inputs", nargs="+", choices=INPUTS, default=[*INPUTS])
+    parser.add_argument("--out", type=Path, default=Path("results/grid"))
+    parser.add_argument("--trial", action="store_true", help="a minute of flocks, seed 0")
+    options = parser.parse_args(arguments)
+    torch.set_num_threads(1)
+    budget = TRIAL if options.trial else Budget(flock_hours=options.flock_hours)
+    if not (options.out / "tuned.csv").exists():
+        judge(REFERENCE, budget, options.out / "tuned.csv")
+    cells = [*product(options.algorithms, options.inputs)]
+    for seed in SEEDS[:1] if options.trial else SEEDS:
+        for cell in cells:
+            make(*cell, seed, budget, options.out)
+        found = table(cells, budget.flock_hours, options.out)
+        found.to_csv(options.out / "grid.csv", index=False, float_format="%.4g")
+    print(found.to_string(index=False))
+
+
+if __name__ == "__main__":
+    main()

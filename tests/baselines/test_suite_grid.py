@@ -1,0 +1,55 @@
+"""Each cell of the grid is made once, with its settings, and a seed counts if all have it."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from flockenv.policies import load
+
+pytestmark = [pytest.mark.benchmarl, pytest.mark.filterwarnings("ignore")]
+
+pytest.importorskip("benchmarl")
+pytest.importorskip("sb3_contrib")
+
+ALGORITHMS = ["ppo", "trpo", "evolution", "recurrent-ppo", "sac", "ippo", "mappo"]
+
+
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_a_trial_trains_judges_and_is_not_made_again(script, algorithm, tmp_path):
+    given = ["--trial", "--algorithms", algorithm, "--inputs", "default-network"]
+    given += ["--out", str(tmp_path)]
+    script.main(given)
+    folder = tmp_path / algorithm / "default-network"
+    tried = json.loads((folder / "settings.json").read_text())
+    assert [*map(float, tried)] == [*script.SETTINGS[algorithm]]
+    (made,) = folder.glob("0.1/0")
+    if algorithm == "recurrent-ppo":
+        assert (made / "model.zip").exists()
+    else:
+        assert load(made / "policy.npz").observation == {}
+    first = (tmp_path / "grid.csv").read_bytes()
+    times = {path: path.stat().st_mtime_ns for path in folder.rglob("*.*")}
+    script.main(given)
+    assert (tmp_path / "grid.csv").read_bytes() == first
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.*")} == times
+
+
+def test_a_seed_counts_if_every_cell_has_it(script, tmp_path):
+    def write(path, orders):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        cases = np.repeat(script.JUDGED, 2)
+        pd.DataFrame({"case": cases, "signed_order": orders}).to_csv(path, index=False)
+        made = {"setting": 1.0, "cpu_s": 2.0, "commit": "0"}
+        (path.parent / "made.json").write_text(json.dumps(made))
+
+    write(tmp_path / "tuned.csv", np.zeros(6))
+    cells = [("ppo", "lean-linear"), ("sac", "lean-linear")]
+    for seed, cell in ((0, cells[0]), (1, cells[0]), (0, cells[1])):
+        write(tmp_path.joinpath(*cell, f"100/{seed}/orders.csv"), np.full(6, 0.1 + seed))
+    found = script.table(cells, 100.0, tmp_path)
+    assert found["seed"].tolist() == [0, "mean", 0, "mean"]
+    assert np.allclose(found[[*script.JUDGED, "iqm"]], 0.1)
+    assert (found["improvement"] == 1.0).all()
