@@ -34,8 +34,8 @@ def verdict() -> str:
     """Return how learned leaders compare with the tuned law, for the README."""
     wide = _wide()
     return (
-        f"In {wide['n']} other episodes three learned leaders lead {compared(wide)} "
-        f"({order(LEARNED, 'wide')} and {order(TUNED, 'wide')}). In the pool `narrow` no leaders "
+        f"Over {wide['n']} episodes three learned leaders lead {compared(wide)} "
+        f"({order(LEARNED, 'wide')} against {order(TUNED, 'wide')}). In the pool `narrow` no leaders "
         "have learned to lead better than it ([leaders](docs/leaders.md))."
     )
 
@@ -44,13 +44,12 @@ def summary() -> str:
     """Return what docs/leaders.md begins with."""
     wide, single = _wide(), _wide("1")
     return (
-        f"In the pool `wide` three learned leaders among 27 boats lead {compared(wide)}: they "
-        f"reach a signed order of {order(LEARNED, 'wide')}, and the tuned law "
-        f"{order(TUNED, 'wide')}. A single one leads {compared(single)} (bw = 0.31 s, {wide['n']} "
-        "episodes each). In the pool `narrow` no leaders have learned to lead better than the "
-        f"tuned law, which reaches {order(TUNED, 'narrow')} there (bw = 0.45 s). The paper's own "
-        f"law, eq. (10), reaches {order(PAPERS, 'wide')} in `wide` and {order(PAPERS, 'narrow')} "
-        "in `narrow`."
+        f"In the pool `wide` three learned leaders among 27 boats reach a signed order of "
+        f"{order(LEARNED, 'wide')}. They lead {compared(wide)}; a single one leads "
+        f"{compared(single)} (bw = 0.31 s, {wide['n']} episodes each). The paper's own law, "
+        f"eq. (10), reaches {order(PAPERS, 'wide')}. In the pool `narrow` (bw = 0.45 s) no leaders "
+        f"have learned to lead better than the tuned law: it reaches {order(TUNED, 'narrow')}, and "
+        f"the paper's law {order(PAPERS, 'narrow')}."
     )
 
 

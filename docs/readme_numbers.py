@@ -25,12 +25,11 @@ def speed() -> str:
     hit = [one("speed_vs_error/impact.csv", scheme=each)["dt = 0.01 s"] for each in schemes]
     return (
         f"A step of 0.01 s with 27 boats jammed in `narrow` takes {float(step['us_per_step']):.1f} "
-        f"µs on one core, and {float(step['faster']):.1f} times as long in the physics engine "
-        f"rapier. After 2 s of sliding along the wall a boat is off by {ours:.2g} cm with the "
+        f"µs on one core. The physics engine rapier needs {float(step['faster']):.1f} times as "
+        f"long. A boat that slides along the wall for 2 s is then off by {ours:.2g} cm with the "
         f"default scheme, by {first_order:.2g} cm with the first-order `moreau`, and by "
-        f"{theirs:.2g} cm in rapier. If it hits the wall on the way, the time of the impact sets "
-        f"the error: {hit[0]} and {hit[1]} cm with our schemes "
-        "([speed against error](docs/speed_vs_error.md))."
+        f"{theirs:.2g} cm in rapier. If it hits the wall on the way, the default is no better than "
+        f"`moreau`: {hit[0]} and {hit[1]} cm ([speed against error](docs/speed_vs_error.md))."
     )
 
 
@@ -85,9 +84,9 @@ def density() -> str:
     )
     return finding(
         "Dense flocks need noise to move, sparse ones do not.",
-        f"In `wide`, noise raises the rotation of 50 boats (1 if all circle one way) by "
-        f"{LEAST_RISE} or more in {needs('50')} variants of the model. It does so for 20 boats in "
-        f"{needs('20')}, because most rotate without noise (24 runs of 30 minutes, no leaders). "
+        "The rotation is 1 if all boats circle one way. In `wide`, noise raises it for 50 boats "
+        f"by {LEAST_RISE} or more in {needs('50')} variants of the model, and for 20 boats in "
+        f"{needs('20')}: most of these rotate without noise (24 runs of 30 minutes, no leaders). "
         "With the default preset, dense flocks hardly rotate at any noise. With `experiment`, "
         f"fitted to jams at low noise, 27 boats in `narrow` reach {quiet:.2f} without noise, "
         f"{moving:.2f} at bw = 1.0 s and {gone:.2f} at 2.8 s.",
@@ -102,9 +101,9 @@ def overlap() -> str:
     return finding(
         "When order is lost depends on choices that the paper leaves open.",
         f"20 boats in `wide` lose it at bw = {lost('simulation, n = 20', boats)} s with white "
-        "noise and the default scheme. With noise and steps as in the paper it is "
-        f"{lost('paper, 0.1 cm, n = 20', boats)} to {lost('paper, 0.001 cm, n = 20', boats)} s, "
-        "depending on the overlap that a step tolerates (paper: 0.6 to 0.8 s; 24 runs at each "
+        "noise and the default scheme. With noise and steps taken literally it is "
+        f"{lost('paper, 0.1 cm, n = 20', boats)} to {lost('paper, 0.001 cm, n = 20', boats)} s: "
+        "the less overlap a step tolerates, the later. The paper has 0.6 to 0.8 s (24 runs at each "
         "noise, no leaders).",
         "readings",
         "When each variant of the model loses its order",
@@ -159,7 +158,7 @@ def figures() -> str:
 
 
 def variants() -> str:
-    """Return in how many variants the headlines hold, for paper/headlines.md."""
+    """Return in how many variants the headlines hold, for paper/README.md."""
     found = [row["verdict"] for row in rows(CLAIMS, figure="headlines")]
     held, failed, free = (found.count(each) for each in VERDICTS)
     end = f"{failed} fail" if failed else "none fails"

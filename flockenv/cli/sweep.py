@@ -42,7 +42,7 @@ def sweep(options: SweepOptions) -> None:
     `runs/`: give the same command again to resume. Machines that share a folder can make one shard
     each, with `--shard 1/8` to `--shard 8/8`; afterwards the command without `--shard` writes the
     table.
-    `docs/sweep.md` describes the TOML file. If a run fails, its row says why, the others go on, and
+    `docs/runs.md` describes the TOML file. If a run fails, its row says why, the others go on, and
     the command ends with exit code 1.
 
     Example: `flockenv sweep docs/sweep-example.toml`

@@ -1,6 +1,6 @@
 """Sweeps: any grid of parameters and seeds, resumable, as one table.
 
-`docs/sweep.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`. In a
+`docs/runs.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`. In a
 grid even a single value is a list, and all grids name the same fields.
 """
 

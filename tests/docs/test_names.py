@@ -37,7 +37,7 @@ OTHERS = {
     "docs/other_learners.md": {"TanhNormal"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
     "docs/speed_vs_error.md": {"boids"},
-    "docs/sweep.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
+    "docs/runs.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
     "docs/tracks.md": {
         "individuals",
         "mouse1.nose_x",

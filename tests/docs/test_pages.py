@@ -18,9 +18,9 @@ DOCS = REPOSITORY / "docs"
 EXECUTED = {
     "README.md": ["python"],
     "docs/start.md": ["python", "sh"],
-    "docs/reference/flocks.md": ["python"],
+    "docs/reference/python.md": ["python"],
     "docs/pictures.md": ["python", "sh"],
-    "docs/schedules.md": ["python"],
+    "docs/runs.md": ["python"],
     "docs/extend/policy.md": ["python"],
     "docs/extend/task.md": ["python"],
     "docs/suite.md": ["python"],
