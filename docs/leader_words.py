@@ -35,8 +35,8 @@ def verdict() -> str:
     wide = _wide()
     return (
         f"Over {wide['n']} episodes three learned leaders lead {compared(wide)} "
-        f"({order(LEARNED, 'wide')} against {order(TUNED, 'wide')}). In the pool `narrow` no leaders "
-        "have learned to lead better than it ([leaders](docs/leaders.md))."
+        f"({order(LEARNED, 'wide')} against {order(TUNED, 'wide')}). In the pool `narrow` no "
+        "leaders have learned to lead better than it ([leaders](docs/leaders.md))."
     )
 
 
