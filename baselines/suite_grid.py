@@ -17,13 +17,14 @@ its "linear" actor is linear in them. The critic of MAPPO sees features of the w
 
 The design was committed before the first run:
 
-- Settings. For each algorithm and input two settings of its step (`SETTINGS`) are trained with seed
-  100 for 25 flock-hours. The one with the higher mean order in 64 flocks of validation seeds is
-  taken. Nothing else is searched here. But the exploration and the horizons of PPO are those of
-  `flockenv train`, which were searched before, with the first input.
+- Settings. One for each algorithm (`SETTINGS`), the same with all inputs, and none is searched here.
+  The step, the exploration and the horizons of PPO are those of `flockenv train`, which were
+  searched with the first input (1500 flock-hours). TRPO has its horizons and exploration, too, and
+  a divergence that was one of four. All others are first guesses.
 - Trainings. Seeds 0 to 4 with 100 flock-hours each, seed by seed, each for all algorithms and
-  inputs. If the time ends early, a seed counts if all of them have had it. Then 1000 flock-hours,
-  PPO, TRPO and evolution first. Budgets are rounded up to whole rollouts or generations.
+  inputs. If the time ends early, all that were trained count: this order chose them, and not a
+  result. Then 1000 flock-hours, PPO, TRPO and evolution first. Budgets are rounded up to whole
+  rollouts or generations.
 - Judgment. The first 40 seeds of `three-leaders`, `one-leader` and `camera`, where each policy
   decides as in its training. A score is the difference from the tuned law in the same flock. Over
   the three tasks there are the interquartile mean and the probability of improvement.
@@ -50,23 +51,21 @@ import torch
 from provenance import commit
 from suite_learners import INPUTS, Training, learn
 
-from flockenv.comparison import run_episodes
 from flockenv.comparison.suite import REFERENCE, tasks_named
 from flockenv.policies import NetworkPolicy
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics import bootstrap_interval, interquartile_mean
 
-#: Two of each, as `Training.setting`.
+#: Of each algorithm, as `Training.setting`.
 SETTINGS = {
-    "ppo": (2e-3, 5e-4),
-    "trpo": (0.01, 0.03),
-    "evolution": (0.3, 0.1),
-    "recurrent-ppo": (2e-3, 5e-4),
-    "sac": (1e-3, 3e-4),
-    "ippo": (2e-3, 5e-4),
-    "mappo": (2e-3, 5e-4),
+    "ppo": 2e-3,
+    "trpo": 0.01,
+    "evolution": 0.1,
+    "recurrent-ppo": 1e-3,
+    "sac": 3e-4,
+    "ippo": 1e-3,
+    "mappo": 1e-3,
 }
-SEEDS, SEARCH_SEED = range(5), 100
+SEEDS = range(5)
 JUDGED = ("three-leaders", "one-leader", "camera")
 
 
@@ -75,35 +74,13 @@ class Budget:
     """What is spent."""
 
     flock_hours: float = 100.0
-    searched_hours: float = 25.0
     #: Flocks that are stepped together, and pairs of a generation of the evolution strategy.
     together: tuple[int, int] = (128, 16)
-    #: Flocks that choose the setting, and those of each task that judge.
-    validated: int = 64
+    #: Flocks of each task that judge.
     judged: int = 40
 
 
-TRIAL = Budget(0.1, 0.1, (2, 2), 2, 2)
-
-
-def setting(algorithm: str, named: str, budget: Budget, folder: Path) -> float:
-    """Return the better of the two settings in flocks of validation seeds."""
-    path = folder / "settings.json"
-    found = json.loads(path.read_text()) if path.exists() else {}
-    (task,) = tasks_named("v2", ["three-leaders"])
-    seeds = POLICY_SEEDS["validation"].seeds(budget.validated)
-    options = {"target": "random", "physics": "training"}
-    for tried in SETTINGS[algorithm]:
-        if str(tried) in found:
-            continue
-        hours, together = budget.searched_hours, budget.together
-        policy, cpu_s = learn(Training(algorithm, named, tried, SEARCH_SEED, hours, *together))
-        orders = run_episodes(task.parameters, policy, seeds, task.episode_s, options=options)
-        found[str(tried)] = float(orders["signed_order"].mean())
-        print(f"{folder}: {tried:g} has {found[str(tried)]:.3f}, {cpu_s:.0f} s", flush=True)
-        folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(found))
-    return float(max(found, key=lambda tried: found[tried]))
+TRIAL = Budget(0.1, (2, 2), 2)
 
 
 def judge(policy: Any, budget: Budget, path: Path) -> None:
@@ -119,39 +96,37 @@ def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> No
     folder = out / algorithm / named / f"{budget.flock_hours:g}" / str(seed)
     if (folder / "orders.csv").exists():
         return
-    chosen = setting(algorithm, named, budget, out / algorithm / named)
-    given = Training(algorithm, named, chosen, seed, budget.flock_hours, *budget.together)
+    setting, hours = SETTINGS[algorithm], budget.flock_hours
+    given = Training(algorithm, named, setting, seed, hours, *budget.together)
     policy, cpu_s = learn(given)
     folder.mkdir(parents=True, exist_ok=True)
     policy.save(folder / ("policy.npz" if isinstance(policy, NetworkPolicy) else "model.zip"))
-    made = {"setting": chosen, "flock_hours": budget.flock_hours, "cpu_s": cpu_s}
-    made["searched_hours"] = len(SETTINGS[algorithm]) * budget.searched_hours
-    (folder / "made.json").write_text(json.dumps({**made, "commit": commit()}))
+    made = {"setting": setting, "flock_hours": hours, "cpu_s": cpu_s, "commit": commit()}
+    (folder / "made.json").write_text(json.dumps(made))
     judge(policy, budget, folder / "orders.csv")
     print(f"{folder}: {cpu_s:.0f} s", flush=True)
 
 
 def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataFrame:
-    """Return a row for each training that counts, and one for the mean over them."""
+    """Return a row for each training, and one for the mean over those of a cell."""
 
     def orders(path: Path) -> np.ndarray:
         read = pd.read_csv(path)
         return np.array([own["signed_order"] for _, own in read.groupby("case", sort=False)])
 
-    folders = {cell: out.joinpath(*cell, f"{hours:g}") for cell in cells}
-    counted = [s for s in SEEDS if all((f / f"{s}/orders.csv").exists() for f in folders.values())]
     tuned, rows = orders(out / "tuned.csv"), list[dict[str, Any]]()
-    for (algorithm, named), folder in folders.items() if counted else ():
-        paths = [folder / str(seed) for seed in counted]
-        beyond = np.array([orders(path / "orders.csv") - tuned for path in paths])
-        made = pd.DataFrame([json.loads((path / "made.json").read_text()) for path in paths])
-        for seed, own in [*zip(counted, beyond[:, None], strict=True), ("mean", beyond)]:
-            row = {"algorithm": algorithm, "input": named, "seed": seed}
-            row |= made.drop(columns="commit").mean().to_dict()
-            if seed != "mean":
-                row["cpu_s"] = made["cpu_s"][counted.index(seed)]
-            row |= dict(zip(JUDGED, own.mean(axis=(0, 2)), strict=True))
-            rows.append(row | over_all(own))
+    for algorithm, named in cells:
+        folder = out / algorithm / named / f"{hours:g}"
+        seeds = [seed for seed in SEEDS if (folder / f"{seed}/orders.csv").exists()]
+        made = [json.loads((folder / f"{seed}/made.json").read_text()) for seed in seeds]
+        beyond = [orders(folder / f"{seed}/orders.csv") - tuned for seed in seeds]
+        taken = [each["cpu_s"] for each in made]
+        each = [*zip(seeds, [[own] for own in beyond], taken, strict=True)]
+        for seed, own, cpu_s in [*each, ("mean", beyond, np.mean(taken))] if each else []:
+            row = {"algorithm": algorithm, "input": named, "flock_hours": hours, "seed": seed}
+            row |= {"setting": made[0]["setting"], "cpu_s": cpu_s}
+            row |= dict(zip(JUDGED, np.mean(own, axis=(0, 2)), strict=True))
+            rows.append(row | over_all(np.array(own)))
     return pd.DataFrame(rows)
 
 
