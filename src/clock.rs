@@ -36,7 +36,9 @@ pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &s
     if !(count > 0.0 && count <= 1e9) {
         return refuse(", at most 1e9 of them".to_owned());
     }
-    if (count - count.round()).abs() > 1e-9 * count.max(1.0) {
+    // A duration far below one step is no whole number of them, though it rounds to none.
+    let whole = count.round().max(1.0);
+    if (count - whole).abs() > 1e-9 * whole {
         let [below, above] = [count.floor().max(1.0), count.ceil()].map(|n| n / rate_hz);
         return refuse(if below == above {
             format!(": {above} s is nearest")
@@ -44,5 +46,5 @@ pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &s
             format!(": {below} and {above} s are nearest")
         });
     }
-    Ok(count.round() as u32)
+    Ok(whole as u32)
 }

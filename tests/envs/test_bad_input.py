@@ -58,6 +58,7 @@ def interface(request):
         ({"action_mode": "lean", "pool": (100.0, 40.0)}, "wide and narrow"),
         ({"decision_period_s": 0.25}, "0.2 and 0.3 s are nearest"),
         ({"decision_period_s": 0.04}, "0.1 s is nearest"),
+        ({"decision_period_s": 1e-30}, "0.1 s is nearest"),
         ({"decision_period_s": 0.0}, "whole number of control steps"),
         ({"decision_period_s": float("nan")}, "whole number of control steps"),
         ({"decision_period_s": -1.0}, "whole number of control steps"),
