@@ -6,7 +6,8 @@ import pytest
 
 import flockenv
 from flockenv import Flock, FlockParameters, ParameterError
-from flockenv.sb3 import LeaderVecEnv
+
+from .conftest import leader_vec_env
 
 OPTIONS = {"n_boats": 8, "n_leaders": 2, "pool": "narrow"}
 
@@ -53,7 +54,7 @@ def vector(options):
 
 
 def slots(options):
-    env = LeaderVecEnv(3, **OPTIONS)
+    env = leader_vec_env(**OPTIONS)
     env.seed(3)
     env.set_options(options)
     env.reset()
@@ -116,11 +117,11 @@ def test_a_list_has_one_noise_seed_per_flock():
         ({"snapshot": BLOB, "noise-seed": 5}, ParameterError),
     ],
 )
-@pytest.mark.parametrize("make", [flockenv.LeadersVectorEnv, LeaderVecEnv, flockenv.parallel_env])
+@pytest.mark.parametrize("make", [flockenv.LeadersVectorEnv, leader_vec_env, flockenv.parallel_env])
 def test_what_is_no_noise_seed_is_refused_and_changes_nothing(make, options, error):
     env = make(**OPTIONS)
     reset = env.reset
-    if make is LeaderVecEnv:
+    if make is leader_vec_env:
         env.seed(3)
 
         def reset(options):
