@@ -1,11 +1,13 @@
 """How Sphinx builds the pages: `make docs`."""
 
+import re
 import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from PIL import Image
 from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
@@ -60,7 +62,7 @@ html_theme = "furo"
 html_title = f"flockenv {release}"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
-html_css_files = ["doors.css", "loops.css", "tables.css"]
+html_css_files = ["doors.css", "loops.css", "phones.css"]
 html_show_copyright = False
 html_copy_source = False
 
@@ -107,11 +109,22 @@ ENVIRONMENTS = (
     "flockenv.sb3.LeaderVecEnv",
 )
 
+SHORT = {
+    r"\(\$cls, ": "(",  # class methods of the compiled module show their first argument
+    r"<class '(?:\w+\.)*(\w+)'>": r"\1",
+    r"<factory>": "...",
+    r"~[\w.]+\._Buffer \| .*?_NestedSequence\[complex \| bytes \| str\]": "ArrayLike",
+    r"type\[~typing\.Any\] \| ~numpy\.dtype\[.*?_DTypeDict \| str": "DTypeLike",
+    r"(~numpy\.ndarray)\[tuple\[[^\]]*\], ~numpy\.dtype\[[^\[\]]*(?:\[[^\]]*\])?\]\]": r"\1",
+}
+"""What signatures show of types that are evaluated, in this order."""
+
 
 def setup(app: Sphinx) -> None:
     """Register what autodoc does not know by itself."""
     app.connect("autodoc-process-docstring", _link_environment_pages)
-    app.connect("autodoc-process-signature", _hide_cls)
+    app.connect("autodoc-process-signature", _shorten)
+    app.connect("doctree-resolved", _mark_wide_pictures)
     app.connect("missing-reference", _plain_name)
     app.connect("source-read", _link_copies)
 
@@ -131,11 +144,24 @@ def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
     source[0] = source[0].replace("[results/](results/)", "`results/`")
 
 
-def _hide_cls(
+def _shorten(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, signature: str, returns: str
 ) -> tuple[str, str] | None:
-    # Class methods of the compiled module show their first argument.
-    return (signature.replace("($cls, ", "("), returns) if signature else None
+    if not signature:
+        return None
+    for long, short in SHORT.items():
+        signature, returns = re.sub(long, short, signature), re.sub(long, short, returns or "")
+    return signature, returns
+
+
+def _mark_wide_pictures(app: Sphinx, doctree: nodes.document, docname: str) -> None:
+    # A phone scrolls these, whose letters it could not show otherwise.
+    for node in doctree.findall(nodes.image):
+        file = Path(app.srcdir, node["uri"])
+        if file.suffix == ".png" and file.is_file():
+            with Image.open(file) as picture:
+                if picture.width > (800 if file.parent.name == "pictures" else 1200):
+                    node["classes"].append("wide")
 
 
 def _plain_name(

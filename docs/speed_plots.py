@@ -83,7 +83,7 @@ def learners(figure: Figure) -> None:
     }
     axes = figure.subplots()
     listed(axes, shares, dict.fromkeys(shares, OURS), reference=1.0)
-    axes.set(xlim=(0, 1.05), xlabel="samples per second, over the batch alone")
+    axes.set(xlim=(0, 1.05), xlabel="share of the batch's speed")
 
 
 def many_agents(figure: Figure) -> None:
