@@ -23,8 +23,15 @@ Each design was fixed before its trainings. All trainings count, and none was ch
 - Paired branches: seeds 0 to 4 with 200 flock-hours each. Ten searches, 1200 flock-hours together,
   chose the length of a branch, the changes and the learning rate, in 256 or 384 other flocks.
 
+
     for seed in 0 1 2 3 4; do python baselines/paired_branches.py --seed $seed; done
     python baselines/judge_trainings.py results/paired/* --out docs/training/paired
+
+- Group-relative policy optimization: seeds 0 to 4 with 200 flock-hours each. Two trainings, 400
+  flock-hours together, chose the step and the exploration, in 256 other flocks.
+
+    for seed in 0 1 2 3 4; do python baselines/group_relative.py --seed $seed; done
+    python baselines/judge_trainings.py results/group/* --out docs/training/group
 
 - What `make pretrained` makes: seeds 0 to 7, after 500 and 1101 flock-hours, no setting searched.
 

@@ -17,7 +17,7 @@ its "linear" actor is linear in them. The critic of MAPPO sees features of the w
 
 The design was committed before the first run:
 
-- Settings. One for each algorithm (`SETTINGS`), the same with all inputs, and none is searched here.
+- Settings. One for each algorithm (`SETTINGS`), the same with all inputs. None is searched here.
   The step, the exploration and the horizons of PPO are those of `flockenv train`, which were
   searched with the first input (1500 flock-hours). TRPO has its horizons and exploration, too, and
   a divergence that was one of four. All others are first guesses.
