@@ -92,7 +92,7 @@ class OrderParameters(_Recorded[float]):
     """Alignment of a set of boats at one time: a float for each recorded quantity of the table.
 
     LAP angles count clockwise from the outward radial: 0 is jammed outward, +π/2 clockwise. Values
-    that are not given are NaN, which equals NaN.
+    that are not given are NaN, and NaN equals NaN here.
     """
 
     def _values(self) -> tuple[float | None, ...]:
@@ -118,7 +118,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
     Attributes
     ----------
     time_s : float64 array, shape (t,), or None
-        Times in s: those of a recording.
+        Times in s, if a recording has the series.
     """
 
     time_s: NDArray[np.float64] | None = field(default=None, repr=False, kw_only=True)
@@ -181,7 +181,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        With a list of targets the first counts. Errors are those of `series`.
+        With a list of targets the first counts. Raises what `series` raises.
         """
         return self.series("signed_order", target)
 
@@ -258,7 +258,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
         target
             Direction that signed quantities count towards, "cw" or "ccw".
         ax
-            Axes of matplotlib to draw into. None: those of a new figure.
+            Axes of matplotlib to draw into. None: a new figure.
 
         Returns
         -------
@@ -274,7 +274,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
         """
         pyplot = require("matplotlib.pyplot", "plot")
         if self.time_s is None:
-            raise ParameterError("this series has no times: plot that of a recording")
+            raise ParameterError("this series has no times: plot a recording's order")
         if not names:
             names = tuple(each.name for each in RECORDED if each.range and not each.unit)
         columns = {name: self.series(name, target) for name in names}
@@ -294,7 +294,7 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     ----------
     pose
         Shape (t, n, 3): [x, y from the pool's center, heading rad counter-clockwise from x]. Rows
-        of NaN where a boat is not there. Leaders count if they are among the boats.
+        of NaN if a boat is not there. Leaders count if they are among the boats.
     velocity
         The same shape, in the unit of length of the pose per s.
 

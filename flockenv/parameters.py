@@ -169,7 +169,7 @@ class FlockParameters:
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
         """Return parameters from fields by name.
 
-        Errors are those of the class.
+        Raises what the class raises.
 
         Parameters
         ----------
@@ -188,9 +188,9 @@ class FlockParameters:
 
     @classmethod
     def from_toml(cls, text: str) -> Self:
-        """Return parameters from TOML; keys are those of `from_dict`.
+        """Return parameters from TOML, with the keys of `from_dict`.
 
-        Errors are those of the class; text that is no TOML is a ParameterError, too.
+        Raises what the class raises, and a ParameterError for text that is no TOML.
         """
         return cls.from_dict(read_toml(text, "the text of parameters"))
 

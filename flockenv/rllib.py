@@ -57,7 +57,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         space, actions = self.observation_space, self.action_space
         if not isinstance(space, ObservationSpace) or not isinstance(actions, gymnasium.spaces.Box):
             raise ParameterError(
-                f"the spaces {shown(space)} and {shown(actions)} are not accepted: those of "
+                f"the spaces {shown(space)} and {shown(actions)} are not accepted: take "
                 "flockenv/Leaders-v0 with continuous actions"
             )
         self.leaders = space.leaders

@@ -61,7 +61,7 @@ def simulate(
 ) -> Recording:
     """Run a flock and record it: a pure function of its arguments.
 
-    Under a law the run is one call into the core, which releases the interpreter lock.
+    Under a law the run is one call into the core, without the interpreter lock.
 
     Parameters
     ----------
@@ -88,8 +88,7 @@ def simulate(
         its observation space says so, and otherwise 10. Policies of a dictionary may then decide at
         rates of their own: a slower one's rudder is held meanwhile.
     dtype
-        float64, or float32 for half the size, which rounds the stored pose and velocity but not
-        the run.
+        float64, or float32 for half the size: it rounds the stored pose and velocity, not the run.
     contacts
         Whether contacts and their forces are recorded too: 28 bytes per contact.
     progress
@@ -311,7 +310,7 @@ def _common_rate(seats: Sequence[_Seat]) -> float:
     if common > _FASTEST_HZ:
         given = ", ".join(f"{rate:g}" for rate in sorted(rates))
         raise ParameterError(
-            f"the policies decide {given} times per second, which have no common multiple up to "
+            f"the policies decide {given} times per second, without a common multiple up to "
             f"{_FASTEST_HZ}: give control_hz"
         )
     for seat, rate in zip(seats, exact, strict=True):

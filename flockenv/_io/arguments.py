@@ -26,7 +26,7 @@ def items(values: Any, name: str) -> Any:
         raise TypeError(f"{name} must be a sequence, not {shown(values)}")
     found = tuple(islice(_each(values, name), _MOST_ITEMS + 1))
     if len(found) > _MOST_ITEMS:
-        raise ParameterError(f"{name} has more than {_MOST_ITEMS} items, which is not accepted")
+        raise ParameterError(f"{name} has more than {_MOST_ITEMS} items: too many")
     return found
 
 

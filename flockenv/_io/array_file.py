@@ -51,7 +51,7 @@ def read_arrays(
                 array = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
                 arrays[name] = array
                 if array.dtype.kind not in "biufU":
-                    raise ValueError(f"{name} holds {array.dtype}, which is not accepted")
+                    raise ValueError(f"{name} must not hold {array.dtype}")
         except Exception as error:
             # zipfile, zlib and NumPy raise very different things for damaged bytes.
             reason = str(error) or type(error).__name__

@@ -116,6 +116,6 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 def write_csv(path: str | os.PathLike[str], table: "pd.DataFrame", **options: Any) -> None:
     """Write a table without its index to a CSV file, with the same bytes on every system.
 
-    Options are those of ``to_csv``; the file is written as by `atomic_write`.
+    Takes the options of ``to_csv``, and writes the file as `atomic_write` does.
     """
     write_text(path, table.to_csv(index=False, lineterminator="\n", **options))

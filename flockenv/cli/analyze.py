@@ -36,7 +36,7 @@ def analyze(options: AnalyzeOptions) -> None:
     phases of the motors are unknown, all samples after it count. A report says which rows of the
     tracks were left out; with `--json` it stands under "tracks". If a table has no description, the
     command guesses one, writes it beside the table and names the lines to check. Compare the first
-    frame, which `--plot` draws, with the video: no number shows that an experiment is mirrored.
+    frame (`--plot` draws it) with the video: no number shows that an experiment is mirrored.
     `--out` also writes tables with their layout, or GSD for OVITO and freud.
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`

@@ -81,8 +81,8 @@ def compare(options: CompareOptions) -> None:
     Runs each policy on the same seeds: 27 boats in the pool `wide`, at its critical noise, unless
     the options say otherwise. Differences are your first policy minus each of the others.
     Writes `runs.csv`, `means.csv`, `differences.csv`, `lines.csv`, `leader_curve.png`, `run.toml`
-    (seeds, policies, environment), the parameters of each case, which `--params` reads, and the
-    card of your first policy, `card.md`.
+    (seeds, policies, environment), the parameters of each case for `--params`, and the card of
+    your first policy, `card.md`.
 
     `--suite v2` scores policies on frozen tasks, into `scores.csv`.
 

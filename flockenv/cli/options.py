@@ -10,7 +10,7 @@ import typer
 
 Options = TypeVar("Options")
 
-TRUST = "Read .zip files of stable-baselines3 models, which executes the code in them."
+TRUST = "Read .zip files of stable-baselines3 models: this executes the code in them."
 """What a command's option ``trust`` does."""
 
 

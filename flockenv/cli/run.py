@@ -41,7 +41,7 @@ class RunOptions(OneFlock, Overwriting, Printing):
 def run(options: RunOptions) -> None:
     """Run one flock and record it.
 
-    Writes the recording, and beside it the exact parameters as TOML, which `--params` reads.
+    Writes the recording, and beside it the exact parameters as TOML, for `--params`.
     `flockenv replay` shows it.
 
     Example: `flockenv run --n-boats 27 --n-leaders 3 --bw-s 0.3 --seed 7`

@@ -48,7 +48,7 @@ def _answer(words: Sequence[str], place: int, known: list[str]) -> str:
     if found is None:
         if meant in _FIELDS:
             line = shlex.join(["flockenv", "run", "--set", f"{meant}={value or 'VALUE'}"])
-            return f"{refused}: {meant} is a field of the flock, which `{line}` sets"
+            return f"{refused}: {meant} is a field of the flock: set it by `{line}`"
         return f"{refused}: see --help"
     if found in own:
         typed = [own[found], *([value] if value else [])]

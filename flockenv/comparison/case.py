@@ -49,7 +49,7 @@ class Case:
     ) -> "pd.DataFrame":
         """Run every policy; return a row per episode, as `compare_leaders` with a column ``case``.
 
-        Errors are those of `compare_leaders`.
+        Raises what `compare_leaders` raises.
         """
         targets = self.targets or (self.parameters.target,)
         parts = [

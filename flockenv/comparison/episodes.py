@@ -85,8 +85,7 @@ def compare_leaders(
     environment
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
         ``dropout_rate=0.003``. If there are any, flocks without leaders, the paper's law at every
-        substep and a policy for each leader are refused, because they run in `simulate`, which has
-        no such options.
+        substep and a policy for each leader are refused: they run in `simulate`, without options.
 
     Returns
     -------
@@ -154,7 +153,7 @@ def compare_leaders(
 def steering(policy: Steering, pool: Any) -> Any:
     """Return a policy, a dictionary with one per leader, or `EVERY_SUBSTEP`.
 
-    Errors are those of `flockenv.policies.load`, also for unknown names.
+    Raises what `flockenv.policies.load` raises, also for unknown names.
     """
     if isinstance(policy, Mapping):
         return {leader: steering(each, pool) for leader, each in policy.items()}

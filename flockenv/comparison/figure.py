@@ -39,7 +39,7 @@ def leader_curve(
 ) -> None:
     """Draw order against the number of leaders, as figure 12 does, a panel for each case.
 
-    Means are those of a `ComparisonReport`; of its runs each is a dot. Titles are by case.
+    A `ComparisonReport` has the means and the runs, each a dot. Titles are by case.
     """
     policies = [name for name in means["policy"].unique() if name != NO_LEADERS]
     cases = list(means["case"].unique())

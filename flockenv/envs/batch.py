@@ -110,7 +110,7 @@ class LeaderBatch:
         rows = len(self._flock_of_row)
         if np.ma.is_masked(returned):
             raise ParameterError(
-                "what reward returned is masked, which is not accepted: plain numbers"
+                "the function of reward returned masked numbers: return plain ones"
             )
         found = real_numbers(returned, "what the function of reward returned").astype(np.float64)
         if found.shape == (self.num_flocks,):

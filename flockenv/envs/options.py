@@ -199,7 +199,7 @@ def _refuse_reset_option(name: object, takes: tuple[str, ...]) -> None:
         words = "only a vector environment of Gymnasium takes 'reset_mask'"
     else:
         words = f"{near!r} is fixed when an environment is made: make another one to change it"
-    raise ParameterError(f"{name!r} is no reset option, which are {options}: {words}")
+    raise ParameterError(f"{name!r} is no reset option (these are {options}): {words}")
 
 
 class FixedOptions:

@@ -44,7 +44,7 @@ class LeadersParallelEnv(
     An agent's is a `Box` of shape (observation size,), float32.
 
     ## Rewards
-    Each agent gets the weighted sum of its terms: those of a leader alone are its own, and with
+    Each agent gets the weighted sum of its terms: terms of a leader alone are its own, and with
     several targets all are towards its own target. Each step's infos have the agent's
     `"reward_terms"`, the last ones the `"episode_summary"`.
 

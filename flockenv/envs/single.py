@@ -24,13 +24,13 @@ class LeadersEnv(
 
     This text specifies the task for all interfaces. `LeadersParallelEnv`, `LeadersVectorEnv` and
     `flockenv.sb3.LeaderVecEnv` take the same options and say what differs.
-    docs/environments/tables.md, which `make docs` writes, lists every option, reward term, entry of
+    docs/environments/tables.md (`make docs` writes it) lists every option, reward term, entry of
     the observation and feature of the flock. In Python, `flockenv.envs.options` has `OPTIONS` and
     `TERMS`, and `flockenv.envs.observation` has `observation_entries()`, `state_entries()` and
     `flock_feature_entries()`.
 
-    `flockenv/Order-easy-v0` is the environment to start with: ten boats, four of which lead and are
-    rewarded for the order of the others. Plain PPO passes the paper's law there within two minutes
+    Start with `flockenv/Order-easy-v0`: ten boats, and four of them lead and are rewarded for the
+    order of the others. Plain PPO passes the paper's law there within two minutes
     of processor time (docs/train.md). `gymnasium.spec("flockenv/Order-easy-v0")`
     has its options in `kwargs`. `import flockenv` registers the ids;
     `gymnasium.make("flockenv:flockenv/Order-easy-v0")` imports the package by itself.
@@ -72,15 +72,15 @@ class LeadersEnv(
     - `lean_features`, off by default: the features that the learned leaders read
 
     `state()` is the global state, for critics: the entries of `boat` for each boat in order, then
-    those of `clock`. `flock_features()` are features of the flock that depend neither on the order
-    of boats nor on absolute angles, for critics too.
+    `clock`. `flock_features()`, for critics too, depend neither on the order of boats nor on
+    absolute angles.
 
     ## Rewards
     The weighted sum of reward terms, mean over leaders. `reward` has the weights for all leaders
     or, as a list of dictionaries, for each. By default `signed_order` alone counts: the mean of the
     order of the normal boats towards the target, in [-1, 1], over the control step. Terms of the
     flock are `tangential_velocity` and `jam`; terms of a leader alone are `leader_velocity`,
-    `rudder_effort` and those of its contacts, `contact_push`, `contact_alignment` and
+    `rudder_effort` and, of its contacts, `contact_push`, `contact_alignment` and
     `touched_order`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 
     With `target` a list of "cw" and "ccw", one per leader, each leader has a target of its own: its
@@ -107,8 +107,7 @@ class LeadersEnv(
     - `flock_seed`, `bw_s` and `steps` (control steps) of the episode
     - `total_reward`, and the mean of each reward term over steps and leaders
     - means of order parameters of the normal boats, such as `psi_o`, `signed_order` and `rotation`,
-      over the analysis window, which leaves out the first tenth; an episode that ends before the
-      window begins has none
+      over the analysis window without the first tenth; an episode that ends before it has none
     - `share_towards_target`: part of that window with a signed order above 0.5
     - `ordering_time_s` and `ordering_time_wide_s`: eq. (7) with the angle π/20 as printed and with
       π/4; infinite if the flock never ordered

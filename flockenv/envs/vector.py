@@ -37,18 +37,18 @@ class LeadersVectorEnv(
     of threads. Arrays that are returned are never written to again.
 
     ## Action space
-    For each flock that of `LeadersEnv`.
+    As `LeadersEnv`, for each flock.
 
     ## Observation space
-    For each flock that of `LeadersEnv`; `state()` and `flock_features()` have a row for each.
+    As `LeadersEnv`, for each flock; `state()` and `flock_features()` have a row for each.
 
     ## Rewards
-    The weighted sum of the terms, mean over a flock's leaders. `reward_terms()` returns those of
-    the last step, `leader_rewards()` each leader's own reward: with opposite targets the mean says
-    little.
+    The weighted sum of the terms, mean over a flock's leaders. `reward_terms()` returns the terms
+    of the last step, `leader_rewards()` each leader's own reward: with opposite targets the mean
+    says little.
 
-    `reward` may also be a function of this environment, which `step` calls once the flocks have
-    moved and which returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
+    `reward` may also be a function of this environment. `step` calls it once the flocks have
+    moved, and it returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
     `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. A flock that
     starts again in the same step has nothing left to look at: `autoreset_mode="same_step"` is
     refused.
@@ -62,12 +62,11 @@ class LeadersVectorEnv(
     At the end `infos["episode_summary"]` has means over the episode. With
     `autoreset_mode="next_step"` the next step starts the next episode and ignores its action, with
     `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` are the last
-    ones), with `"disabled"` flocks wait for a reset with a mask, which is what TorchRL's
-    `GymWrapper` needs.
+    ones), with `"disabled"` flocks wait for a reset with a mask, as TorchRL's `GymWrapper` wants.
 
     ## Arguments
     `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;
-    and those of `LeadersEnv`.
+    and the arguments of `LeadersEnv`.
 
     ## Version history
     - v0: as `LeadersEnv`.

@@ -69,8 +69,8 @@ def check_action_mode(policy: Any, mode: str, where: str) -> None:
     own = action_mode(policy)
     if own != mode:
         raise ParameterError(
-            f"{shown(policy)} gives actions of action_mode {own!r}, which is not accepted "
-            f"{where}: it takes those of action_mode {mode!r}"
+            f"{shown(policy)} gives actions of action_mode {own!r}: not accepted {where}, which "
+            f"takes action_mode {mode!r}"
         )
 
 
@@ -79,15 +79,14 @@ def check_pool(policy: Any, pool: Any) -> None:
     own = getattr(policy, "pool", None)
     if own is not None and own != pool:
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted with {shown(policy)}, which was made for "
-            f"pool = {own!r}"
+            f"pool = {shown(pool)} is not accepted: {shown(policy)} was made for pool = {own!r}"
         )
 
 
 def observed(observation: ArrayLike) -> NDArray[np.float32]:
     """Return an observation as an array, of which nothing may be masked."""
     if np.ma.is_masked(observation):
-        raise ParameterError("observation is masked, which is not accepted: plain numbers")
+        raise ParameterError("observation is masked: give plain numbers")
     return np.ascontiguousarray(observation, np.float32)
 
 
@@ -96,8 +95,8 @@ def leaders_observed(observation: NDArray[Any], size: int) -> int:
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(
-            f"observation has shape {observation.shape}, which is not accepted: its last axis must "
-            f"be a multiple of {size}, the size of a leader's observation"
+            f"observation has shape {observation.shape}, but its last axis must be a multiple of "
+            f"{size}, the size of a leader's observation"
         )
     return width // size
 

@@ -9,7 +9,7 @@ from flockenv.policies.base import RowPolicy
 
 
 class StraightAhead(RowPolicy):
-    """Leaders that never steer: rudder 0. Options are those of `RowPolicy`."""
+    """Leaders that never steer: rudder 0. Takes the options of `RowPolicy`."""
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
         return np.zeros(len(rows))

@@ -173,8 +173,8 @@ class DampedLaw(LawPolicy):
 class LeaningLaw(LawPolicy):
     """The damped law about a heading that leans outward of the target's tangent.
 
-    The lean is bias + Σ weight·feature in rad, bounded to ±1.2 rad, where the features are those of
-    the observation's block ``lean_features``: standardized, in the frame of the target.
+    The lean is bias + Σ weight·feature in rad, bounded to ±1.2 rad. The observation's block
+    ``lean_features`` has the features: standardized, in the frame of the target.
 
     Parameters
     ----------
@@ -307,7 +307,7 @@ class LeaningLaw(LawPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a law from its JSON file, in which nothing is executed.
 
-        Errors are those of `flockenv.policies.load`.
+        Raises what `flockenv.policies.load` raises.
         """
         content = read_limited(path, f"{path} is no policy")
         try:

@@ -118,8 +118,8 @@ class ModelPolicy:
         rows = array.size // self._size
         if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
             raise ParameterError(
-                f"observation has shape {array.shape}, which is not accepted: {self!r} steers "
-                f"{self.leaders} leaders at once"
+                f"observation has shape {array.shape}, but {self!r} steers {self.leaders} leaders "
+                "at once"
             )
         items = array.reshape(rows // self.leaders, -1)
         normalizing = getattr(self.model, "get_vec_normalize_env", lambda: None)()
@@ -207,8 +207,8 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
 def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     """Read the policy of a model's ``.zip`` file; this executes code in the file.
 
-    The file is what ``model.save`` of stable-baselines3 or sb3-contrib wrote. Errors are those of
-    `flockenv.policies.load`; models trained in `VecNormalize` are refused, too.
+    ``model.save`` of stable-baselines3 or sb3-contrib wrote the file. Raises what
+    `flockenv.policies.load` raises; models trained in `VecNormalize` are refused, too.
     """
     saving = require("stable_baselines3.common.save_util", "train")
     try:

@@ -206,7 +206,7 @@ class NetworkPolicy(RowPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a network from its ``.npz`` file, in which nothing is executed.
 
-        Errors are those of `flockenv.policies.load`.
+        Raises what `flockenv.policies.load` raises.
         """
         arrays = read_arrays(path, _LARGEST_FILE)
         try:
@@ -257,8 +257,8 @@ def _checked_layers(
         wanted = 1 if place == len(weights) - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             raise ParameterError(
-                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, which is "
-                f"not accepted: ({inputs}, {wanted}) and ({wanted},)"
+                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, but needs "
+                f"({inputs}, {wanted}) and ({wanted},)"
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
             raise ParameterError(f"layer {place} holds numbers that are not finite")

@@ -170,8 +170,8 @@ class Recording:
         """Return the flock at the last sample up to a time, as far as recorded.
 
         It has the poses, the velocities and the time of the sample, but neither the contacts nor
-        the state of the noise, so it does not move on as the recorded flock did. Errors are those
-        of `state_at`.
+        the state of the noise, so it does not move on as the recorded flock did. Raises what
+        `state_at` raises.
         """
         state = self.state_at(time_s)
         there = self._there(self._sample_at(time_s))
@@ -294,7 +294,7 @@ class Recording:
         ----------
         functions
             By name: functions that take the recording, whose arrays are read-only then, and return
-            a real number for each sample, shape (t,); NaN where it is undefined.
+            a real number for each sample, shape (t,); NaN if it is undefined.
 
         Raises
         ------

@@ -82,7 +82,7 @@ def write_replay(
     path
         The file to write.
     recordings
-        A recording, which is named after the file; or one or two recordings by their names on the
+        A recording, named after the file; or one or two recordings by their names on the
         page; two play side by side. Forces are shown if a recording holds contacts (``simulate(...,
         contacts=True)``).
 

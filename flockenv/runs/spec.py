@@ -88,7 +88,7 @@ class RunSpec:
 def execute(spec: RunSpec) -> Recording:
     """Make a run: a pure function, the same bits in any thread, process and machine.
 
-    Errors are those of `simulate`.
+    Raises what `simulate` raises.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Sweeps: any grid of parameters and seeds, resumable, as one table.
 
-`docs/runs.md` describes the TOML file of a sweep. Its fields are those of `FlockParameters`. In a
+`docs/runs.md` describes the TOML file of a sweep. It has the fields of `FlockParameters`. In a
 grid even a single value is a list, and all grids name the same fields.
 """
 
@@ -149,7 +149,7 @@ def summary(run: Recording) -> dict[str, float]:
         ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
         the nematic order, milling, the signed order towards the target and the rotation
-        Ψ_o·sin φ_o. Over the frames in which they are defined, NaN where there is none.
+        Ψ_o·sin φ_o. Over the frames that define them, NaN if none does.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}

@@ -56,8 +56,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     state of its flock, `flock_features()` the features of its flock in the frame of its own target.
 
     ## Rewards
-    Each slot gets the weighted sum of its terms; those of a leader alone are its own.
-    `reward_terms()` returns those of the last step.
+    Each slot gets the weighted sum of its terms; terms of a leader alone are its own.
+    `reward_terms()` returns the terms of the last step.
 
     `reward` may also be a function of this environment, called once the flocks have moved, before
     those that ended start again. It returns rewards (slots,), or (flocks,) for all leaders of a
@@ -68,7 +68,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
     the next reset: a dictionary, or a list of one for each slot, equal for a flock's leaders.
     Within `learn` nobody calls `reset`: `set_attr("bw_s", 0.6)` and `set_attr("target", "random")`
-    hold for all episodes that start from then on, which makes a curriculum.
+    hold for all episodes that start from then on: a curriculum.
 
     ## Episode end
     A flock's slots end together and start the next episode in the same step. Their infos then have
@@ -77,7 +77,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
 
     ## Arguments
     `num_flocks`: number of flocks; `n_leaders`: leaders of each flock (a list is dealt out to the
-    flocks in turn, so that one policy can learn all of them); and those of `LeadersEnv`.
+    flocks in turn, so that one policy can learn all of them); and the arguments of `LeadersEnv`.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -289,7 +289,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
-        They hold until they are set again, within `learn` too. Values are those of `reset`: a range
+        They hold until they are set again, within `learn` too. Values are as for `reset`: a range
         (low, high) of bw_s is drawn from, a list of targets has one for each leader.
 
         Raises

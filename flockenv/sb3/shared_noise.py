@@ -151,7 +151,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
     A flock's order answers a lasting common deviation of its leaders, and hardly deviations that
     cancel. The noise is drawn from torch's generator, so that the seed of the algorithm fixes it.
 
-    With ``use_sde=True`` of the algorithm the noise is that of gSDE: it perturbs the weights of the
+    With ``use_sde=True`` of the algorithm the noise is gSDE: it perturbs the weights of the
     last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It
     is held for `hold_steps` decisions, whatever ``sde_sample_freq``.
 

@@ -1,6 +1,6 @@
 """Intervals at one level: of means, of differences, and of any statistic of independent runs.
 
-The mean of few values has Student's interval and that of more a BCa bootstrap (`mean_interval`).
+The mean of few values has Student's interval, of more a BCa bootstrap (`mean_interval`).
 `bootstrap_interval` takes any statistic.
 """
 

@@ -39,7 +39,7 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 
-    Parameters and errors are those of `structure_series`.
+    Takes and raises what `structure_series` does.
     """
     found = _core.jam_sizes(parameters, _poses(pose))
     return [np.sort(np.array(sizes, np.int64)) for sizes in found]

@@ -98,7 +98,7 @@ class TrackLayout:
         Column of the center, or several whose mean it is.
     heading : str, or tuple of four str, or None
         Column of headings; or the columns x, y of the tail and x, y of the head, two key points
-        that the heading joins; or None for the direction of motion, which is wrong for what is
+        that the heading joins; or None for the direction of motion: wrong for robots that are
         pushed sideways.
     heading_unit : str
         "rad" or "deg".
