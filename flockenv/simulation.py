@@ -310,7 +310,7 @@ def _common_rate(seats: Sequence[_Seat]) -> float:
     if common > _FASTEST_HZ:
         given = ", ".join(f"{rate:g}" for rate in sorted(rates))
         raise ParameterError(
-            f"the policies decide {given} times per second, without a common multiple up to "
+            f"the policies decide {given} times per second, and have no common multiple up to "
             f"{_FASTEST_HZ}: give control_hz"
         )
     for seat, rate in zip(seats, exact, strict=True):

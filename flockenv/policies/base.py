@@ -79,7 +79,8 @@ def check_pool(policy: Any, pool: Any) -> None:
     own = getattr(policy, "pool", None)
     if own is not None and own != pool:
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted: {shown(policy)} was made for pool = {own!r}"
+            f"pool = {shown(pool)} is not accepted with {shown(policy)}: it was made for "
+            f"pool = {own!r}"
         )
 
 
