@@ -38,8 +38,9 @@ def shown(value: object) -> str:
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """Return the known name that is most like another one, None if none is at least `cutoff`."""
-    near = difflib.get_close_matches(str(name), list(known), n=1, cutoff=cutoff)
-    return near[0] if near else None
+    plain = {each.casefold(): each for each in known}
+    near = difflib.get_close_matches(str(name).casefold(), plain, n=1, cutoff=cutoff)
+    return plain[near[0]] if near else None
 
 
 def hint(name: object, known: Iterable[str]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import once
+from flockenv._io.arguments import blob, once, truth
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
@@ -193,7 +193,7 @@ class Flock:
 
         A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
-        return cls._from_core(_core.Flock.from_snapshot(snapshot, noise_seed))
+        return cls._from_core(_core.Flock.from_snapshot(blob(snapshot, "snapshot"), noise_seed))
 
     @classmethod
     def from_state(cls, parameters: FlockParameters, seed: int, state: Mapping[str, Any]) -> Self:
@@ -340,7 +340,8 @@ class Flock:
 
         If there is no such boat, this is a ParameterError.
         """
-        return OrderParameters(*self._in_core.order_parameters(include_leaders))
+        every = truth(include_leaders, "include_leaders")
+        return OrderParameters(*self._in_core.order_parameters(every))
 
     def contacts(self) -> Contacts:
         """Return contacts and near-contacts of the last substep.
@@ -373,7 +374,7 @@ class Flock:
         TypeError
             For a noise_seed that is no whole number.
         """
-        self._in_core.restore(snapshot, noise_seed)
+        self._in_core.restore(blob(snapshot, "snapshot"), noise_seed)
 
     def __copy__(self) -> Self:
         return self._from_core(self._in_core.copy())

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import items, real_numbers
+from flockenv._io.arguments import items, real_numbers, truth
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
@@ -152,7 +152,7 @@ def simulate(
     plan = {
         "sample_hz": sample_hz,
         "single_precision": bool(precision == np.float32),
-        "contacts": contacts,
+        "contacts": truth(contacts, "contacts"),
         "changes": changes,
         "control": _control(seats, parameters.n_leaders, control_hz),
         "progress": progress,
@@ -255,7 +255,7 @@ def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | N
         named = named_policy(policy, parameters.pool)()
         policy = None if isinstance(named, str) else named
     policy = as_policy(policy)
-    if policy is not None and not hasattr(policy, "predict"):
+    if isinstance(policy, type) or (policy is not None and not hasattr(policy, "predict")):
         raise ParameterError(
             f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
             "object with predict"
@@ -337,7 +337,9 @@ def _changes(
                 Flock(now, seed)
         except ParameterError as error:
             raise ParameterError(f"schedule = {shown(entry)} is not accepted: {error}") from error
-        changes.append((time_s, now.target if fields.keys() == {"target"} else now))
+        # New parameters restart the random streams; those that are the same change nothing.
+        is_target = now == before.replace(target=now.target)
+        changes.append((time_s, now.target if is_target else now))
     return changes
 
 
@@ -346,6 +348,8 @@ def _change(entry: Any) -> tuple[float, dict[str, Any]]:
     words = "pairs of a time in s, at least 0, and a dictionary of fields"
     match entry:
         case (bool(), _):
+            pass
+        case (np.timedelta64(), _):
             pass
         case (Real() as number, Mapping() as fields) if fields and (time_s := float(number)) >= 0.0:
             sized = {"n_boats", "n_leaders"} & fields.keys()

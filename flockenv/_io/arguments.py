@@ -3,6 +3,7 @@
 import operator
 from collections.abc import Iterable, Iterator, Mapping, MappingView, Set
 from itertools import islice
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -76,8 +77,40 @@ def real_numbers(values: Any, name: str) -> Any:
 
 
 def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return an array of numbers, a copy; what is masked is not there: NaN."""
+    """Return an array of real numbers, a copy; what is masked, or None, is not there: NaN."""
     try:
-        return np.array(np.ma.asarray(values, np.float64).filled(np.nan))
+        found: Any = np.ma.asarray(values)
+        if found.dtype.kind == "O":
+            found = np.ma.asarray(values, np.float64)
     except (TypeError, ValueError) as error:
-        raise ParameterError(f"{name} is not accepted: numbers") from error
+        raise ParameterError(f"{name} is not accepted: real numbers") from error
+    return np.array(real_numbers(found, name).astype(np.float64).filled(np.nan))
+
+
+def series(values: Any, name: str) -> NDArray[np.float64]:
+    """Return a sequence of numbers as an array, shape (n,); others are refused."""
+    found = with_gaps(items(values, name), name)
+    if found.ndim != 1:
+        raise ParameterError(f"{name} has shape {found.shape}, expected (n,)")
+    return found
+
+
+def number(value: Any, name: str) -> Any:
+    """Return a real number as it is; a TypeError refuses what is none, bools among them."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{name} must be a number, not {shown(value)}")
+    return value
+
+
+def truth(value: Any, name: str) -> bool:
+    """Return True or False; a TypeError refuses all else, such as "no", which would be true."""
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{name} must be True or False, not {shown(value)}")
+    return bool(value)
+
+
+def blob(value: Any, name: str) -> bytes:
+    """Return bytes as they are; a TypeError refuses what is none."""
+    if not isinstance(value, bytes):
+        raise TypeError(f"{name} must be bytes, not {shown(value)}")
+    return value

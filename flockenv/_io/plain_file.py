@@ -6,12 +6,15 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 
 
 def is_special(path: str | os.PathLike[str]) -> bool:
     """Return whether a path that is there is a device, a pipe or a socket."""
-    return _is_special(os.stat(path).st_mode)
+    try:
+        return _is_special(os.stat(path).st_mode)
+    except ValueError as error:
+        raise ParameterError(f"{shown(path)} is the name of no file: {error}") from error
 
 
 def _is_special(mode: int) -> bool:

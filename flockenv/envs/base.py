@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from flockenv._io.arguments import once
+from flockenv._io.arguments import blob, once
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions, FixedOptions
 from flockenv.envs.render_mode import RenderMode
@@ -26,7 +26,7 @@ class Resumable(FixedOptions):
 
     def set_state(self, state: bytes) -> Any:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(state)
+        self._batch.core.restore(blob(state, "state"))
 
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import once, real_numbers, whole
+from flockenv._io.arguments import blob, once, real_numbers, whole
 from flockenv.envs.options import RESET_OPTIONS, TERMS, EnvOptions, known_reset_options
 from flockenv.envs.spaces import flock_feature_space, state_space
 from flockenv.errors import ParameterError, shown
@@ -66,6 +66,8 @@ class LeaderBatch:
             if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
             requests[flock] = {**per_flock[flock], "seed": seed}
+            if "snapshot" in per_flock[flock]:
+                blob(per_flock[flock]["snapshot"], "snapshot")
         self.core.reset(requests)
 
     def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:

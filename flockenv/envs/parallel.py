@@ -162,15 +162,16 @@ class LeadersParallelEnv(
             raise ParameterError(
                 f"actions must be for {', '.join(self.agents)}; these differ: {wrong}"
             )
-        levels = self._levels
-        if levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
+        if self._levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
             return np.array(rudders)
-        shape = (1,) if levels is None else ()
-        each = [
-            _core.flat_actions(actions[agent], shape, levels, f"the action of {agent}")
-            for agent in self.agents
-        ]
-        return np.concatenate(each)
+        return np.concatenate([self._action(agent, actions[agent]) for agent in self.agents])
+
+    def _action(self, agent: str, action: Any) -> NDArray[np.float64]:
+        shape = (1,) if self._levels is None else ()
+        rudder = _core.flat_actions(action, shape, self._levels, f"the action of {agent}")
+        if np.isnan(rudder).any():
+            raise ParameterError(f"the action of {agent} is NaN, which is not accepted: a number")
+        return rudder
 
     def _infos(self, over: bool) -> Infos:
         rows = self._batch.core.reward_terms().tolist()
@@ -207,7 +208,17 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
 
 
 class _Turns(FixedOptions, OrderEnforcingWrapper[str, Any, Any]):
-    """Agents that act in turn, and in order."""
+    """Agents that act in turn, and in order; what is no action is refused in its agent's turn."""
+
+    def __init__(self, flock: LeadersParallelEnv) -> None:
+        self._flock = flock
+        super().__init__(parallel_to_aec(flock))
+
+    def step(self, action: Any) -> None:
+        # Those whose episode is over take none.
+        if self._flock.agents:
+            self._flock._action(self.agent_selection, action)
+        super().step(action)
 
 
 def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, Any]:
@@ -215,5 +226,4 @@ def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, A
 
     The flock moves once all of them have acted.
     """
-    turns = parallel_to_aec(parallel_env(render_mode=render_mode, **options))
-    return _Turns(turns)
+    return _Turns(parallel_env(render_mode=render_mode, **options))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import real_numbers
+from flockenv._io.arguments import number, real_numbers
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
 from flockenv.order import QUANTITIES
@@ -58,6 +58,12 @@ def check_seed(seed: Any) -> None:
     """Refuse what is no seed of a flock."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
         raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+
+
+def check_share(after: Any) -> None:
+    """Refuse what is no share of a run."""
+    if not 0.0 <= number(after, "after") <= 1.0:
+        raise ParameterError(f"after = {shown(after)} is not accepted: a share, 0 to 1")
 
 
 def check_ids(ids: Any, boats: int) -> None:

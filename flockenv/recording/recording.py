@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv._io.arguments import number, truth
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
@@ -24,6 +25,7 @@ from flockenv.recording.checks import (
     check_ids,
     check_quantities,
     check_seed,
+    check_share,
     checked_functions,
     own_series,
 )
@@ -210,7 +212,7 @@ class Recording:
         if len(self) == 0 or not self.has_poses:
             raise ParameterError("this recording holds no poses to make a flock of")
         start, end = self.time_s[0], self.time_s[-1]
-        if not start <= time_s <= end:
+        if not start <= number(time_s, "time_s") <= end:
             raise ParameterError(
                 f"time_s = {shown(time_s)} is not accepted: a time from {start} to {end} s"
             )
@@ -239,7 +241,7 @@ class Recording:
             ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
             ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
         """
-        return table_of(self, boats)
+        return table_of(self, truth(boats, "boats"))
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the recording as a dataset of xarray (extra ``sweep``).
@@ -285,6 +287,7 @@ class Recording:
             Samples within the second half of fw or the first half of nop1 (Section 4), later than
             `after` times `duration_s`; possibly none.
         """
+        check_share(after)
         return self._at(self.in_analysis_window & (self.time_s > after * self.duration_s))
 
     def with_quantities(self, functions: Mapping[str, Callable[[Self], ArrayLike]]) -> Self:
@@ -367,11 +370,9 @@ class Recording:
             If the file cannot be written; what was there before is still there.
         """
         if Path(path).suffix.lower() != ".npz":
-            raise ParameterError(
-                f"path = {os.fspath(path)!r} is not accepted: a name that ends in .npz; "
-                "to_dataframe() has to_csv(), to_parquet() and others"
-            )
-        write_arrays(path, arrays_of(self._fields()), compressed=compressed)
+            words = "a name that ends in .npz; to_dataframe() has to_csv(), to_parquet() and others"
+            raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: {words}")
+        write_arrays(path, arrays_of(self._fields()), compressed=truth(compressed, "compressed"))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv._io.arguments import once
+from flockenv._io.arguments import items, once, whole
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
 from flockenv.envs.options import (
@@ -22,7 +22,7 @@ from flockenv.envs.options import (
 from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
-from flockenv.errors import EpisodeError, ParameterError
+from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
 from flockenv.sb3.leader_slot import LeaderSlot
 
@@ -284,7 +284,16 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         """Return an attribute of each slot's `LeaderSlot`."""
         if not hasattr(self, "slots"):
             raise AttributeError(attr_name)
-        return [getattr(self.slots[slot], attr_name) for slot in self._get_indices(indices)]
+        return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
+
+    def _chosen(self, indices: Any) -> list[int]:
+        """Return the numbers of slots; a ParameterError refuses what is none."""
+        chosen = [whole(each, "indices") for each in items(self._get_indices(indices), "indices")]
+        if any(not -self.num_envs <= slot < self.num_envs for slot in chosen):
+            raise ParameterError(
+                f"indices = {shown(indices)} are not accepted: slots 0 to {self.num_envs - 1}"
+            )
+        return chosen
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
@@ -306,7 +315,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
                 "episodes; set_options takes all options of a reset"
             )
         chosen = np.zeros(self.num_envs, np.bool_)
-        chosen[list(self._get_indices(indices))] = True
+        chosen[self._chosen(indices)] = True
         flocks = np.unique(self.flock_of_slot[chosen]).tolist()
         for flock in flocks:
             if not chosen[self.flock_of_slot == flock].all():
@@ -327,7 +336,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """Return False for each slot: there are no wrappers around single slots."""
-        return [False for _ in self._get_indices(indices)]
+        return [False for _ in self._chosen(indices)]
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state of each slot's flock, shape (slots, state size)."""

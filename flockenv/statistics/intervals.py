@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv._io.arguments import items, series
 from flockenv._io.extras import require
+from flockenv.errors import ParameterError, refuse_unknown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,7 +55,7 @@ class Difference:
 def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int = 0) -> Difference:
     """Compare two policies seed by seed.
 
-    A ValueError refuses different numbers of values.
+    A ParameterError refuses different numbers of values.
 
     Parameters
     ----------
@@ -62,9 +64,9 @@ def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int 
     seed
         Seed of the bootstrap.
     """
-    ours, theirs = np.asarray(list(ours), float), np.asarray(list(theirs), float)
+    ours, theirs = series(ours, "ours"), series(theirs, "theirs")
     if ours.shape != theirs.shape:
-        raise ValueError(f"{len(ours)} and {len(theirs)} values are no pairs")
+        raise ParameterError(f"{len(ours)} and {len(theirs)} values are no pairs")
     differences = ours - theirs
     mean, low, high = mean_interval(differences, seed)
     spread = float(differences.std(ddof=1)) if len(differences) > 1 else 0.0
@@ -86,12 +88,12 @@ def mean_interval(values: Iterable[float], seed: int = 0) -> tuple[float, float,
 
     Raises
     ------
-    ValueError
-        Without values.
+    ParameterError
+        Without values, and for anything else than numbers.
     """
-    data = np.asarray(list(values), float)
+    data = series(values, "values")
     if len(data) == 0:
-        raise ValueError("there are no values to average")
+        raise ParameterError("there are no values to average")
     if np.isnan(data).any():
         return math.nan, math.nan, math.nan
     if np.ptp(data) == 0.0 and len(data) > 1:
@@ -126,7 +128,7 @@ def bootstrap_interval(
         The value and the ends at level `CONFIDENCE`; the ends are NaN for a single run. With
         fewer than `FEW` runs they are too narrow.
     """
-    data = tuple(np.asarray(each, np.float64) for each in samples)
+    data = tuple(series(each, "samples") for each in items(samples, "samples"))
     value = float(statistic(*data, axis=-1))
     if min(map(len, data)) < 2:
         return value, math.nan, math.nan
@@ -165,6 +167,8 @@ def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd
         ``<q>_high``.
     """
     pandas = require("pandas", "plot")
+    by, quantities = list(items(by, "by")), items(quantities, "quantities")
+    refuse_unknown([*by, *quantities], runs.columns, "column of the runs")
     rows = []
     for key, group in runs.groupby(by, sort=False):
         row = dict(zip(by, key, strict=True)) | {"runs": len(group)}

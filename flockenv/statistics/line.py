@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flockenv._io.arguments import series
 from flockenv._io.extras import require
+from flockenv.errors import ParameterError
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +47,14 @@ class Line:
 def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
     """Fit y = intercept + slope x, one point per run.
 
-    A ValueError refuses fewer than three points or a single x.
+    A ParameterError refuses fewer than three points, a single x, and numbers that are not finite.
     """
     stats = require("scipy.stats", "plot")
-    x, y = np.asarray(list(x), float), np.asarray(list(y), float)
+    x, y = series(x, "x"), series(y, "y")
+    if x.shape != y.shape or not np.isfinite([x, y]).all():
+        raise ParameterError("x and y must be as many numbers, and finite")
     if len(x) < 3 or np.ptp(x) == 0.0:
-        raise ValueError("a line needs at least three points at two different x")
+        raise ParameterError("a line needs at least three points at two different x")
     if np.ptp(y) == 0.0:
         return Line(0.0, float(y[0]), math.nan, math.nan, len(x))
     fit = stats.linregress(x, y)

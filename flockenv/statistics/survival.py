@@ -11,7 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv._io.arguments import number, with_gaps
 from flockenv._io.extras import require
+from flockenv.errors import ParameterError, shown
 from flockenv.statistics.intervals import CONFIDENCE
 
 
@@ -41,6 +43,8 @@ class Survival:
 
     def share_at(self, time_s: float) -> float:
         """Return the share of the runs that wait longer than a time in s."""
+        if not number(time_s, "time_s") >= 0.0:
+            raise ParameterError(f"time_s = {shown(time_s)} is not accepted: at least 0 s")
         place = int(np.searchsorted(self.time_s, time_s, side="right"))
         return 1.0 if place == 0 else float(self.share[place - 1])
 
@@ -58,7 +62,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
 
     Raises
     ------
-    ValueError
+    ParameterError
         Without runs, for times that are NaN or negative, and for events after the end of their run.
     """
     found = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
@@ -67,7 +71,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
         warnings.simplefilter("ignore", RuntimeWarning)  # Where the share is 0 or 1.
         ends = found.confidence_interval(CONFIDENCE, method="log-log")
     low, high = ends.low.probabilities[came], ends.high.probabilities[came]
-    times = np.asarray(times_s, np.float64)
+    times = with_gaps(times_s, "times_s")
     return Survival(
         np.asarray(found.quantiles[came], np.float64),
         np.asarray(found.probabilities[came], np.float64),
@@ -79,16 +83,18 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
 
 
 def _censored(times_s: ArrayLike, until_s: ArrayLike) -> Any:
-    times = np.asarray(times_s, np.float64)
-    ends = np.broadcast_to(np.asarray(until_s, np.float64), times.shape)
+    times = with_gaps(times_s, "times_s")
+    ends = with_gaps(until_s, "until_s")
     if times.ndim != 1 or len(times) == 0:
-        raise ValueError(f"times_s has shape {times.shape}, expected (n,) with at least one run")
+        raise ParameterError(f"times_s has shape {times.shape}, expected (n,), at least one run")
+    if ends.shape not in ((), times.shape):
+        raise ParameterError(f"until_s has shape {ends.shape}, expected () or {times.shape}")
     if np.isnan(times).any() or (times < 0.0).any():
-        raise ValueError("times_s holds NaN or negative times; infinite ones stand for no event")
+        raise ParameterError("times_s holds NaN or negative times; for no event they are infinite")
     if not np.isfinite(ends).all() or (ends < 0.0).any():
-        raise ValueError("until_s is not accepted: finite times, at least 0 s")
+        raise ParameterError("until_s is not accepted: finite times, at least 0 s")
     if (np.isfinite(times) & (times > ends)).any():
-        raise ValueError("times_s holds events after until_s, the end of their run")
+        raise ParameterError("times_s holds events after until_s, the end of their run")
     waits = ~np.isfinite(times)
     stats = require("scipy.stats", "plot")
     return stats.CensoredData.right_censored(np.where(waits, ends, times), waits)

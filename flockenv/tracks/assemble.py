@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import with_gaps
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv._io.arguments import items, once, series, with_gaps
+from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
@@ -83,23 +83,26 @@ def recording_of(
         raise ParameterError("time_s must increase")
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
-    names = [str(each) for each in (range(shape[1]) if ids is None else ids)]
+    names = [str(each) for each in items(range(shape[1]) if ids is None else ids, "ids")]
     if len(names) != shape[1]:
         raise ParameterError(f"ids holds {len(names)} names for {shape[1]} boats")
-    order = _leaders_first(names, [str(each) for each in leaders])
+    leaders = [str(each) for each in items(leaders, "leaders")]
+    order = _leaders_first(names, leaders)
     poses[..., 2] = unwrapped(poses[..., 2])
     given = None if velocity is None else with_gaps(velocity, "velocity")
     motion = Motion.of(times, poses).velocity if given is None else given
     check_array("velocity", motion, shape, PRECISIONS, gaps=True)
     poses, motion = poses[:, order], motion[:, order]
-    radius, half_length = hull
+    lengths = series(hull, "hull")
+    if lengths.shape != (2,):
+        raise ParameterError(f"hull = {shown(hull)} is not accepted: two numbers")
     parameters = FlockParameters(
         n_boats=len(names),
         n_leaders=len(leaders),
         pool=pool,
-        boat_radius_cm=radius,
-        boat_shape=half_length,
-        target=target if isinstance(target, str) else tuple(target),
+        boat_radius_cm=float(lengths[0]),
+        boat_shape=float(lengths[1]),
+        target=once(target),
         discs=discs,
         walls=walls,
     )
@@ -107,7 +110,7 @@ def recording_of(
     # Without phases all samples count.
     phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
     if phase is not None:
-        phases = np.asarray(phase, np.str_)
+        phases = np.array([*map(str, items(phase, "phase"))])
         analyzed = _core.sampled_analysis_window(times, phases.tolist())
     is_leader = np.arange(len(names)) < len(leaders)
     return Recording(

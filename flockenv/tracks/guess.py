@@ -10,7 +10,7 @@ import numpy as np
 
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
-from flockenv.tracks.layout import TrackLayout, columns_of
+from flockenv.tracks.layout import TrackLayout, beside, columns_of
 from flockenv.tracks.rows import FULL_TURN, long_table
 from flockenv.tracks.table import column, numbers, read_table, text_of
 
@@ -46,9 +46,9 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     file that is no table, and a description that exists already.
     """
     path = Path(path)
-    beside = path.with_suffix(".toml")
-    if beside.exists():
-        raise ParameterError(f"{beside} is there already: it may be written by hand")
+    description = beside(path)
+    if description.exists():
+        raise ParameterError(f"{description} is there already: it may be written by hand")
     form, doubts = _spelling(path), Doubts()
     table = read_table(path, TrackLayout(pool="wide", **form))
     form |= _columns([str(each) for each in table])
@@ -75,7 +75,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     lines = [f"{name} = {_toml(value)}" for name, value in form.items() if name not in doubts]
     checks = [f"{name} = {_toml(value)}  # {words}" for name, (value, words) in doubts.items()]
     first = "# Guessed from the table beside this file. Check the lines that say so."
-    write_text(beside, "\n".join([first, *lines, *checks]) + "\n")
+    write_text(description, "\n".join([first, *lines, *checks]) + "\n")
     return checks
 
 

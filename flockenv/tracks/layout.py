@@ -4,6 +4,8 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from numbers import Real
+from pathlib import Path
 from typing import Any, Literal
 
 from flockenv._io.toml import read_toml_file
@@ -18,7 +20,7 @@ def _is_name(value: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return not isinstance(value, bool) and isinstance(value, Real) and math.isfinite(value)
 
 
 def _is_positive(value: Any) -> bool:
@@ -171,6 +173,8 @@ class TrackLayout:
             holds, accepted = _KINDS.get(each.type, (None, ""))
             if holds and not holds(value):
                 raise ParameterError(f"{each.name} = {shown(value)} is not accepted: {accepted}")
+        if len(columns_of(self.x)) != len(columns_of(self.y)):
+            raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
         if (self.confidence is None) != (self.least_confidence is None):
             raise ParameterError("confidence and least_confidence need each other")
         count, (radius, shape) = len(self.leaders), self.hull
@@ -195,6 +199,13 @@ class TrackLayout:
 def columns_of(value: str | tuple[str, ...] | None) -> tuple[str, ...]:
     """Return the names in a field that takes none, one or several."""
     return (value,) if isinstance(value, str) else value or ()
+
+
+def beside(path: Path) -> Path:
+    """Return where the description of a table is, if it is no other."""
+    if not path.name:
+        raise ParameterError(f"{os.fspath(path)!r} is the name of no table")
+    return path.with_suffix(".toml")
 
 
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:

@@ -11,7 +11,7 @@ from flockenv.errors import ParameterError, shown
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import check_order, frames_of
-from flockenv.tracks.layout import TrackLayout, read_layout
+from flockenv.tracks.layout import TrackLayout, beside, read_layout
 from flockenv.tracks.motion import Motion, bows_of, unwrapped
 from flockenv.tracks.report import TrackReport
 from flockenv.tracks.rows import direction, rows_of
@@ -59,7 +59,7 @@ def read_tracks(
             raise ParameterError("layout is missing: a table in memory has no file beside it")
         return _recording(plain_table(source), layout, report)
     path = Path(source)
-    layout = layout or read_layout(path.with_suffix(".toml"))
+    layout = layout or read_layout(beside(path))
     table = read_table(path, layout)
     try:
         return _recording(table, layout, report)

@@ -9,6 +9,7 @@ import numpy as np
 import tomli_w
 
 from flockenv import _core
+from flockenv._io.arguments import truth
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
@@ -61,7 +62,8 @@ def export(
     beside = path.with_suffix(".toml")
     text = "# Columns and units of the table beside this file, for flockenv.\n"
     text += tomli_w.dumps(_layout(recording))
-    if not overwrite and beside.exists() and beside.read_bytes() != text.encode():
+    is_other = beside.exists() and beside.read_bytes() != text.encode()
+    if not truth(overwrite, "overwrite") and is_other:
         raise ParameterError(f"{beside} is there already, with another layout: overwrite=True")
     table = recording.to_dataframe(boats=True)
     if ending == ".csv":

@@ -47,6 +47,8 @@ class Masked(Held):
         ([(1.0, {"pool": (60.0, 0.0), "boat_radius_cm": 30.0})], "schedule = .*do not fit"),
         ([(1.0, {1: 2})], "'1' is no field"),
         ([(True, {"bw_s": 1.0})], "a time in s"),
+        ([(np.timedelta64(1, "s"), {"bw_s": 1.0})], "a time in s"),
+        ([(7.0, {"bw_s": PARAMETERS.bw_s})], "a change at 7 s"),
         ([("1.0", {"bw_s": 1.0})], "a time in s"),
         ([(-1.0, {"bw_s": 1.0})], "a time in s"),
         ([(float("nan"), {"bw_s": 1.0})], "a time in s"),
@@ -69,6 +71,15 @@ def test_a_schedule_without_end_is_refused():
     endless = itertools.repeat((1.0, {"bw_s": 1.0}))
     with pytest.raises(ParameterError, match="more than 1000000 items"):
         simulate(PARAMETERS, 3, 2.0, schedule=endless)
+
+
+def test_what_is_set_to_what_it_is_changes_nothing():
+    """As the first step of a ramp; other parameters restart the random streams."""
+    same = [(1.0, {"bw_s": PARAMETERS.bw_s, "pool": "narrow"}), (2.0, {"c4": PARAMETERS.c4})]
+    assert simulate(PARAMETERS, 3, 6.0, schedule=same) == simulate(PARAMETERS, 3, 6.0)
+    other = simulate(PARAMETERS, 3, 6.0, schedule=[(1.0, {"target": "ccw"})])
+    both = [(1.0, {"target": "ccw", "bw_s": PARAMETERS.bw_s})]
+    assert simulate(PARAMETERS, 3, 6.0, schedule=both) == other
 
 
 def test_a_schedule_acts_in_whatever_holds_it():

@@ -168,6 +168,20 @@ def test_agents_that_are_not_there():
 
 
 @pytest.mark.parametrize(
+    "action", [None, "left", [np.nan], [0.0, 0.0], {"leader_0": [0.0]}, [True], [[0.0]]]
+)
+def test_what_is_no_action_is_refused_in_its_agents_turn(action):
+    env = flockenv.env(**OPTIONS)
+    env.reset(seed=0)
+    with pytest.raises((TypeError, ParameterError), match="the action of leader_0"):
+        env.step(action)
+    assert env.agent_selection == "leader_0"
+    for agent in env.agent_iter():
+        over = env.terminations[agent] or env.truncations[agent]
+        env.step(None if over else np.zeros(1))
+
+
+@pytest.mark.parametrize(
     "options",
     [
         {"targt": "cw"},

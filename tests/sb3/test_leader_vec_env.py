@@ -203,6 +203,20 @@ def test_counts_and_seeds_are_checked():
     started(venv, seed=2**64 - 3)
 
 
+@pytest.mark.parametrize("indices", ["0", [0.0, 1.0], [True, False], [99], [-99], {0: 1}, "all"])
+def test_slots_are_whole_numbers(indices):
+    venv = make()
+    for reach in (
+        lambda: venv.get_attr("bw_s", indices),
+        lambda: venv.set_attr("bw_s", 0.2, indices),
+        lambda: venv.env_method("state", indices=indices),
+        lambda: venv.env_is_wrapped(gymnasium.Wrapper, indices),
+    ):
+        with pytest.raises((TypeError, flockenv.ParameterError), match="indices"):
+            reach()
+    assert venv.get_attr("bw_s", iter([0, -1])) == venv.get_attr("bw_s", [0, 1])
+
+
 def test_a_flocks_leaders_share_the_options_of_a_reset():
     venv = make(num_flocks=2)
     venv.set_options([{"target": word} for word in ("cw", "cw", "ccw", "ccw")])

@@ -191,6 +191,7 @@ def cells(change):
         lambda text: text.replace("frame,track", " Frame , Track").replace("x_px", "X_PX"),
         lambda text: text.replace(",", ", "),
         lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("\n", "\r"),
         lambda text: text.replace("\n", "\n\n") + "\n\n,,,,\n",
         lambda text: "# " + text,
         cells(lambda line: line + ","),

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.tracks import TrackLayout, read_layout, read_tracks
+from flockenv.tracks import TrackLayout, guess_layout, read_layout, read_tracks
 
 from .conftest import CENTER, LAYOUT, PIXEL_CM, read_and_counted
 
@@ -180,6 +180,7 @@ def test_names_are_sorted_as_numbers():
         (line(), {"pool": "bathtub"}, "bathtub"),
         (line(), {"y_down": "false"}, "y_down = 'false' is not accepted: true or false"),
         (line(), {"leaders": "10"}, "leaders = '10' is not accepted: a list of names"),
+        (line(), {"x": ("x", "y")}, "x = ('x', 'y') and y = 'y' are not as many columns"),
         (line(), {"x": 3}, "x = 3 is not accepted: the name of a column"),
         (line(), {"hull": (5.0,)}, "hull = (5.0,) is not accepted: two numbers"),
         (line(), {"hull": (-5.0, 0.5)}, "boat_radius_cm = -5 is not accepted"),
@@ -190,6 +191,12 @@ def test_mistakes_are_named(table, changes, words):
     with pytest.raises(flockenv.ParameterError) as raised:
         read_tracks(table, TrackLayout(**{**fields(OPEN), **changes}))
     assert words in str(raised.value)
+
+
+def test_numbers_of_numpy_are_numbers():
+    kinds = {"fps": np.int64(10), "cm_per_unit": np.float32(1.0), "max_speed_cm_s": np.int16(200)}
+    found = read_tracks(line(), TrackLayout(**{**fields(OPEN), **kinds}))
+    assert found == read_tracks(line(), OPEN)
 
 
 def test_files_with_their_layout_beside_them(seen, tmp_path):
@@ -225,6 +232,11 @@ def test_files_that_are_none(tmp_path):
         read_layout(tmp_path / "wrong.toml")
     with pytest.raises(flockenv.ParameterError, match="layout is missing"):
         read_tracks(line())
+    for read in (read_tracks, guess_layout):
+        with pytest.raises(flockenv.ParameterError, match="is the name of no table"):
+            read("")
+    with pytest.raises(flockenv.ParameterError, match="is the name of no file"):
+        read_layout("a\0.toml")
 
 
 @pytest.mark.parametrize(
