@@ -3,6 +3,9 @@
     python baselines/group_relative.py --seed 0       # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/group/0/policy.json --n-leaders 3
 
+Seeds 0 to 4 reach an order of 0.459 to 0.500 with 200 flock-hours, 44 to 46 s of one core each. The
+tuned law has 0.451.
+
 Eight flocks branch from one state and meet one noise, as the pairs of paired_branches.py. The
 leaders of each explore with weights of their own, drawn about those of the policy and held for the
 branch. The advantage of all decisions of a branch is its order in the second half of a minute, less

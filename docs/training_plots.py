@@ -26,7 +26,8 @@ NOTHING = {
 ALGORITHMS = {
     "PPO, 500 flock-hours": ("training/algorithms", "train_leaders"),
     "TRPO, 500": ("training/algorithms", "trpo"),
-    "paired branches, 200": ("training/paired", "seed"),
+    "groups of branches, 200": ("training/group", "seed"),
+    "pairs of branches, 200": ("training/paired", "seed"),
     "evolution strategy, 500": ("training/algorithms", "evolution"),
 }
 """Folders of algorithms and their names there."""
@@ -153,7 +154,7 @@ PLOTS = {
     "training/algorithms/gains.png": Plot(
         [
             f"training/{each}/{file}.csv"
-            for each in ("algorithms", "paired")
+            for each in ("algorithms", "paired", "group")
             for file in ("algorithms", "evaluation")
         ],
         algorithms,
