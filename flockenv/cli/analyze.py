@@ -48,6 +48,10 @@ def analyze(options: AnalyzeOptions) -> None:
         raise ParameterError(
             f"--out {out} is not accepted: a name that ends in {', '.join(endings)}"
         )
+    kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes if plot else ()
+    if plot is not None and (ending := plot.suffix.lower().removeprefix(".")) not in kinds:
+        named = ", ".join(f".{each}" for each in kinds)
+        raise ParameterError(f"--plot {plot} is not accepted: {ending!r} is none of {named}")
     is_table = out is not None and out.suffix.lower() not in (".npz", ".gsd")
     beside = out.with_suffix(".toml") if out is not None and is_table else None
     written = [path for path in (plot, out, beside) if path is not None]

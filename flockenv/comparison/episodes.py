@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from flockenv._io.arguments import by_name, items, whole
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.envs.vector import LeadersVectorEnv
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import (
     LeaderPolicy,
@@ -49,6 +50,15 @@ ORDERING_TIMES = dict(
 )
 """Ordering times (eq. 7) with the angle as printed and a wider one; infinite where a flock did
 not order."""
+
+_SAID_BY = {
+    **dict.fromkeys({each.name for each in fields(FlockParameters)} - {"target"}, "the flock"),
+    **dict.fromkeys(("preset", "params"), "the flock"),
+    **dict.fromkeys(("observation", "mirror_to_target"), "a policy"),
+    "episode_s": "duration_s",
+    **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
+}
+"""What says options of environments that a comparison does not take."""
 
 
 def compare_leaders(
@@ -96,9 +106,10 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters, options, names and durations out of range, for training seeds, for policies
-        that steer another number of leaders, and for policies of another action mode than that
-        of `environment`.
+        For parameters, options, names and durations out of range, for options that another
+        argument or a policy says, for training seeds and seeds given twice, for policies that steer
+        another number of leaders, and for policies of another action mode than that of
+        `environment`.
     """
     pandas = require("pandas", "plot")
     leaders = [whole(k, "leaders") for k in items(leaders, "leaders")]
@@ -106,6 +117,13 @@ def compare_leaders(
     check_evaluation_seeds(seeds)
     policies = by_name(policies, "policies")
     environment = by_name(environment or {}, "environment")
+    _check_environment(environment)
+    flock: Any = parameters
+    if not isinstance(flock, FlockParameters):
+        raise TypeError(f"parameters must be FlockParameters, not {shown(flock)}")
+    if len(set(seeds)) < len(seeds):
+        raise ParameterError("seeds holds a seed more than once, which would count twice")
+    leaders = list(dict.fromkeys(leaders))
     most = max(leaders, default=0)
     if most >= parameters.n_boats:
         raise ParameterError(
@@ -120,6 +138,8 @@ def compare_leaders(
     steers: dict[str, Any] = {NO_LEADERS: None} if 0 in leaders else {}
     for name, policy in policies.items():
         steers[name] = steering(policy, parameters.pool)
+    if not any((k == 0) == (name == NO_LEADERS) for name in steers for k in leaders):
+        raise ParameterError("nothing to compare: leaders and policies name no flocks")
     for name, policy in steers.items():
         if environment and _is_outside(policy):
             raise ParameterError(
@@ -161,9 +181,25 @@ def steering(policy: Steering, pool: Any) -> Any:
         policy = policy()
     if isinstance(policy, str) and policy != EVERY_SUBSTEP:
         policy = named_policy(policy, pool)()
-    policy = as_policy(policy)
-    check_pool(policy, pool)
-    return policy
+    found: Any = as_policy(policy)
+    if not (found is None or isinstance(found, str) or hasattr(found, "predict")):
+        raise ParameterError(
+            f"policy = {shown(found)} is not accepted: a policy's name or file, an object with "
+            "predict, or a function that returns one"
+        )
+    check_pool(found, pool)
+    return found
+
+
+def _check_environment(environment: Mapping[str, Any]) -> None:
+    """Refuse options that would contradict another argument, or that it would overrule."""
+    for name, value in environment.items():
+        # A range of noises is no parameter of one flock.
+        if name in _SAID_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
+            raise ParameterError(
+                f"{name} = {shown(value)} is not accepted in the environment of a comparison: "
+                f"{_SAID_BY[name]} says it"
+            )
 
 
 def _is_outside(policy: Any) -> bool:

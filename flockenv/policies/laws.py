@@ -28,6 +28,9 @@ LARGEST_LEAN: float = _core.LARGEST_LEAN
 """The angle in rad that an action of 1 stands for with ``action_mode="lean"``."""
 
 
+_MADE_OF = ("law", "gains", "observation", "mirror_to_target")
+
+
 class LawPolicy(RowPolicy):
     """A law evaluated from observations, with the interface of an SB3 policy.
 
@@ -55,6 +58,12 @@ class LawPolicy(RowPolicy):
     def gains(self) -> dict[str, float]:
         """The gains by name; none in the paper's law."""
         return dict(self.law.gains)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute; an AttributeError refuses what the core's law was made of."""
+        if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
+            raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
+        super().__setattr__(name, value)
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return self._observed.actions(rows)

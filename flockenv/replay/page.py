@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
@@ -99,6 +99,8 @@ def write_replay(
     OSError
         If the file cannot be written; the file from before remains then.
     """
+    if Path(path).suffix.lower() not in (".html", ".htm"):
+        raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in .html or .htm")
     if isinstance(recordings, Recording):
         recordings = {Path(path).stem: recordings}
     given: object = recordings
@@ -107,7 +109,10 @@ def write_replay(
         raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
+    name: Any
     for name, recording in recordings.items():
+        if not isinstance(name, str) or not isinstance(recording, Recording):
+            raise ParameterError(f"{shown(given)} is not accepted: recordings by their names")
         if len(recording) == 0 or not recording.has_poses:
             raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     page, every = _fitting_page(recordings)

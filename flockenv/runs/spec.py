@@ -2,16 +2,18 @@
 
 import hashlib
 import json
-import math
 from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any
 
 import numpy as np
 
-from flockenv.errors import ParameterError, refuse_unknown
+from flockenv._io.arguments import number
+from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import EVERY_SUBSTEP
-from flockenv.policies.registry import POLICIES, POOL_POLICIES
+from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy
 from flockenv.recording import Recording
 from flockenv.recording.checks import check_seed
 from flockenv.simulation import simulate
@@ -21,6 +23,12 @@ _DEFAULTS = FlockParameters().to_dict()
 KEEP = ("window", "order", "poses")
 """What can be stored of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""
+
+
+@cache
+def _check_pool(policy: str, pool: Any) -> None:
+    """Refuse a pool that a policy is not made for."""
+    named_policy(policy, pool)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,13 +61,19 @@ class RunSpec:
     keep: str = "window"
 
     def __post_init__(self) -> None:
+        if not isinstance(self.parameters, FlockParameters):
+            raise TypeError(f"parameters must be FlockParameters, not {shown(self.parameters)}")
         refuse_unknown((self.policy,), [*POLICIES, *POOL_POLICIES], "policy of a run")
+        if self.policy in POOL_POLICIES:
+            _check_pool(self.policy, self.parameters.pool)
         refuse_unknown((self.keep,), KEEP, "part of a run to keep")
         check_seed(self.seed)
-        for name in ("duration_s", "sample_hz"):
-            value = float(getattr(self, name))
-            if not 0.0 < value < math.inf:
-                raise ParameterError(f"{name} = {value!r} is not accepted: a positive number")
+        for name, most in (("duration_s", 1e9), ("sample_hz", 1e6)):
+            value = float(number(getattr(self, name), name))
+            if not 0.0 < value <= most:
+                raise ParameterError(
+                    f"{name} = {value!r} is not accepted: a positive number, at most {most:g}"
+                )
             object.__setattr__(self, name, value)
 
     def to_json(self) -> str:

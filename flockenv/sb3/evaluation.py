@@ -11,6 +11,7 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
+from flockenv._io.arguments import whole
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.policies import ModelPolicy
 from flockenv.policies.base import check_action_mode
@@ -39,10 +40,10 @@ class PerFlock(VecEnvWrapper):
     """
 
     def __init__(self, venv: VecEnv) -> None:
-        super().__init__(venv)
-        leaders = venv.unwrapped
+        leaders = getattr(venv, "unwrapped", venv)
         if not isinstance(leaders, LeaderVecEnv):
             raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
+        super().__init__(venv)
         self._leaders = np.bincount(leaders.flock_of_slot)
         self._first = np.cumsum(self._leaders) - self._leaders
         self.num_envs = leaders.num_flocks
@@ -191,7 +192,7 @@ class FlockEvalCallback(EvalCallback):
     def __init__(self, eval_env: VecEnv, *, seed: int | None = None, **options: Any) -> None:
         counted = any(isinstance(each, PerFlock) for each in _layers(eval_env))
         super().__init__(eval_env if counted else PerFlock(eval_env), **options)
-        self.seed = seed
+        self.seed = None if seed is None else whole(seed, "seed")
         self.evaluation: FlockEvaluation | None = None
         self._ended: list[tuple[float, float, int]] = []
 

@@ -11,6 +11,7 @@ import tomli_w
 from stable_baselines3 import PPO
 from stable_baselines3.common.utils import LinearSchedule
 
+from flockenv._io.arguments import whole
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
@@ -75,16 +76,20 @@ class TrainingSettings:
     ppo: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
-        if self.pool not in _TIMES_S:
+        if self.pool not in [*_TIMES_S]:
             raise ParameterError(f"pool = {shown(self.pool)} is not accepted: wide or narrow")
         hours: Any = self.flock_hours
-        if not isinstance(hours, int | float) or not 0.0 < hours < math.inf:
+        if (
+            isinstance(hours, bool)
+            or not isinstance(hours, int | float)
+            or not 0.0 < hours < math.inf
+        ):
             raise ParameterError(f"flock_hours = {shown(hours)} is not accepted: above 0")
         for name in ("environment", "ppo"):
             if not isinstance(getattr(self, name), Mapping):
                 raise ParameterError(f"{name} = {shown(getattr(self, name))} is no table")
         refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_OWN}, "option of PPO")
-        POLICY_SEEDS["training"].seeds(1, self.seed)
+        POLICY_SEEDS["training"].seeds(1, whole(self.seed, "seed"))
 
     def flocks(self) -> dict[str, Any]:
         """Return the options of the environment that say which flocks are led."""

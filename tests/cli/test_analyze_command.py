@@ -124,6 +124,7 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
+        (["analyze", "run.npz", "--plot", "order.xyz"], "'xyz' is none of .eps"),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
         (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
         (["analyze", "absent.npz", "--out", "new.csv"], "absent.npz cannot be read"),

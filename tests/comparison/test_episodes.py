@@ -76,6 +76,14 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
     [
         ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* --n-leaders"),
         ([1], "paper's law at every substep", {"target": "alternate"}, "outside"),
+        ([], "straight ahead", {}, "nothing to compare"),
+        ([1], "straight ahead", {"n_boats": 9}, "n_boats = 9 is not accepted .* the flock says it"),
+        ([1], "straight ahead", {"bw_s": 0.9}, "bw_s = 0.9 is not accepted"),
+        ([1], "straight ahead", {"params": None}, "the flock says it"),
+        ([1], "straight ahead", {"episode_s": 9.0}, "duration_s says it"),
+        ([1], "straight ahead", {"mirror_to_target": True}, "a policy says it"),
+        ([1], "straight ahead", {"observation": {}}, "a policy says it"),
+        ([1], "straight ahead", {"autoreset_mode": "disabled"}, "the comparison says it"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(
@@ -90,6 +98,27 @@ def test_what_cannot_be_compared_is_refused_first(
     with pytest.raises(flockenv.ParameterError, match=words):
         compare_leaders(parameters, leaders, policies, [1], 5.0, seconds.append, environment)
     assert seconds == []
+
+
+def test_flocks_count_once(parameters: flockenv.FlockParameters) -> None:
+    law = {"law": "paper's law"}
+    with pytest.raises(flockenv.ParameterError, match="a seed more than once"):
+        compare_leaders(parameters, [1], law, [1, 2, 1], 5.0)
+    once = compare_leaders(parameters, [1], law, [1, 2], 5.0)
+    pd.testing.assert_frame_equal(compare_leaders(parameters, [1, 1], law, [1, 2], 5.0), once)
+
+
+def test_noises_may_be_drawn_from_a_range(parameters: flockenv.FlockParameters) -> None:
+    drawn = compare_leaders(
+        parameters, [1], {"law": "paper's law"}, [1, 2], 5.0, environment={"bw_s": (0.1, 0.9)}
+    )
+    assert len(drawn) == 2
+
+
+@pytest.mark.parametrize("policy", [5, {"leader_0": 5}, lambda: 5, np])
+def test_what_has_no_predict_is_no_policy(parameters: flockenv.FlockParameters, policy) -> None:
+    with pytest.raises(flockenv.ParameterError, match=r"policy = .* is not accepted: a policy's"):
+        compare_leaders(parameters, [1], {"mine": policy}, [1], 5.0)
 
 
 def test_what_is_measured_in_steps_is_what_the_recording_says() -> None:
@@ -163,6 +192,7 @@ def test_what_is_compared_may_be_gone_through_once(parameters: flockenv.FlockPar
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        ({"parameters": {}}, "parameters must be FlockParameters"),
         ({"leaders": {1, 2}}, "leaders must be a sequence"),
         ({"leaders": 2}, "leaders must be a sequence"),
         ({"leaders": "12"}, "leaders must be a sequence"),
@@ -176,9 +206,9 @@ def test_what_is_compared_may_be_gone_through_once(parameters: flockenv.FlockPar
     ],
 )
 def test_what_is_no_sequence_is_named(parameters, arguments, words) -> None:
-    given = {"leaders": [1], "policies": {"law": "paper's law"}, "seeds": [1], **arguments}
+    given = {"leaders": [1], "policies": {"law": "paper's law"}, "seeds": [1]}
     with pytest.raises(TypeError, match=words):
-        compare_leaders(parameters, duration_s=1.0, **given)
+        compare_leaders(**{"parameters": parameters, "duration_s": 1.0, **given, **arguments})
 
 
 def test_leaders_of_another_pool_are_refused(parameters, tmp_path) -> None:

@@ -16,6 +16,22 @@ from flockenv.policies.laws import NamedLaw
 LAWS = (SteeringLaw, DampedLaw)
 
 
+@pytest.mark.parametrize(
+    ("law", "name"),
+    [
+        (DampedLaw(), "gain"),
+        (DampedLaw(), "mirror_to_target"),
+        (SteeringLaw(), "observation"),
+        (flockenv.policies.load("learned", pool="wide"), "backward_gain"),
+    ],
+)
+def test_what_a_law_is_made_of_is_fixed(law, name):
+    with pytest.raises(AttributeError, match=f"'{name}' of .* is fixed: make another law"):
+        setattr(law, name, 2.0)
+    law.control_hz = 5.0
+    assert copy.deepcopy(law).gains == law.gains
+
+
 def test_steering_law_agrees_at_its_jump():
     # A boat that heads exactly the wrong way turns left, by the pose and by the observation.
     for target, wrong in (("cw", math.pi / 2), ("ccw", -math.pi / 2)):

@@ -74,9 +74,14 @@ def test_what_cannot_be_played_is_named(tmp_path):
         ([run], "a list is not accepted: a recording, or"),
         ({}, "0 recordings"),
         (dict.fromkeys("abc", run), "3 recordings"),
+        ({1: run}, "recordings by their names"),
+        ({"run": "run.npz"}, "recordings by their names"),
     ):
         with pytest.raises(flockenv.ParameterError, match=words):
             write_replay(tmp_path / "page.html", given)
+    for name in ("page.npz", "page", "page.gif"):
+        with pytest.raises(flockenv.ParameterError, match=r"a name in .html or .htm"):
+            write_replay(tmp_path / name, run)
     assert list(tmp_path.iterdir()) == []
 
 

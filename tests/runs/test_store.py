@@ -199,13 +199,17 @@ def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, store: RunS
         ({"seed": -1}, "seed"),
         ({"duration_s": float("nan")}, "duration_s"),
         ({"sample_hz": 0}, "sample_hz"),
+        ({"duration_s": 1e300}, "at most 1e"),
+        ({"duration_s": "30"}, "duration_s must be a number"),
+        ({"sample_hz": True}, "sample_hz must be a number"),
+        ({"parameters": {}}, "parameters must be FlockParameters"),
     ],
 )
 def test_a_spec_is_checked(
     parameters: flockenv.FlockParameters, change: dict[str, object], words: str
 ) -> None:
     values = {"parameters": parameters, "seed": 1, "duration_s": 30.0} | change
-    with pytest.raises(flockenv.ParameterError, match=words):
+    with pytest.raises((flockenv.ParameterError, TypeError), match=words):
         RunSpec(**values)  # type: ignore[arg-type]
 
 

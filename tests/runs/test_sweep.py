@@ -100,6 +100,11 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
         ("minutes = 1\nseeds = 1\n" + GRID + "[[grid]]\nc4 = [0.1]", "same fields.*bw_s, c4"),
         ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
         ("minutes = \n", "no TOML"),
+        (
+            'minutes = 1\nseeds = 1\npolicy = "learned"\n[fixed]\nn_leaders = 1\n'
+            'pool = "narrow"\n' + GRID,
+            "narrow",
+        ),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, text: str, words: str) -> None:

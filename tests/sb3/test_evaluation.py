@@ -109,6 +109,11 @@ def test_other_environments_are_refused():
     other = DummyVecEnv([lambda: flockenv.LeadersEnv(**OPTIONS)])
     with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not DummyVecEnv"):
         evaluate_flocks(SteeringLaw(), other)
+    for env in ("flockenv/Leaders-v0", None, flockenv.LeadersEnv(**OPTIONS)):
+        with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not"):
+            evaluate_flocks(SteeringLaw(), env)
+    with pytest.raises(TypeError, match="seed must be an integer"):
+        FlockEvalCallback(flockenv.sb3.LeaderVecEnv(**OPTIONS), seed="1")
 
 
 def test_callback_evaluates_flocks_and_keeps_the_best(tmp_path):

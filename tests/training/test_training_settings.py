@@ -38,6 +38,8 @@ def test_changes_reach_the_environment_and_ppo(tiny: TrainingSettings) -> None:
         ({"flock_hours": 0.0}, "flock_hours = 0.0 is not accepted"),
         ({"flock_hours": "many"}, "flock_hours = 'many' is not accepted"),
         ({"seed": -1}, "seed = -1 is not accepted"),
+        ({"pool": ["wide"]}, "pool = ['wide'] is not accepted"),
+        ({"flock_hours": True}, "flock_hours = True is not accepted"),
         ({"n_leader": 3}, "did you mean 'n_leaders'"),
         ({"environment": 3}, "environment = 3 is no table"),
         ({"ppo": {"gama": 0.9}}, "'gama' is no option of PPO: did you mean 'gamma'"),
@@ -52,3 +54,5 @@ def test_wrong_settings_are_named(changes: dict[str, object], words: str) -> Non
     with pytest.raises(ParameterError) as raised:
         (settings := TrainingSettings.from_dict(changes)).model(settings.venv())
     assert words in str(raised.value)
+    with pytest.raises(TypeError, match="seed must be an integer"):
+        TrainingSettings(seed="1")
