@@ -14,6 +14,9 @@ from flockenv.errors import ParameterError, refuse_unknown, shown
 
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
 
+OBSTACLES = tuple(name for name, each in _TABLE.items() if each["kind"].startswith("tuple of "))
+"""Fields with a row for each obstacle, in the order in which contacts number them."""
+
 
 def _declared(name: str) -> Any:
     """Return the field that the core declares under this name: default, unit, range and meaning."""

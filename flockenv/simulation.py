@@ -15,7 +15,7 @@ from flockenv._io.arguments import items, real_numbers, truth
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
-from flockenv.parameters import FlockParameters
+from flockenv.parameters import OBSTACLES, FlockParameters
 from flockenv.policies.base import (
     LeaderPolicy,
     check_action_mode,
@@ -40,7 +40,7 @@ Steering = LeaderPolicy | str | None
 
 _FASTEST_HZ = 1000
 # Of them depends whether boats fit, which is tried before a run.
-_PLACED = ("pool", "boat_radius_cm", "boat_shape", "discs", "walls")
+_PLACED = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
 
 
 def simulate(

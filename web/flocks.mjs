@@ -128,7 +128,7 @@ export class Flocks {
       ...named, lengths, leaders, boats: parameters.n_boats, bw_s: parameters.bw_s, stored: parameters,
       parameters: Object.fromEntries(Object.keys(this.kinds).map((each) => [each, textOf(parameters[each])])),
       target: isCommon ? targets[0] : null, targets: leaders > 0 && !isCommon ? targets : undefined,
-      discs: parameters.discs, walls: parameters.walls, phases: this.phases, ids: null, every: 1,
+      ...Object.fromEntries(Object.entries(parameters).filter(([each]) => this.kinds[each] === "rows")), phases: this.phases, ids: null, every: 1,
     };
   }
 

@@ -73,7 +73,7 @@ function checkOwn(arrays, samples, quantities) {
   }
 }
 
-function checkContacts(contacts, samples, { n_boats: boats, discs, walls }) {
+function checkContacts(contacts, samples, { n_boats: boats, ...others }) {
   const c = contacts.i.shape[0] ?? 0;
   const shapes = { count: [samples], normal: [c, 2], point_cm: [c, 2] };
   const descrs = { count: "<i8", i: "<i4", j: "<i4" };
@@ -91,7 +91,9 @@ function checkContacts(contacts, samples, { n_boats: boats, discs, walls }) {
     refuse(`contacts.count must add up to the ${c} contacts there are`);
   }
   const [first, second] = [contacts.i.values, contacts.j.values];
-  const isBoat = (each) => each >= -2 - discs.length - walls.length && each < boats;
+  // No other parameter is a list of lists.
+  const obstacles = Object.values(others).flat().filter(Array.isArray).length;
+  const isBoat = (each) => each >= -2 - obstacles && each < boats;
   if (!first.every((each) => each >= 0 && isBoat(each)) || !second.every(isBoat)) {
     refuse(`contacts.i and contacts.j must be among ${boats} boats`);
   }

@@ -12,7 +12,7 @@ from flockenv._io.arguments import number, real_numbers
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
 from flockenv.order import QUANTITIES
-from flockenv.parameters import FlockParameters
+from flockenv.parameters import OBSTACLES, FlockParameters
 
 PHASES = np.array(_core.PHASES)
 TIMES = ("time_s", "phase", "in_analysis_window")
@@ -143,7 +143,7 @@ def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParam
     count = contacts.count
     if (count < 0).any() or (count > c).any() or count.sum() != c:
         raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
-    boats, obstacles = parameters.n_boats, len(parameters.discs) + len(parameters.walls)
+    boats, obstacles = parameters.n_boats, sum(len(getattr(parameters, each)) for each in OBSTACLES)
     pairs = np.concatenate([contacts.i, contacts.j])
     if c and (contacts.i.min() < 0 or pairs.min() < -2 - obstacles or pairs.max() >= boats):
         raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")

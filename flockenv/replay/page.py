@@ -18,6 +18,7 @@ from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries
+from flockenv.parameters import OBSTACLES
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
 from flockenv.replay.quantities import decisive_minute, series_of, shown_quantities
@@ -190,11 +191,9 @@ def _run(
             # JSON has no infinity: open water has no outer wall.
             "outer_radius_cm": outer_cm if math.isfinite(outer_cm) else None,
             "inner_radius_cm": inner_cm,
-            "hull_radius_cm": parameters.boat_radius_cm,
-            "hull_half_length_cm": parameters.boat_shape * parameters.boat_radius_cm,
+            **parameters._in_core.hull_lengths,
         },
-        "discs": parameters.discs,
-        "walls": parameters.walls,
+        **{each: getattr(parameters, each) for each in OBSTACLES},
         # Of tracks the phases may be unknown.
         "phases": PHASES.tolist() if _has_phases(recording) else [],
         "ids": None if recording.ids is None else recording.ids.tolist(),

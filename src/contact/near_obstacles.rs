@@ -19,9 +19,7 @@ impl NearObstacles {
     /// Of these obstacles.
     pub(super) fn new(obstacles: Vec<Obstacle>) -> Self {
         Self {
-            has_walls: obstacles
-                .iter()
-                .any(|obstacle| matches!(obstacle, Obstacle::Wall { .. })),
+            has_walls: obstacles.iter().any(Obstacle::is_thin),
             obstacles,
             ..Self::default()
         }

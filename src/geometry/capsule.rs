@@ -22,6 +22,28 @@ impl Hull {
         }
     }
 
+    /// A segment without width.
+    pub(crate) fn segment(half_length: f64) -> Self {
+        Self {
+            radius: 0.0,
+            half_length,
+        }
+    }
+
+    /// Radius of the swept disc at a place along the core, from the center to the bow, in cm.
+    #[inline]
+    pub fn radius_at(&self, _along: f64) -> f64 {
+        self.radius
+    }
+
+    /// What pictures draw it by, in cm, by name.
+    pub fn lengths(&self) -> [(&'static str, f64); 2] {
+        [
+            ("hull_radius_cm", self.radius),
+            ("hull_half_length_cm", self.half_length),
+        ]
+    }
+
     /// Distance from the center to the farthest point of the hull.
     pub fn reach(&self) -> f64 {
         self.radius + self.half_length

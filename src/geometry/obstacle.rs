@@ -66,6 +66,11 @@ impl Obstacle {
         all
     }
 
+    /// Whether a boat that moves by more than half its radius might pass through.
+    pub(crate) fn is_thin(&self) -> bool {
+        matches!(self, Self::Wall { .. })
+    }
+
     /// Where it ends, and the direction from there into it: at its start, and at its end. A disc has no end.
     fn ends(&self) -> Option<[(Vec2, Vec2); 2]> {
         let Self::Wall {
@@ -187,10 +192,7 @@ fn join(obstacles: &mut [Obstacle]) {
 
 /// A wall is a hull of no radius.
 fn wall_hull(half_length: f64) -> Hull {
-    Hull {
-        radius: 0.0,
-        half_length,
-    }
+    Hull::segment(half_length)
 }
 
 /// The gap to a wall, which has no lever arm. Where a wall's end touches the flank, turning the boat either way brings
@@ -200,7 +202,7 @@ fn beside_wall(feature: Feature, gap: Gap, hull: Hull) -> Gap {
     Gap {
         arm_j: 0.0,
         bend: if is_flank {
-            -(gap.gap + hull.radius)
+            -(gap.gap + hull.radius_at(0.0))
         } else {
             0.0
         },

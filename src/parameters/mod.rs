@@ -15,7 +15,7 @@ pub(crate) use field::declare_fields;
 pub use field::{Field, Range};
 pub use fields::FlockParameters;
 pub(crate) use named_choice::named_choice;
-pub use obstacles::{Disc, MOST_OBSTACLES, Wall};
+pub use obstacles::*;
 pub use pools::Pool;
 pub use presets::{Physics, Preset};
 pub use targets::Targets;

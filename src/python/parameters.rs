@@ -1,7 +1,7 @@
 //! Parameters that are checked, behind `flockenv.FlockParameters`, which shows their values.
 
 use super::value::{given, set_given, wrong_type};
-use crate::geometry::resized_gyration_radius_cm;
+use crate::geometry::{Hull, resized_gyration_radius_cm};
 use crate::parameters::{Field, FlockParameters, Value};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -34,6 +34,12 @@ impl PyParameters {
     #[getter]
     fn values(&self) -> Value {
         Field::values(FlockParameters::FIELDS, &self.0)
+    }
+
+    /// What pictures draw hulls by, in cm, by name.
+    #[getter]
+    fn hull_lengths(&self) -> Value {
+        Hull::new(&self.0).lengths().into_iter().collect()
     }
 }
 

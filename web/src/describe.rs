@@ -57,13 +57,15 @@ pub(crate) fn values(parameters: &FlockParameters) -> Json {
         .map(|(field, value)| (field.name.to_owned(), written(&value)))
         .collect();
     let (pool, hull) = (parameters.pool, Hull::new(parameters));
-    json!({
+    let mut described = json!({
         "parameters": values,
         "lengths": {
             "outer_radius_cm": pool.has_outer_wall().then_some(pool.outer_radius_cm),
             "inner_radius_cm": pool.inner_radius_cm,
-            "hull_radius_cm": hull.radius,
-            "hull_half_length_cm": parameters.half_length_cm(),
         },
-    })
+    });
+    for (name, length) in hull.lengths() {
+        described["lengths"][name] = json!(length);
+    }
+    described
 }
