@@ -122,11 +122,11 @@ def simulate(
     ------
     ParameterError
         For arguments out of range, unknown names of policies and pools that a policy is not made
-        for, policies whose actions are no rudders, boats that do not fit the pool, a start that
-        this flock cannot have, a noise_seed without a snapshot, a schedule that changes n_boats or
-        n_leaders or that no sample shows, quantities of another shape or with a name that is taken,
-        rudders that are NaN, and a recording of more than 16 GiB. An error during the run has an
-        attribute ``recording``: the run until then.
+        for, policies whose actions are no rudders or that have nobody to steer, boats that do not
+        fit the pool, a start that this flock cannot have, a noise_seed without a snapshot, a
+        schedule that changes n_boats or n_leaders or that no sample shows, quantities of another
+        shape or with a name that is taken, rudders that are NaN, and a recording of more than 16
+        GiB. An error during the run has an attribute ``recording``: the run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -226,6 +226,11 @@ def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameter
     k = parameters.n_leaders
     if not isinstance(policy, Mapping):
         only = _resolved(policy, parameters)
+        if only is not None and k == 0:
+            raise ParameterError(
+                f"policy = {shown(policy)} is not accepted: the flock has n_leaders = 0, so there "
+                "is nobody to steer"
+            )
         seats = [] if only is None else [_Seat(only, [*range(k)], is_alone=True)]
     else:
         names = [f"leader_{leader}" for leader in range(k)]

@@ -4,6 +4,8 @@
 const TIMES = ["time_s", "phase", "in_analysis_window"];
 const TEXTS = ["format", "version", "parameters", "policy"];
 const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
+/** What a flock's poses and velocities are within. */
+const WITHIN_REACH = [-1e9, 1e9];
 const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
 /** NumPy's names of kinds of numbers; those of texts are what files have. */
 const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
@@ -11,13 +13,15 @@ const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int3
 const kindOf = (descr) => KINDS[descr] ?? descr;
 const tuple = (shape) => (shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`);
 const isSame = (shape, other) => shape.length === other.length && shape.every((each, k) => each === other[k]);
+/** A bound in Python's spelling: 1e+09 or 3.14159. */
+const inShort = (bound) => (Math.abs(bound) < 1e6 ? `${Number(bound.toPrecision(6))}` : bound.toExponential().replace(/\+(\d)$/, "+0$1"));
 const quoted = (text) => `'${text}'`;
 
 function refuse(sentence) {
   throw new Error(sentence);
 }
 
-function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps = false } = {}) {
+function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps = false, bounds } = {}) {
   if (!descrs.includes(array.descr)) {
     refuse(`${name} is of ${kindOf(array.descr)}, expected an array of ${kindOf(descrs[0])}`);
   }
@@ -35,6 +39,11 @@ function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps =
     }
   } else if (!array.values.every(isUndefined ? Number.isNaN : Number.isFinite)) {
     refuse(`${name} must be ${isUndefined ? "undefined (NaN)" : "finite"}`);
+  }
+  const [low, high] = bounds ?? [-Infinity, Infinity];
+  // Sums are rounded.
+  if (array.values.some((each) => each < low - 1e-6 || each > high + 1e-6)) {
+    refuse(`${name} must be within ${inShort(low)} and ${inShort(high)}`);
   }
 }
 
@@ -138,8 +147,8 @@ export async function checkedArrays(arrays, { format, phases, quantities }, read
   checkArray("time_s", arrays.time_s, times, DOUBLES);
   checkArray("phase", arrays.phase, times, [`<U${Math.max(...phases.map((name) => name.length))}`]);
   checkArray("in_analysis_window", arrays.in_analysis_window, times, ["|b1"]);
-  checkArray("pose", arrays.pose, state, REALS, { hasGaps: isTracked });
-  checkArray("velocity", arrays.velocity, state, [arrays.pose.descr], { hasGaps: isTracked });
+  checkArray("pose", arrays.pose, state, REALS, { hasGaps: isTracked, bounds: WITHIN_REACH });
+  checkArray("velocity", arrays.velocity, state, [arrays.pose.descr], { hasGaps: isTracked, bounds: WITHIN_REACH });
   if (isTracked) {
     checkIds(arrays.ids, boats);
   }
@@ -147,11 +156,11 @@ export async function checkedArrays(arrays, { format, phases, quantities }, read
     refuse(`phase holds other names than ${phases.join(", ")}`);
   }
   checkTimes(arrays);
-  for (const { key, least_boats: least } of quantities.filter(({ kind }) => kind === "recorded")) {
+  for (const { key, least_boats: least, range: bounds } of quantities.filter(({ kind }) => kind === "recorded")) {
     const values = arrays[`order_${key}`];
     if (values) {
       const isUndefined = boats - leaders < least || (state[1] === 0 && values.values.every?.(Number.isNaN));
-      checkArray(`order.${key}`, values, times, DOUBLES, isTracked ? { hasGaps: true } : { isUndefined });
+      checkArray(`order.${key}`, values, times, DOUBLES, { bounds, ...(isTracked ? { hasGaps: true } : { isUndefined }) });
     }
   }
   checkOwn(arrays, samples, quantities);

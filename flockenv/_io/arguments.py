@@ -45,6 +45,12 @@ def by_name(values: Any, name: str) -> dict[Any, Any]:
     return dict(values)
 
 
+def check_function(value: Any, name: str) -> None:
+    """Refuse, before hours of work, what is to be called and cannot be."""
+    if not callable(value):
+        raise TypeError(f"{name} must be a function, not {shown(value)}")
+
+
 def once(values: Any) -> Any:
     """Return what an iterator or a view of a dictionary holds, and everything else as it is."""
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
@@ -62,11 +68,17 @@ def whole(value: Any, name: str) -> int:
     raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")
 
 
+def _check_no_table(values: Any, name: str) -> None:
+    if hasattr(values, "columns"):  # Their names would be ignored.
+        raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
+
+
 def real_numbers(values: Any, name: str) -> Any:
     """Return an array, perhaps a masked one, of real numbers; a ParameterError names others.
 
     NumPy itself makes numbers of text and times, and drops imaginary parts.
     """
+    _check_no_table(values, name)
     try:
         found = np.ma.asarray(values)
     except Exception as error:  # Arrays of other libraries raise what they like.
@@ -78,6 +90,7 @@ def real_numbers(values: Any, name: str) -> Any:
 
 def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """Return an array of real numbers, a copy; what is masked, or None, is not there: NaN."""
+    _check_no_table(values, name)
     try:
         found: Any = np.ma.asarray(values)
         if found.dtype.kind == "O":

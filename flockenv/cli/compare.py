@@ -195,13 +195,16 @@ def _flocks(options: CompareOptions) -> list[Case]:
     if options.task:
         raise ParameterError("--task is not accepted without --suite")
     environment = changed_fields(options.env or (), "--env")
+    leaders = _numbers(options.n_leaders or ("1-4" if environment else "0-4"))
+    if options.policy and not any(leaders):
+        raise ParameterError("--policy is not accepted with --n-leaders 0: nobody is steered")
     alternates = environment.get("target") == "alternate"
     minutes = options.minutes if options.minutes is not None else 16.0 if alternates else 8.0
     return [
         Case(
             name=f"{_pool_name(parameters.pool)}-bw-{parameters.bw_s!r}",
             parameters=parameters,
-            leaders=_numbers(options.n_leaders or ("1-4" if environment else "0-4")),
+            leaders=leaders,
             seeds=range(options.seed, options.seed + options.episodes),
             episode_s=60.0 * minutes,
             environment=environment,

@@ -1,4 +1,4 @@
-"""An option that a command does not have is answered with the line to type."""
+"""Options that a command does not have are answered with the line to type, or come twice."""
 
 import shlex
 from collections.abc import Sequence
@@ -13,24 +13,32 @@ _FIELDS = tuple(each.name for each in fields(FlockParameters))
 
 
 def refuse_unknown_options(commands: Any, words: Sequence[str]) -> None:
-    """Refuse the first option that the command of a line does not have, with the line to type.
+    """Refuse the first option that the command of a line does not have, or whose value it ignores.
 
-    Commands are click's by name; the line comes without the program.
+    An unknown one is answered with the line to type. Of a value that comes twice the last would
+    count. Commands are click's by name; the line comes without the program.
     """
     if not words or words[0] not in commands:
         return
-    command = commands[words[0]]
-    takes_value = {
-        name: not getattr(each, "is_flag", False)
-        for each in command.params
+    named = {
+        name: each
+        for each in commands[words[0]].params
         for name in (*each.opts, *each.secondary_opts)
         if name.startswith("-")
-    } | {"--help": False}
-    place = 1
+    }
+    takes_value = {name: not getattr(each, "is_flag", False) for name, each in named.items()} | {
+        "--help": False
+    }
+    place, given = 1, dict[str, int]()
     while place < len(words) and words[place] != "--":
         name, equals, _ = words[place].partition("=")
         if name.startswith("--") and name not in takes_value:
             raise ParameterError(_answer(words, place, list(takes_value)))
+        if name in named and not (each := named[name]).multiple:
+            # The same flag twice says the same.
+            value = name in each.secondary_opts if not takes_value[name] else place
+            if given.setdefault(each.name, value) != value:
+                raise ParameterError(f"{each.opts[0]} is given twice: give it once")
         place += 2 if takes_value.get(name) and not equals else 1
 
 

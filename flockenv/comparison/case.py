@@ -56,7 +56,7 @@ class Case:
             compare_leaders(
                 self.parameters.replace(target=target),
                 self.leaders,
-                policies,
+                policies if any(self.leaders) else {},
                 self.seeds[place :: len(targets)],
                 self.episode_s,
                 progress,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import by_name, items, whole
+from flockenv._io.arguments import by_name, check_function, items, whole
 from flockenv._io.extras import require
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.envs.vector import LeadersVectorEnv
@@ -112,6 +112,7 @@ def compare_leaders(
         `environment`.
     """
     pandas = require("pandas", "plot")
+    check_function(progress, "progress")
     leaders = [whole(k, "leaders") for k in items(leaders, "leaders")]
     seeds = items(seeds, "seeds")
     check_evaluation_seeds(seeds)
@@ -133,6 +134,10 @@ def compare_leaders(
     if NO_LEADERS in policies:
         raise ParameterError(
             f"{NO_LEADERS!r} is no name for a policy: it names flocks without leaders"
+        )
+    if policies and leaders and most == 0:
+        raise ParameterError(
+            f"leaders = {shown(leaders)} are not accepted with policies: they have nobody to steer"
         )
     parameters.replace(n_leaders=most)
     steers: dict[str, Any] = {NO_LEADERS: None} if 0 in leaders else {}

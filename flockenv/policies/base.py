@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flockenv._io.arguments import real_numbers
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, shown
@@ -88,6 +89,7 @@ def observed(observation: ArrayLike) -> NDArray[np.float32]:
     """Return an observation as an array, of which nothing may be masked."""
     if np.ma.is_masked(observation):
         raise ParameterError("observation is masked: give plain numbers")
+    observation = real_numbers(observation, "observation")
     return np.ascontiguousarray(observation, np.float32)
 
 

@@ -26,6 +26,8 @@ MOTION = {
 }
 """The columns of poses and velocities in tables, with their units."""
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
+REACH = (-1e9, 1e9)
+"""What a flock's poses and velocities are within."""
 CONTACTS = tuple(each.name for each in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
@@ -38,8 +40,9 @@ def check_array(
     *,
     all_nan: bool = False,
     gaps: bool = False,
+    bounds: tuple[float, float] | None = None,
 ) -> None:
-    """Refuse anything else than an array of a shape and dtype, finite, all NaN or with gaps."""
+    """Refuse another shape or dtype, and numbers that are not finite, all NaN or within bounds."""
     if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
         found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
         raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
@@ -52,6 +55,9 @@ def check_array(
             raise ParameterError(f"{name} must be finite, but for boats that are not there")
     elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
+    # Sums are rounded.
+    if bounds and ((array < bounds[0] - 1e-6) | (array > bounds[1] + 1e-6)).any():
+        raise ParameterError(f"{name} must be within {bounds[0]:g} and {bounds[1]:g}")
 
 
 def check_seed(seed: Any) -> None:

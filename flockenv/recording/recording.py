@@ -20,6 +20,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
     PHASES,
     PRECISIONS,
+    REACH,
     check_array,
     check_contacts,
     check_ids,
@@ -88,7 +89,7 @@ class Recording:
     Raises
     ------
     ParameterError
-        For arrays of a wrong shape or dtype, numbers that are not finite, unknown phases.
+        For arrays of a wrong shape or dtype, numbers out of their range, unknown phases.
     """
 
     time_s: NDArray[np.float64]
@@ -115,8 +116,9 @@ class Recording:
         check_array("phase", self.phase, times, (PHASES.dtype,))
         check_array("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
         tracked = self.ids is not None
-        check_array("pose", self.pose, state, PRECISIONS, gaps=tracked)
-        check_array("velocity", self.velocity, state, (self.pose.dtype,), gaps=tracked)
+        how: dict[str, Any] = {"gaps": tracked, "bounds": REACH}
+        check_array("pose", self.pose, state, PRECISIONS, **how)
+        check_array("velocity", self.velocity, state, (self.pose.dtype,), **how)
         if self.ids is not None:
             check_ids(self.ids, self.parameters.n_boats)
         if not np.isin(self.phase, [*PHASES, ""] if tracked else PHASES).all():
@@ -136,8 +138,9 @@ class Recording:
             undefined = normal_boats < each.least_boats
             # A column that is younger than the file of a recording without poses.
             undefined |= not with_poses and bool(np.isnan(values).all())
-            options = {"gaps": True} if tracked else {"all_nan": undefined}
-            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **options)
+            how = {"gaps": True} if tracked else {"all_nan": undefined}
+            how["bounds"] = each.range
+            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **how)
         object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
         check_seed(self.seed)
         check_quantities(self.quantities, times)

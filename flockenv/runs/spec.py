@@ -66,6 +66,10 @@ class RunSpec:
         refuse_unknown((self.policy,), [*POLICIES, *POOL_POLICIES], "policy of a run")
         if self.policy in POOL_POLICIES:
             _check_pool(self.policy, self.parameters.pool)
+        if self.policy != EVERY_SUBSTEP and self.parameters.n_leaders == 0:
+            raise ParameterError(
+                f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
+            )
         refuse_unknown((self.keep,), KEEP, "part of a run to keep")
         check_seed(self.seed)
         for name, most in (("duration_s", 1e9), ("sample_hz", 1e6)):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from flockenv import _core
+from flockenv._io.arguments import check_function
 from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
@@ -159,6 +160,7 @@ def run_missing(
     StorageError
         If a finished run cannot be written.
     """
+    check_function(progress, "progress")
     missing = []
     remove_leftovers(store.folder, within=True)
     for spec in dict.fromkeys(specs):

@@ -20,6 +20,7 @@ from flockenv._io.toml import read_toml_file
 from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
 from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
+from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, threads
 from flockenv.runs.spec import RunSpec
@@ -101,7 +102,13 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    runs = tuple(RunSpec(parameters=each, seed=seed, **run) for each in flocks for seed in seeds)
+    # Beside flocks with leaders, those without are what they are compared with.
+    unled = run | {"policy": EVERY_SUBSTEP} if any(each.n_leaders for each in flocks) else run
+    runs = tuple(
+        RunSpec(parameters=each, seed=seed, **(run if each.n_leaders else unled))
+        for each in flocks
+        for seed in seeds
+    )
     return SweepSpec(axes, runs)
 
 

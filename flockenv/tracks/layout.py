@@ -66,7 +66,7 @@ _KINDS: dict[Any, Rule] = {
         lambda value: value is None or _is_name(value) or _are(_is_name, value, 4),
         "a column, or the columns x, y of the tail and x, y of the head",
     ),
-    Literal["rad", "deg"]: _among("rad", "deg"),
+    Literal["rad", "deg", "turn"]: _among("rad", "deg", "turn"),
     Literal["right", "up", "left", "down"]: _among("right", "up", "left", "down"),
     Literal["cw", "ccw"] | None: _among("cw", "ccw", None),
     Literal[",", ";", "\t", " ", "|"]: _among(",", ";", "\t", " ", "|"),
@@ -103,7 +103,7 @@ class TrackLayout:
         that the heading joins; or None for the direction of motion: wrong for robots that are
         pushed sideways.
     heading_unit : str
-        "rad" or "deg".
+        "rad", "deg" or "turn", a full turn.
     heading_zero : str
         Where heading 0 points in the picture: "right", "up" (a compass's north), "left", "down".
     heading_turns : str or None
@@ -146,7 +146,7 @@ class TrackLayout:
     x: str | tuple[str, ...] = "x"
     y: str | tuple[str, ...] = "y"
     heading: _Heading = "heading"
-    heading_unit: Literal["rad", "deg"] = "rad"
+    heading_unit: Literal["rad", "deg", "turn"] = "rad"
     heading_zero: Literal["right", "up", "left", "down"] = "right"
     heading_turns: Literal["cw", "ccw"] | None = None
     axis: bool = False

@@ -15,6 +15,12 @@ Floats = NDArray[np.float64]
 HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
 """Where headings count from, in rad counter-clockwise from x."""
 
+TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
+"""A full turn in the units of headings."""
+
+UNIT = {"turn": "turns", "rad": "radians", "deg": "degrees"}
+"""What the units are called."""
+
 _AXIS_JUMP = 0.8
 _MOST_BROKEN = 0.5
 
@@ -89,17 +95,8 @@ class Motion:
                 f"{layout.max_speed_cm_s:g}: do cm_per_unit, fps and times fit this table, and "
                 "is it one film?"
             )
-        turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
-        said_deg = isinstance(layout.heading, str) and layout.heading_unit == "deg"
-        if said_deg and np.nanmax(np.abs(turned)) < 0.11 and np.ptp(turned[self.there]) > 0.054:
-            # All within 2π, though in degrees, and over more than π: the motion tells which it is.
-            other = pose.copy()
-            other[..., 2] += np.degrees(turned) - turned
-            if self.cosine(other) > self.cosine(pose):
-                raise ParameterError(
-                    "headings never exceed a full turn in rad, and fit the motion better in rad "
-                    "than in degrees: is heading_unit = 'rad'?"
-                )
+        if isinstance(layout.heading, str):
+            self._check_unit(pose, layout)
         jumps = (np.abs(np.diff(pose[..., 2], axis=0)) > _AXIS_JUMP * np.pi) & steps
         may_be_axes = isinstance(layout.heading, str) and not layout.axis
         if may_be_axes and jumps.sum() >= 3 and _is_half(pose[..., 2]):
@@ -107,6 +104,23 @@ class Motion:
                 "headings lie within half a turn and jump from one end of it to the other: set "
                 "axis = true if they are axes without a bow, as of ellipses"
             )
+
+    def _check_unit(self, pose: Floats, layout: TrackLayout) -> None:
+        """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
+        turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
+        whole, other = TURN[layout.heading_unit], pose.copy()
+        for unit, turn in TURN.items():
+            # A full turn of the smaller unit, and headings over more than half of one.
+            least = TURN["rad"] * turn / whole
+            if turn >= whole or np.nanmax(np.abs(turned)) > 1.003 * least:
+                continue
+            other[..., 2] = pose[..., 2] + turned * (whole / turn - 1.0)
+            if np.ptp(turned[self.there]) > 0.5 * least and self.cosine(other) > self.cosine(pose):
+                raise ParameterError(
+                    f"headings never exceed a full turn in {UNIT[unit]}, and fit the motion better "
+                    f"in {UNIT[unit]} than in {UNIT[layout.heading_unit]}: is heading_unit = "
+                    f"{unit!r}?"
+                )
 
 
 def _is_half(heading: Floats) -> bool:

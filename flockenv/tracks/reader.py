@@ -1,12 +1,15 @@
 """Tracks of tables (CSV, Parquet) as recordings, with a report of what was left out."""
 
 import os
+import re
+import unicodedata
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockenv._io.arguments import check_function
 from flockenv.errors import ParameterError, shown
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
@@ -54,6 +57,7 @@ def read_tracks(
     """
     if not isinstance(layout, TrackLayout | None):
         raise TypeError(f"layout must be a TrackLayout, not {shown(layout)}")
+    check_function(report, "report")
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table in memory has no file beside it")
@@ -131,6 +135,7 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
             f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
             f", at different places, the second time in {rows.index.name} {row.name}"
         )
+    _check_names(rows)
     # By their length, then alphabet, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
     frames = every.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1)
@@ -146,6 +151,20 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
     stamps = np.where(np.isnan(stamps), time_s[:, None], stamps)
     pose = np.stack([wide[each][names] for each in ("x", "y", "heading")], axis=-1)
     return names, time_s - time_s[0], stamps, pose
+
+
+def _check_names(rows: "pd.DataFrame") -> None:
+    """Refuse spellings of one name that are never there at once: they would be two boats."""
+    spellings: dict[str, list[str]] = {}
+    for name in rows["id"].unique():
+        plain = unicodedata.normalize("NFKC", name).casefold()
+        spellings.setdefault(re.sub(r"(?<!\d)0+(?=\d)", "", plain), []).append(name)
+    for names in spellings.values():
+        if len(names) > 1 and rows.loc[rows["id"].isin(names), "frame"].is_unique:
+            raise ParameterError(
+                f"the names {', '.join(map(repr, names))} are never in one frame, and differ in "
+                "case or leading zeros alone: write one boat's name in one way"
+            )
 
 
 def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:

@@ -9,13 +9,13 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.clock import times_of
 from flockenv.tracks.layout import TrackLayout, columns_of
-from flockenv.tracks.motion import HEADING_ZERO, in_water
+from flockenv.tracks.motion import HEADING_ZERO, TURN, UNIT, in_water
 from flockenv.tracks.table import Floats, column, numbers
 
 if TYPE_CHECKING:
     import pandas as pd
 
-FULL_TURN = {"rad": 2 * np.pi + 1e-6, "deg": 360.0 + 1e-4}
+FULL_TURN = {unit: turn + 1e-6 for unit, turn in TURN.items()}
 """The greatest heading within a full turn, rounded up."""
 
 _MOST_STRANGE = 0.01
@@ -129,7 +129,7 @@ def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, Any]:
         _check_turn(heading, strange, layout)
         heading[strange] = np.nan
     sign = 1.0 if turns == "ccw" else -1.0
-    heading = np.radians(heading) if layout.heading_unit == "deg" else heading
+    heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
     return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
 
 
@@ -143,11 +143,12 @@ def _check_turn(heading: Floats, strange: Any, layout: TrackLayout) -> None:
     share = strange.sum() / max(1, np.isfinite(heading).sum())
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
         return
-    largest, in_deg = np.abs(heading[strange]).max(), layout.heading_unit == "deg"
-    unit = "" if in_deg or largest > 360.0 else "heading_unit = 'deg' if they are in degrees, "
+    largest, said = np.abs(heading[strange]).max(), layout.heading_unit
+    units = (u for u in TURN if TURN[u] > TURN[said] and largest <= FULL_TURN[u])
+    unit = next((f"heading_unit = {u!r} if they are in {UNIT[u]}, " for u in units), "")
     raise ParameterError(
-        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in "
-        f"{'degrees' if in_deg else 'radians'}: {unit}wrapped = false if they count whole turns"
+        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {UNIT[said]}: "
+        f"{unit}wrapped = false if they count whole turns"
     )
 
 

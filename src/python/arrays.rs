@@ -105,6 +105,9 @@ impl Numbers {
             let message = format!("{name} is masked; fill its gaps first");
             return Err(refusal(message));
         }
+        if array.hasattr("columns")? {
+            return Err(wrong_type(array, name, "an array, as a table's to_numpy()"));
+        }
         let asarray = numpy::get_array_module(py)?.getattr("asarray")?;
         let array = asarray.call1((array,))?.cast_into::<PyUntypedArray>()?;
         let dtype = array.dtype();

@@ -1,4 +1,7 @@
-"""Law: what is masked in an array is refused, or not there; it is never read as a number."""
+"""Law: what is masked in an array is refused, or not there; it is never read as a number.
+
+Nor are numbers whose columns have names, which would be ignored.
+"""
 
 import numpy as np
 import pytest
@@ -36,6 +39,29 @@ def test_masked_states_rudders_and_masks_are_refused():
     (paid := flockenv.LeadersVectorEnv(2, params=PARAMETERS, **own)).reset(seed=0)
     with pytest.raises(flockenv.ParameterError, match="masked"):
         paid.step(np.zeros((2, 2)))
+
+
+def test_tables_are_no_arrays():
+    pandas = pytest.importorskip("pandas")
+    flock = flockenv.Flock(PARAMETERS, 0)
+    before = flock.snapshot()
+    table = pandas.DataFrame(flock.pose[:, ::-1], columns=["heading_rad", "y_cm", "x_cm"])
+    seen = pandas.DataFrame(flockenv.envs.observation.observe(flock))
+    env = flockenv.LeadersVectorEnv(2, params=PARAMETERS)
+    env.reset(seed=0)
+    for call in (
+        lambda: flock.set_state(table, flock.velocity),
+        lambda: flockenv.Flock.from_state(PARAMETERS, 0, {"pose": table}),
+        lambda: flockenv.simulate(PARAMETERS, 0, 1.0, start={"pose": table}),
+        lambda: env.step(pandas.DataFrame(np.zeros((2, 2)))),
+        lambda: flockenv.policies.SteeringLaw().predict(seen),
+        lambda: flockenv.tracks.recording_of([0.0], table, pool="wide"),
+        lambda: flockenv.order_series(table, table),
+    ):
+        with pytest.raises((TypeError, flockenv.ParameterError), match=r"table's to_numpy\(\)"):
+            call()
+    assert flock.snapshot() == before
+    assert flock.advance(0.1, pandas.Series([0.5, 0.5])) is None
 
 
 def test_boats_that_are_masked_are_not_there():

@@ -44,7 +44,8 @@ def test_import_needs_no_optional_library():
             ("gymnasium", "pettingzoo", "rich", "typer"),
         ),
         (
-            "import flockenv as f; f.simulate(f.FlockParameters(), 1, 1.0, policy='learned')",
+            "import flockenv as f; p = f.FlockParameters(n_leaders=1); "
+            "f.simulate(p, 1, 1.0, policy='learned')",
             ("gymnasium", "pettingzoo", "rich", "typer"),
         ),
         (

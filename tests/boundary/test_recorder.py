@@ -89,10 +89,12 @@ def test_rudders_are_held_between_control_steps(control_hz, mirrored):
     assert (place, policy.calls) == (31, by_hand.calls)
 
 
-def test_a_policy_without_leaders_is_not_asked():
-    policy = Watching()
-    simulate(PARAMETERS.replace(n_leaders=0), 3, 2.0, policy=policy)
-    assert policy.calls == 0
+@pytest.mark.parametrize("policy", [Watching(), "learned", "paper's law"])
+def test_a_policy_without_leaders_is_refused(policy):
+    unled = PARAMETERS.replace(n_leaders=0, pool="wide")
+    with pytest.raises(flockenv.ParameterError, match="n_leaders = 0, so there is nobody to steer"):
+        simulate(unled, 3, 2.0, policy=policy)
+    assert simulate(unled, 3, 2.0, policy={}) == simulate(unled, 3, 2.0)
 
 
 def test_progress_is_reported_with_and_without_a_policy():

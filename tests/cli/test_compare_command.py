@@ -18,7 +18,8 @@ from flockenv.comparison.suite import TASKS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 
-BRIEF = ["--episodes", "3", "--minutes", "0.5", "--n-leaders", "0-1"]
+BRIEF = ["--episodes", "3", "--minutes", "0.5"]
+UP_TO_ONE = ["--n-leaders", "0-1"]
 SHORT = [*BRIEF, "--set", "n_boats=8"]
 NARROW = [*SHORT, "--pool", "narrow"]
 
@@ -67,7 +68,7 @@ def test_ones_own_policy_comes_first_and_has_a_card(cli, tmp_path: Path) -> None
 
 
 def test_saved_parameters_compare_the_same_again(cli, tmp_path: Path) -> None:
-    first = cli("compare", *NARROW, "--json", "--out", tmp_path / "a")
+    first = cli("compare", *NARROW, *UP_TO_ONE, "--json", "--out", tmp_path / "a")
     found = json.loads(first.stdout)
     means = [(row["policy"], row["leaders"]) for row in found["means"]]
     assert means == [("no leaders", 0), *((name, 1) for name in REFERENCES[1:])]
@@ -76,7 +77,9 @@ def test_saved_parameters_compare_the_same_again(cli, tmp_path: Path) -> None:
     assert (row["policy"], row["reference"], row["n"]) == (*REFERENCES[1:], 3)
     params = tmp_path / "a" / "narrow-bw-0.45.toml"
     assert flockenv.FlockParameters.from_toml(params.read_text()).pool == "narrow"
-    again = cli("compare", "--params", params, *BRIEF, "--json", "--out", tmp_path / "b")
+    again = cli(
+        "compare", "--params", params, *BRIEF, *UP_TO_ONE, "--json", "--out", tmp_path / "b"
+    )
     assert json.loads(again.stdout) == found
 
 
@@ -129,7 +132,7 @@ def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path
 
 def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
     arguments = ["--set", "pool=[90.0, 30.0]", "--set", "bw_s=0.3", "--out", str(tmp_path)]
-    done = cli.succeeds("compare", *SHORT, *arguments, "--quiet")
+    done = cli.succeeds("compare", *SHORT, *UP_TO_ONE, *arguments, "--quiet")
     assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
     assert REFERENCES[2] in done.stdout
     assert "tuned" not in done.stdout
@@ -138,7 +141,7 @@ def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
 def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
     own = tmp_path / "a_policy_with_a_rather_long_name_of_its_own.json"
     flockenv.policies.load("learned", pool="wide").save(own)
-    done = cli("compare", *SHORT, "-q", "--out", tmp_path / "out", "--policy", own)
+    done = cli("compare", *SHORT, *UP_TO_ONE, "-q", "--out", tmp_path / "out", "--policy", own)
     table, _ = done.stdout.split("Written to")
     assert max(map(len, table.splitlines())) <= 80
     assert "…" not in table
@@ -159,6 +162,7 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--policy", "{}/broken.npz"], "broken.npz"),
         (["--policy", "{}/missing.npz"], "missing.npz"),
         (["--only"], "without --policy"),
+        (["--policy", "damped law", "--n-leaders", "0"], "nobody is steered"),
         (["--n-leaders", "3-1"], "as in 0-4 or 1,3"),
         (["--n-leaders", "0-99999999"], "at most 64"),
         (["--n-leaders", "0,1", "--env", "dropout_rate=0.1"], "options dropout_rate"),
@@ -177,7 +181,8 @@ def test_errors_are_one_line_with_exit_code_2(
 ) -> None:
     (tmp_path / "broken.npz").write_bytes(b"PK nothing")
     given = [each.replace("{}", str(tmp_path)) for each in arguments]
-    brief = [] if "--suite" in arguments else ["--minutes", "0.5", "--n-leaders", "1,2"]
+    brief = [] if "--suite" in arguments else ["--minutes", "0.5"]
+    brief += [] if {"--suite", "--n-leaders"} & {*arguments} else ["--n-leaders", "1,2"]
     done = cli("compare", *brief, *given, "--out", tmp_path / "out")
     assert done.returncode == 2, done.stderr
     assert words in done.stderr.replace("\n", " ")

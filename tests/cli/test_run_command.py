@@ -92,7 +92,7 @@ def test_replay_draws_a_moving_picture(cli, run, tmp_path):
 
 def test_replay_draws_two_side_by_side(cli, run, tmp_path):
     shorter, both = tmp_path / "shorter.npz", tmp_path / "both.gif"
-    cli.succeeds("run", *SMALL, "--minutes", "0.1", "--seed", "4", "--out", shorter)
+    cli.succeeds("run", *SMALL[:-1], "0.1", "--seed", "4", "--out", shorter)
     draw = ("replay", run, shorter, "--gif", both, "--speed", "16")
     for colors in ("direction", "role"):
         cli.succeeds(*draw, "--name", "long", "--name", "short", "--colors", colors)

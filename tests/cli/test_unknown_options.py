@@ -55,6 +55,30 @@ def test_a_field_that_is_given_twice_is_refused(cli, tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("line", "twice"),
+    [
+        ("run --bw-s 0.2 --bw-s=0.3", "--bw-s"),
+        ("run --contacts --no-contacts", "--contacts"),
+        ("analyze a.npz --json --out a.csv --out b.csv", "--out"),
+        ("compare --episodes 2 --policy learned --policy mine.npz --episodes 4", "--episodes"),
+        ("sweep a.toml --workers 1 --dry-run --workers 2", "--workers"),
+        ("train --seed 1 --seed 1", "--seed"),
+    ],
+)
+def test_an_option_of_one_value_that_is_given_twice_is_refused(cli, line, twice):
+    done = cli(*shlex.split(line))
+    assert (done.returncode, done.stderr.strip()) == (
+        2,
+        f"Error: {twice} is given twice: give it once",
+    )
+
+
+def test_flags_and_lists_may_come_twice(cli, tmp_path):
+    out = ["--n-boats", 3, "--minutes", "0.02", "--out", tmp_path / "a.npz"]
+    cli.succeeds("run", "-q", "--quiet", "--set", "c4=0.1", "--set", "c3=0.2", *out)
+
+
 def test_a_run_has_the_fields_that_are_named(cli, tmp_path):
     fields = ["--n-boats", "6", "--n-leaders", "2", "--pool", "(80, 30)", "--bw-s", "0.2"]
     out = tmp_path / "a.npz"

@@ -84,6 +84,7 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
         ([1], "straight ahead", {"mirror_to_target": True}, "a policy says it"),
         ([1], "straight ahead", {"observation": {}}, "a policy says it"),
         ([1], "straight ahead", {"autoreset_mode": "disabled"}, "the comparison says it"),
+        ([0], "straight ahead", {}, "nobody to steer"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(
@@ -203,6 +204,7 @@ def test_what_is_compared_may_be_gone_through_once(parameters: flockenv.FlockPar
         ({"policies": ["paper's law"]}, "policies must be a dictionary"),
         ({"policies": zip(["a"], ["paper's law"], strict=True)}, "policies must be a dictionary"),
         ({"environment": ["target"]}, "environment must be a dictionary"),
+        ({"progress": None}, "progress must be a function"),
     ],
 )
 def test_what_is_no_sequence_is_named(parameters, arguments, words) -> None:

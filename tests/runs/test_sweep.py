@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.runs.sweep import SweepSpec, load_sweep, read_sweep, run_sweep, to_xarray
 
 SPEC = """
@@ -105,12 +106,18 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
             'pool = "narrow"\n' + GRID,
             "narrow",
         ),
+        ('minutes = 1\nseeds = 1\npolicy = "damped law"\n' + GRID, "nobody is steered"),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(flockenv.ParameterError, match=words) as caught:
         read(tmp_path, text)
     assert "spec.toml" in str(caught.value)
+
+
+def test_flocks_without_leaders_are_what_a_policy_is_compared_with(tmp_path: Path) -> None:
+    text = 'minutes = 1\nseeds = 1\npolicy = "damped law"\n[[grid]]\nn_leaders = [0, 2]'
+    assert [run.policy for run in read(tmp_path, text).runs] == [EVERY_SUBSTEP, "damped law"]
 
 
 def test_a_missing_or_foreign_table_is_named(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from flockenv.runs.store import RunStore
 from flockenv.runs.workload import Shard, measure_workload
 
 PARAMETERS = flockenv.FlockParameters.preset("paper").replace(n_boats=8)
-NARROW = PARAMETERS.replace(pool="narrow")
+NARROW = PARAMETERS.replace(pool="narrow", n_leaders=1)
 SPECS = [RunSpec(parameters=PARAMETERS, seed=seed, duration_s=60.0) for seed in range(300)]
 
 

@@ -147,6 +147,19 @@ def test_fragments_that_would_fill_the_memory_are_refused():
     assert read_and_counted(table[:2000], OPEN)[1].lone == 2000
 
 
+@pytest.mark.parametrize("names", [("a", "A"), ("Boat 01", "boat 1"), ("é", "e\u0301")])
+def test_one_name_in_two_spellings_is_refused(names):
+    with pytest.raises(flockenv.ParameterError, match="never in one frame, and differ in case"):
+        read_tracks(line(id=np.repeat(names, 15), frame=np.arange(30)), OPEN)
+    # Two boats that are there at once are two.
+    assert len(read_tracks(line(id=np.tile([*names, "b"], 10)), OPEN).ids) == 3
+
+
+def test_a_report_is_a_function(seen):
+    with pytest.raises(TypeError, match="report must be a function, not None"):
+        read_tracks(seen.table, LAYOUT, None)
+
+
 def test_names_are_sorted_as_numbers():
     recording = read_tracks(line(id=np.tile([10, 2, 1], 10)), OPEN)
     assert recording.ids.tolist() == ["1", "2", "10"]

@@ -64,6 +64,7 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
     n, time = len(recording), recording.time_s
     gone = recording.pose.copy()
     gone[3, 1, 0] = np.nan
+    far = np.full_like(recording.pose, 1e300)
     contacts = recording.contacts
     toml = recording.parameters.to_toml()
     return {
@@ -86,6 +87,8 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "velocities without end": {"velocity": np.full_like(recording.velocity, np.inf)},
         "fewer poses": {"pose": recording.pose[:-1]},
         "poses of more boats": {"pose": np.zeros((n, 6, 3))},
+        "poses out of reach": {"pose": far},
+        "velocities out of reach": {"velocity": -far},
         "poses in whole numbers": {"pose": recording.pose.astype(np.int64)},
         "velocities in single precision": {"velocity": recording.velocity.astype(np.float32)},
         "unknown phases": {"phase": np.full(n, "fwd")},
@@ -93,6 +96,8 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "phases that are not there": {"phase": np.full(n, "", "<U4")},
         "a window in numbers": {"in_analysis_window": np.zeros(n)},
         "an order that is no number": {"order_psi_o": np.full(n, np.nan)},
+        "an order above its range": {"order_psi_o": np.full(n, 1.5)},
+        "an angle below its range": {"order_phi_v": np.full(n, -4.0)},
         "an order without end": {"order_phi_o": np.full(n, np.inf)},
         "a longer order": {"order_psi_o": np.zeros(n + 1)},
         "an order in single precision": {"order_psi_o": np.zeros(n, np.float32)},
