@@ -225,7 +225,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
             largest_cluster = np.zeros(len(orders["psi_o"]))
         return STATES[_core.collective_states(orders, speed_cm_s, largest_cluster)]
 
-    def ordering_time(self, time_s: NDArray[np.float64], within: float = math.pi / 20.0) -> float:
+    def ordering_time(self, time_s: ArrayLike, within: float = math.pi / 20.0) -> float:
         """Return the ordering time τ of a run, eq. (7), in s; infinite if the run does not order.
 
         It is the first time at which Ψ_o > 0.8 and ||φ_o| - π/2| < `within`, if mean Ψ_o over the
@@ -243,7 +243,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
         ParameterError
             For times of another length.
         """
-        return _core.ordering_time_s(self._orders(), time_s, within)
+        return _core.ordering_time_s(self._orders(), with_gaps(time_s, "time_s"), within)
 
     def plot(
         self, *names: str, target: str | Sequence[str] = "cw", ax: "Axes | None" = None

@@ -57,6 +57,7 @@ _SAID_BY = {
     **dict.fromkeys(("observation", "mirror_to_target"), "a policy"),
     "episode_s": "duration_s",
     **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
+    **dict.fromkeys(("num_envs", "reward", "reward_horizon_s"), "the comparison"),
 }
 """What says options of environments that a comparison does not take."""
 

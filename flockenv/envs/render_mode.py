@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from flockenv.errors import ParameterError, shown
-from flockenv.rendering.frames import frame, renderer
+from flockenv.rendering.frames import DEFAULT_SIZE, frame, renderer
 from flockenv.rendering.window import Window, require_pygame
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class RenderMode:
         self._shown_s: float | None = None
         self._closed = False
         # Wrong sizes and missing extras are named before anything is simulated.
-        if mode is not None:
+        if mode is not None or self.size != DEFAULT_SIZE:
             renderer(*self.size)
         if mode == "human":
             require_pygame()

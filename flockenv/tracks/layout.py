@@ -179,7 +179,7 @@ class TrackLayout:
             raise ParameterError("confidence and least_confidence need each other")
         count, (radius, shape) = len(self.leaders), self.hull
         try:
-            FlockParameters(
+            flock = FlockParameters(
                 n_boats=count + 1,
                 n_leaders=count,
                 pool=self.pool,
@@ -189,6 +189,9 @@ class TrackLayout:
             )
         except TypeError as error:
             raise ParameterError(str(error)) from error
+        # An iterator has been gone through.
+        object.__setattr__(self, "pool", flock.pool)
+        object.__setattr__(self, "target", flock.target)
 
     @property
     def is_wide(self) -> bool:

@@ -175,9 +175,13 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
         x=used["x"] / layout.cm_per_unit + layout.center[0],
         y=up * used["y"] / layout.cm_per_unit + layout.center[1],
     )
-    counts = used.value_counts(["id", "x", "y"]).reset_index().drop_duplicates("id")
+    counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10
-    counts = counts[(counts["count"] >= _STUCK) & (counts["count"] >= share)]
+    # Two boats are never at one point.
+    shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
+    is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
+    counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
+    counts = counts.drop_duplicates("id")
     return {str(n): (float(x), float(y), int(c)) for n, x, y, c in counts.itertuples(index=False)}
 
 

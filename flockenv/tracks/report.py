@@ -32,8 +32,8 @@ class TrackReport:
         move ahead, and small or negative if axes, units or directions are wrong; NaN if nothing
         moves.
     stuck : dict of (float, float, int)
-        Boats that are at one point in at least 20 samples and a tenth of theirs: x and y in units
-        of the file, and the number of samples.
+        Boats that are at one point in at least 20 samples and a tenth of theirs, or at a point
+        where others are, too, at the time: x and y in units of the file, and the number of samples.
     held : dict of int
         Boats that move, and have one heading in at least 20 samples and any other in a tenth of
         them at most: the number of samples.

@@ -55,11 +55,13 @@ def text_of(path: Path) -> str:
 
 def _decoded(data: bytes) -> str:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return data.decode("utf-16")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp1252", "replace")
+        text = data.decode("utf-16")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def cells_of(text: str, layout: TrackLayout, count: int) -> list[list[str]]:
@@ -187,6 +189,8 @@ def column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
 
 def _other_mark(names: list[str]) -> str:
     """Return what separates names that were read as one."""
+    if names[0][:1] in ("#", "%", "/") and len(names) == 1:
+        return ": `skip` leaves out lines before the header, such as remarks"
     marks = [mark for mark in (";", "\t", "|", " ", ",") if len(names) == 1 and mark in names[0]]
     return f": the header looks like one with separator = {marks[0]!r}" if marks else ""
 

@@ -85,6 +85,7 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
         ([1], "straight ahead", {"observation": {}}, "a policy says it"),
         ([1], "straight ahead", {"autoreset_mode": "disabled"}, "the comparison says it"),
         ([0], "straight ahead", {}, "nobody to steer"),
+        ([1], "straight ahead", {"reward": {"jam": 1.0}}, "the comparison says it"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_first(

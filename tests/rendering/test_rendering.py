@@ -66,8 +66,9 @@ def test_frames_may_be_drawn_in_several_threads():
 def test_wrong_sizes(size):
     with pytest.raises((flockenv.ParameterError, TypeError), match=r"width|height"):
         rendering.frame(flock(), *size)
-    with pytest.raises((flockenv.ParameterError, TypeError), match=r"width|height"):
-        flockenv.LeadersEnv(render_mode="rgb_array", render_size=size, **SHORT)
+    for mode in (None, "rgb_array"):
+        with pytest.raises((flockenv.ParameterError, TypeError), match=r"width|height"):
+            flockenv.LeadersEnv(render_mode=mode, render_size=size, **SHORT)
     for pair in (600, size[:1], (*size, 3), None):
         with pytest.raises(flockenv.ParameterError, match="render_size"):
             flockenv.LeadersEnv(render_mode="rgb_array", render_size=pair, **SHORT)

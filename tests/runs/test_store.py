@@ -165,6 +165,21 @@ def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, store: RunStore) -
         assert store.load(spec) is None
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"specs": "abc"}, "specs must be a sequence"),
+        ({"workers": 0}, "workers = 0"),
+        ({"workers": 1.5}, "workers must be an integer"),
+        ({"progress": None}, "progress must be a function"),
+    ],
+)
+def test_runs_that_cannot_be_made_are_refused_first(spec, store, changes, words) -> None:
+    with pytest.raises((TypeError, flockenv.ParameterError), match=words):
+        run_missing(**{"specs": [spec], "store": store, **changes})
+    assert not store.path(spec).exists()
+
+
 def test_missing_runs_are_made_and_failures_cost_no_others(spec: RunSpec, store: RunStore) -> None:
     impossible = RunSpec(parameters=spec.parameters.replace(n_boats=900), seed=0, duration_s=30.0)
     seen: list[RunSpec] = []

@@ -234,6 +234,7 @@ def test_what_stands_for_no_number(seen, tmp_path, mark):
         (lambda text: text.replace("angle", "X_PX "), "'angle' is missing"),
         (lambda text: text + text, "other things than numbers: 'x_px' in line 11984"),
         (lambda _: "", "there is no header"),
+        (lambda text: "# made by a tracker\n" + text, "`skip` leaves out lines before the header"),
         (lambda text: "\n" + text, "there is no header"),
         (lambda text: text.split("\n", 1)[1], "column 'x_px' is missing; there are 0, boat1"),
         (

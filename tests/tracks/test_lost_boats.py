@@ -64,6 +64,16 @@ def test_a_point_in_the_water_is_said_and_can_be_left_out(seen):
     assert (found.order.psi_o == read_tracks(seen.table[~lost], LAYOUT).order.psi_o).all()
 
 
+def test_a_point_that_boats_share_is_said_sooner(seen):
+    table = seen.table.copy()
+    table.loc[table["frame"].between(300, 304) & table["track"].isin([*LOST]), ["x_px", "y_px"]] = (
+        512.0,
+        604.0,
+    )
+    _, report = read_and_counted(table, LAYOUT)
+    assert report.stuck == dict.fromkeys(LOST, (512.0, 604.0, 5))
+
+
 @pytest.mark.parametrize("number", [-1, 0])
 def test_a_heading_that_is_held_is_said_and_can_be_left_out(seen, number):
     table = seen.table.astype({"angle": float})

@@ -98,6 +98,21 @@ def test_mistakes_are_named(changes, words):
         recording_of(**(given | changes))
 
 
+def test_names_may_be_gone_through_once_and_are_in_an_order():
+    given = {"time_s": [0.0], "pose": np.full((1, 2, 3), 90.0) * [1, 0, 0], "pool": "narrow"}
+    of_lists = recording_of(**given, ids=["a", "b"], leaders=["b"], phase=["fw"])
+    found = recording_of(**given, ids=iter("ab"), leaders=iter("b"), phase=iter(["fw"]))
+    assert found == of_lists
+    for changes in ({"ids": {"a", "b"}}, {"ids": "ab"}, {"ids": {"a": 1}}, {"leaders": "0"}):
+        with pytest.raises(TypeError, match="must be a sequence"):
+            recording_of(**given, **changes)
+    layout = flockenv.tracks.TrackLayout(
+        pool=iter((90.0, 0.0)), target=iter(["cw"]), leaders=("a",)
+    )
+    assert (layout.pool, layout.target) == ((90.0, 0.0), ("cw",))
+    assert of_lists.order.ordering_time([0.0]) == np.inf
+
+
 def test_what_is_masked_is_not_there():
     pose = np.ma.masked_array(np.full((3, 2, 3), 90.0) * [1, 0, 0])
     pose[1, 0] = np.ma.masked
