@@ -170,7 +170,7 @@ class LeadersEnv(FixedOptions, EnvBase):
         return self._seen(self._batch.core.observe())
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
-        actions = tensordict.get((GROUP, "action")).detach().cpu().numpy()
+        actions = tensordict[GROUP, "action"].detach().cpu().numpy()
         shape = (self.num_flocks, self.num_leaders)
         each = shape if self.rudder_levels is not None else (*shape, 1)
         flat = _core.flat_actions(actions, each, self.rudder_levels, "the leaders' action")

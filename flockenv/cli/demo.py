@@ -8,6 +8,7 @@ from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
 from flockenv.cli.progress import progress
+from flockenv.errors import ParameterError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,6 +37,8 @@ def demo(options: DemoOptions) -> None:
     from flockenv.replay.demo import DEMO_POLICIES, demo_runs, live_demo, live_page
 
     out, seed, minutes = options.out, options.seed, options.minutes
+    if out.suffix.lower() != ".html":
+        raise ParameterError(f"--out {out} is not accepted: a name that ends in .html")
     prepare(out)
     if options.show and not options.as_json and (page := live_page()) is not None:
         write_text(out, live_demo(page, seed))

@@ -1,6 +1,6 @@
 """`flockenv replay`: recordings as a page that plays them, or as a moving picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 
 _FPS = {".gif": 12.5, ".mp4": 25.0}
+_OF_PICTURES = ("colors", "speed", "start", "seconds")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +49,12 @@ def replay(options: ReplayOptions) -> None:
         if path is not None and path.suffix.lower() != end:
             raise ParameterError(f"--{end[1:]} {path} is not accepted: a name that ends in {end}")
     pictures = [path for path in (options.gif, options.mp4) if path is not None]
+    for each in fields(options):
+        given = getattr(options, each.name) != each.default
+        if given and each.name in (("show",) if pictures else _OF_PICTURES):
+            where = "--gif and --mp4" if pictures else "a page, which has it itself"
+            name = "open" if each.name == "show" else each.name
+            raise ParameterError(f"--{name} is not accepted with {where}")
     if not pictures:
         _page(options)
     elif options.html is not None:

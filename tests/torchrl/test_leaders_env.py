@@ -63,6 +63,12 @@ def test_check_env_specs(options):
         assert not torch.equal(last, rollout["leaders", "observation"][:, decisions])
 
 
+def test_a_step_without_an_action_is_named():
+    env = made()
+    with pytest.raises(KeyError, match='"action" not found'):
+        env.step(env.reset())
+
+
 @pytest.mark.parametrize("state", ["boats", "features"])
 def test_the_bits_are_those_of_the_vector_environment(state):
     env, vector = made(state=state), native()
