@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import items, real_numbers, truth
+from flockenv._io.arguments import by_name, check_function, items, real_numbers, truth
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
@@ -136,6 +136,8 @@ def simulate(
     """
     if not isinstance(parameters, FlockParameters):
         raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
+    if progress is not None:
+        check_function(progress, "progress")
     seats = _seats(policy, parameters)
     changes = _changes(parameters, schedule, seed)
     functions = checked_functions({} if quantities is None else quantities)
@@ -193,8 +195,10 @@ class _Seat:
     held: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        self.is_mirrored = bool(getattr(self.policy, "mirror_to_target", False))
-        self.observation = dict(getattr(self.policy, "observation", None) or {})
+        mirrors = getattr(self.policy, "mirror_to_target", False)
+        self.is_mirrored = truth(mirrors, "a policy's mirror_to_target")
+        blocks = getattr(self.policy, "observation", None) or {}
+        self.observation = by_name(blocks, "a policy's observation")
 
     @property
     def title(self) -> str:
@@ -209,11 +213,21 @@ class _Seat:
             self.wait -= 1
             return self.held
         self.wait = self.period - 1
-        actions, self.state = self.policy.predict(observation[self.leaders], self.state)
+        returned = self.policy.predict(observation[self.leaders], self.state)
+        if not isinstance(returned, tuple) or len(returned) != 2:
+            raise ParameterError(
+                f"what a policy returns is not accepted: actions and a state, not {shown(returned)}"
+            )
+        actions, self.state = returned
         actions = real_numbers(actions, "what a policy returns")
         if np.ma.is_masked(actions):
             raise ParameterError(
                 "what a policy returns is not accepted: numbers, none of them masked"
+            )
+        if actions.size != len(self.leaders):
+            raise ParameterError(
+                f"what a policy returns has shape {actions.shape}, expected a rudder for each of "
+                f"{len(self.leaders)} leaders"
             )
         rudders = np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
         # A mirrored policy steers as if every target were clockwise.

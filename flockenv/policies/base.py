@@ -1,5 +1,6 @@
 """What a policy is, and what those share that steer each leader by its own observation."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -7,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv._io.arguments import real_numbers
+from flockenv._io.arguments import number, real_numbers
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, shown
@@ -51,13 +52,19 @@ CONTROL_HZ: float = OPTIONS["control_hz"].default
 def control_rate(policy: Any) -> float:
     """Return the control steps per second that a policy is made for: 10 if it does not say."""
     rate = getattr(policy, "control_hz", None)
-    return CONTROL_HZ if rate is None else float(rate)
+    return CONTROL_HZ if rate is None else _positive(rate, "control_hz")
 
 
 def decision_rate(policy: Any) -> float:
     """Return how often per second a policy decides: with each control step, if it has no period."""
     period: float | None = getattr(policy, "decision_period_s", None)
-    return control_rate(policy) if period is None else 1.0 / period
+    return control_rate(policy) if period is None else 1.0 / _positive(period, "decision_period_s")
+
+
+def _positive(value: Any, name: str) -> float:
+    if not 0.0 < number(value, name) < math.inf:
+        raise ParameterError(f"{name} = {shown(value)} of a policy is not accepted: above 0")
+    return float(value)
 
 
 def action_mode(policy: Any) -> str:

@@ -49,11 +49,7 @@ def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
 
 def text_of(path: Path) -> str:
     """Return a file as text: UTF-8 or UTF-16 by its mark, and what Windows wrote otherwise."""
-    text = _decoded(path.read_bytes())
-    return io.StringIO(text, newline=None).read()  # Old ones end lines with \r.
-
-
-def _decoded(data: bytes) -> str:
+    data = path.read_bytes()
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         text = data.decode("utf-16")
     else:

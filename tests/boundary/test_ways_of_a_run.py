@@ -23,6 +23,21 @@ class Held:
         return np.full(len(observation), self.rudder), state
 
 
+class Returns(Held):
+    """Whatever it is told."""
+
+    def predict(self, observation, state=None, episode_start=None):
+        return self.rudder
+
+
+class Says(Held):
+    """Attributes that say how it is made."""
+
+    def __init__(self, **attributes) -> None:
+        super().__init__(0.0)
+        vars(self).update(attributes)
+
+
 class Masked(Held):
     """The same, but masked."""
 
@@ -242,12 +257,49 @@ def test_a_mirrored_policy_follows_a_target_that_changes():
         ({"leader_0": Held(0.0), "leader_1": 7}, "policy = 7"),
         (Held(1j), "what a policy returns is not accepted: real numbers, not complex128"),
         (Held("0.5"), "what a policy returns is not accepted: real numbers, not <U"),
+        (Returns(np.zeros(2)), "actions and a state, not array"),
+        (Returns(None), "actions and a state, not None"),
+        (Returns((np.zeros(2), None, None)), "actions and a state, not"),
+        (
+            Returns((np.zeros(1), None)),
+            r"has shape \(1,\), expected a rudder for each of 2",
+        ),
+        (
+            Returns((np.zeros(3), None)),
+            r"has shape \(3,\), expected a rudder for each of 2",
+        ),
+        (Returns((0.5, None)), r"has shape \(\), expected a rudder for each of 2"),
+        (
+            Says(control_hz=0.0, decision_period_s=None),
+            "control_hz = 0.0 of a policy is not",
+        ),
+        (Says(decision_period_s=-1.0), "decision_period_s = -1.0 of a policy"),
         (Masked(0.5), "what a policy returns is not accepted: numbers, none of them masked"),
     ],
 )
 def test_policies_that_do_not_fit_the_leaders_are_refused(policy, words):
     with pytest.raises(ParameterError, match=words):
         simulate(PARAMETERS, 3, 2.0, policy=policy)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "words"),
+    [
+        ({"observation": "own"}, "a policy's observation must be a dictionary"),
+        ({"mirror_to_target": "yes"}, "a policy's mirror_to_target must be True or False"),
+        ({"control_hz": "10", "decision_period_s": None}, "control_hz must be a number"),
+        ({"decision_period_s": True}, "decision_period_s must be a number"),
+    ],
+)
+def test_what_policies_say_of_themselves_is_of_its_kind(attributes, words):
+    with pytest.raises(TypeError, match=words):
+        simulate(PARAMETERS, 3, 2.0, policy=Says(**attributes))
+
+
+@pytest.mark.parametrize("progress", [5, "yes", True, []])
+def test_progress_is_a_function(progress):
+    with pytest.raises(TypeError, match="progress must be a function, not"):
+        simulate(PARAMETERS, 3, 0.1, progress=progress)
 
 
 @pytest.mark.parametrize("control_hz", [5.0, -1.0, "often"])
