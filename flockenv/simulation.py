@@ -140,6 +140,9 @@ def simulate(
         check_function(progress, "progress")
     seats = _seats(policy, parameters)
     changes = _changes(parameters, schedule, seed)
+    for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
+        for seat in seats:
+            check_pool(seat.policy, pool)
     functions = checked_functions({} if quantities is None else quantities)
     if noise_seed is not None and not isinstance(start, bytes):
         raise ParameterError(

@@ -237,6 +237,7 @@ def run_episodes(
         The `QUANTITIES` and `ORDERING_TIMES` by name, one number per episode.
     """
     policy = as_policy(policy)
+    check_pool(policy, parameters.pool)
     if "action_mode" in options:
         check_action_mode(policy, options["action_mode"], "in this environment")
     control_hz = options.get("control_hz", control_rate(policy))

@@ -126,11 +126,11 @@ class Recording:
         if math.isnan(self.duration_s) and len(self.time_s) > 0:
             object.__setattr__(self, "duration_s", float(self.time_s[-1]))
         # Times are rounded to a nanosecond, and may lie beyond the end by that.
-        ends = np.array([0.0, *self.time_s[:1], *self.time_s[-1:], self.duration_s + 1e-9])
+        ends = [0.0, *self.time_s[:1], *self.time_s[-1:], self.duration_s + 1e-9, 1e9 + 1e-3]
         if not (np.diff(self.time_s) > 0).all() or not (np.diff(ends) >= 0).all():
             raise ParameterError(
-                "time_s must increase from 0 on, not beyond duration_s, and hold at least one time "
-                "if that is not given"
+                "time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at "
+                "least one time if that is not given"
             )
         normal_boats = self.parameters.n_boats - self.parameters.n_leaders
         for each in RECORDED:

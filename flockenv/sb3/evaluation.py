@@ -13,8 +13,9 @@ from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
 from flockenv._io.arguments import whole
 from flockenv.envs.spaces import ObservationSpace
+from flockenv.errors import ParameterError
 from flockenv.policies import ModelPolicy
-from flockenv.policies.base import check_action_mode
+from flockenv.policies.base import check_action_mode, check_pool
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.statistics import mean_interval
 
@@ -47,6 +48,7 @@ class PerFlock(VecEnvWrapper):
         self._leaders = np.bincount(leaders.flock_of_slot)
         self._first = np.cumsum(self._leaders) - self._leaders
         self.num_envs = leaders.num_flocks
+        self.pool = leaders._batch.parameters(0).pool
 
     def check_action_mode(self, model: Any) -> None:
         """Refuse a model that was trained with another action mode than the flocks have.
@@ -149,10 +151,14 @@ def evaluate_flocks(
     TypeError
         If `env` is no `LeaderVecEnv`.
     ParameterError
-        For a model that was trained with another action mode.
+        For a model that was trained with another action mode, or is made for another pool, and for
+        no episodes.
     """
     flocks = PerFlock(env)
     flocks.check_action_mode(model)
+    check_pool(model, flocks.pool)
+    if whole(n_eval_episodes, "n_eval_episodes") < 1:
+        raise ParameterError(f"n_eval_episodes = {n_eval_episodes} is not accepted: at least 1")
     if seed is not None:
         flocks.seed(seed)
     orders: list[float] = []

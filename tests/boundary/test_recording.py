@@ -149,6 +149,7 @@ def test_recordings_pickle_and_copy():
     {"time_s": RUN.time_s - 1},
     {"time_s": RUN.time_s[:0]},
     {"duration_s": 0.95},
+    {"duration_s": 1e300},
     {"duration_s": -1.0},
     {"phase": np.array(["up"] * 11)},
     {"phase": np.array(["up"] * 11, dtype="<U4")},

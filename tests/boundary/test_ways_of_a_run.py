@@ -76,6 +76,13 @@ def test_schedules_that_cannot_be_are_refused(schedule, words):
         simulate(PARAMETERS, 3, 2.0, schedule=schedule)
 
 
+def test_a_schedule_leads_no_policy_into_another_pool():
+    wide = PARAMETERS.replace(n_leaders=1, pool="wide")
+    for policy in ("learned", {"leader_0": flockenv.policies.load("learned", pool="wide")}):
+        with pytest.raises(ParameterError, match="made for pool = 'wide'"):
+            simulate(wide, 3, 2.0, policy=policy, schedule=[(1.0, {"pool": "narrow"})])
+
+
 @pytest.mark.parametrize("schedule", [{1.0: {"bw_s": 2.0}}, "bw_s", 7, {(1.0, "bw_s")}])
 def test_schedules_are_sequences(schedule):
     with pytest.raises(TypeError, match="schedule must be a sequence"):

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.comparison import NO_LEADERS, Case, compare_leaders
+from flockenv.comparison import NO_LEADERS, Case, compare_leaders, run_episodes
 from flockenv.comparison.suite import tasks_named
 from flockenv.policies import load
 from flockenv.policies.registry import POLICIES
@@ -220,3 +220,5 @@ def test_leaders_of_another_pool_are_refused(parameters, tmp_path) -> None:
         for given in (policy, {"leader_0": policy}):
             with pytest.raises(flockenv.ParameterError, match=r"'narrow'.*pool = 'wide'"):
                 compare_leaders(parameters, [1], {"mine": given}, [1], 1.0)
+    with pytest.raises(flockenv.ParameterError, match=r"'narrow'.*pool = 'wide'"):
+        run_episodes(parameters.replace(n_leaders=1), load("learned", pool="wide"), [1], 1.0)

@@ -13,10 +13,10 @@ from stable_baselines3.common.evaluation import evaluate_policy  # noqa: E402
 from stable_baselines3.common.monitor import load_results  # noqa: E402
 from stable_baselines3.common.vec_env import VecNormalize  # noqa: E402
 
-from flockenv import FlockParameters  # noqa: E402
+from flockenv import FlockParameters, ParameterError  # noqa: E402
 from flockenv.comparison import run_episodes  # noqa: E402
 from flockenv.envs.registration import ENTRY_POINT  # noqa: E402
-from flockenv.policies import SteeringLaw  # noqa: E402
+from flockenv.policies import SteeringLaw, load  # noqa: E402
 from flockenv.sb3 import (  # noqa: E402
     FlockEvalCallback,
     FlockMonitor,
@@ -114,6 +114,16 @@ def test_other_environments_are_refused():
             evaluate_flocks(SteeringLaw(), env)
     with pytest.raises(TypeError, match="seed must be an integer"):
         FlockEvalCallback(flockenv.sb3.LeaderVecEnv(**OPTIONS), seed="1")
+
+
+def test_evaluations_of_nothing_and_of_leaders_of_another_pool_are_refused():
+    for episodes in (0, -1):
+        with pytest.raises(ParameterError, match="n_eval_episodes"):
+            evaluate_flocks(SteeringLaw(), make(1), episodes)
+    law = load("learned", pool="wide")
+    options = {"action_mode": law.action_mode, "decision_period_s": law.decision_period_s}
+    with pytest.raises(ParameterError, match="made for pool = 'wide'"):
+        evaluate_flocks(law, make(1, observation=law.observation, **options), 1)
 
 
 def test_callback_evaluates_flocks_and_keeps_the_best(tmp_path):

@@ -76,6 +76,7 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "a list of policies": {"policy": np.array(["a", "b"])},
         "a signed seed": {"seed": np.array(3, np.int64)},
         "a duration in single precision": {"duration_s": np.array(6.0, np.float32)},
+        "a duration without end": {"duration_s": np.array(1e300)},
         "two durations": {"duration_s": np.array([6.0, 6.0])},
         "times that run backwards": {"time_s": time[::-1].copy()},
         "times that stand still": {"time_s": np.where(time > 3, 3.0, time)},
