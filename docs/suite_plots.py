@@ -1,19 +1,28 @@
 """The plots of the page about the suite."""
 
-from collections.abc import Mapping
-
 from committed_data import Row, rows
-from interval_plots import Interval, Plot, grouped
-from matplotlib.axes import Axes
+from interval_plots import Interval, Plot, colors_of, grouped
 from matplotlib.figure import Figure
 
 SCORES = "suite/v2.csv"
-BASELINES = "suite/baselines.csv"
-ALGORITHMS = {"PPO": "ppo", "evolution": "evolution", "IPPO": "ippo", "MAPPO": "mappo"}
-"""Algorithms by their words; the rows of their policies are named ALGORITHM-FLOCK_HOURS-SEED."""
-BUDGETS = {"1000": "0.15", "100": "0.6"}
-"""The color of each budget in flock-hours."""
+GRID = "suite/grid.csv"
+ALGORITHMS = {
+    "ppo": "PPO",
+    "trpo": "TRPO",
+    "evolution": "evolution",
+    "recurrent-ppo": "recurrent PPO",
+    "sac": "SAC",
+    "ippo": "IPPO",
+    "mappo": "MAPPO",
+}
+INPUTS = {
+    "lean-linear": "lean features, linear",
+    "lean-network": "lean features, network",
+    "default-network": "default observation, network",
+}
 IMPROVED = "probability of improvement"
+SHIFT = 0.27
+"""Between the inputs of an algorithm."""
 
 
 def scores(figure: Figure) -> None:
@@ -30,34 +39,32 @@ def scores(figure: Figure) -> None:
     right.set(title="all tasks", xlabel=IMPROVED.replace(" of ", "\nof "))
 
 
-def baselines(figure: Figure) -> None:
-    """Draw the scores of every trained policy: a panel for each task and for all of them."""
-    found = {(row["policy"], row["task"]): row for row in rows(BASELINES)}
-    *tasks, middle, improved = dict.fromkeys(task for _, task in found)
-    panels = figure.subplots(4, 2, sharey=True)
-    shown = [_ends(row) for (_, task), row in found.items() if task != improved]
-    ends = (min(low for _, low, _ in shown), max(high for _, _, high in shown))
-    for axes, task in zip(panels.flat, [middle, improved, *tasks], strict=True):
-        _of_task(axes, {name: row for (name, other), row in found.items() if other == task})
-        axes.axvline(0.5 if task == improved else 0.0, color="0.4", lw=1)
-        axes.set_title(task)
-        if task != improved:
-            axes.set_xlim(*ends)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    budgets = {f"{hours} flock-hours": handles[labels.index(f"{hours}-0")] for hours in BUDGETS}
-    figure.legend(budgets.values(), budgets, loc="outside lower center", ncols=2)
-
-
-def _of_task(axes: Axes, found: Mapping[str, Row]) -> None:
-    series = {
-        f"{hours}-{seed}": {
-            words: _ends(found[f"{name}-{hours}-{seed}"]) for words, name in ALGORITHMS.items()
+def grid(figure: Figure) -> None:
+    """Draw the scores of each algorithm with each input: means, and the seeds as dots."""
+    panels = figure.subplots(1, 2, sharey=True)
+    found = {words: rows(GRID, input=name) for name, words in INPUTS.items()}
+    colors = colors_of(found)
+    for axes, what, reference in zip(panels, ("iqm", "improvement"), (0.0, 0.5), strict=True):
+        names = (what, f"{what}_low", f"{what}_high")
+        means = {
+            words: {
+                ALGORITHMS[row["algorithm"]]: tuple(float(row[name]) for name in names)
+                for row in own
+                if row["seed"] == "mean"
+            }
+            for words, own in found.items()
         }
-        for hours in BUDGETS
-        for seed in range(3)
-    }
-    colors = {name: BUDGETS[name.partition("-")[0]] for name in series}
-    grouped(axes, series, colors, shift=0.13)
+        grouped(axes, means, colors, reference, SHIFT)
+        for place, (words, own) in enumerate(found.items()):
+            seeds = [row for row in own if row["seed"] != "mean"]
+            at = [
+                [*ALGORITHMS].index(row["algorithm"]) + SHIFT * (place - 1) + 0.09 for row in seeds
+            ]
+            axes.plot([float(row[what]) for row in seeds], at, ".", ms=4, color=colors[words])
+    panels[0].set(xlabel="interquartile mean beyond the tuned law")
+    panels[1].set(xlabel=IMPROVED)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=9)
 
 
 def _ends(row: Row) -> Interval:
@@ -66,6 +73,6 @@ def _ends(row: Row) -> Interval:
 
 PLOTS = {
     "suite/scores.png": Plot([SCORES], scores, (8.4, 5.0)),
-    "suite/baselines.png": Plot([BASELINES], baselines, (8.4, 10.0)),
+    "suite/grid.png": Plot([GRID], grid, (8.4, 6.4)),
 }
 """How each is drawn, by its file below docs."""

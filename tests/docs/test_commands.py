@@ -126,7 +126,6 @@ def test_commands_are_found():
         "docs/sweep-example.toml",
         "docs/leaders/tuned_laws/gains.toml",
         "src/policies/learned/wide.json",
-        "baselines/suite/100/ppo-100-0.json",
     }
 
 
