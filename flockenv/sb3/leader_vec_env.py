@@ -287,10 +287,10 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
     def _chosen(self, indices: Any) -> list[int]:
-        """Return the numbers of slots; a ParameterError refuses what is none."""
+        """Return the numbers of slots; an error names what is none."""
         chosen = [whole(each, "indices") for each in items(self._get_indices(indices), "indices")]
         if any(not -self.num_envs <= slot < self.num_envs for slot in chosen):
-            raise ParameterError(
+            raise IndexError(
                 f"indices = {shown(indices)} are not accepted: slots 0 to {self.num_envs - 1}"
             )
         return chosen

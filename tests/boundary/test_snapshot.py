@@ -55,12 +55,6 @@ def test_a_snapshot_of_other_parameters_is_refused():
     assert flock.snapshot() == SNAPSHOT
 
 
-@pytest.mark.parametrize("value", [None, "text", 3, [1, 2], bytearray(SNAPSHOT)])
-def test_what_is_no_bytes_is_a_type_error(value):
-    with pytest.raises(TypeError, match="snapshot"):
-        moving().restore(value)
-
-
 def checksum(body: bytes) -> bytes:
     return zlib.crc32(body).to_bytes(8, "little")
 
