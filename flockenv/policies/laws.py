@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
+from flockenv._io.arguments import number
 from flockenv._io.atomic_write import write_text
 from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
@@ -167,7 +168,8 @@ class DampedLaw(LawPolicy):
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
-        law = _core.Law.damped(gain, backward_gain, damping)
+        given = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
+        law = _core.Law.damped(*(number(value, name) for name, value in given.items()))
         super().__init__(law, observation, mirror_to_target)
 
     @classmethod

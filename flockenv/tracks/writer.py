@@ -12,7 +12,7 @@ from flockenv import _core
 from flockenv._io.arguments import truth
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 
@@ -54,6 +54,8 @@ def export(
         raise ParameterError(
             f"path = {os.fspath(path)!r} is not accepted: a name that ends in {', '.join(EXPORTS)}"
         )
+    if not isinstance(recording, Recording):
+        raise TypeError(f"recording must be a Recording, not {shown(recording)}")
     if len(recording) == 0 or not recording.has_poses:
         raise ParameterError("this recording holds no poses to export")
     if ending == ".gsd":

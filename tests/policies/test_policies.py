@@ -159,6 +159,10 @@ def test_a_law_steers_in_the_core_as_it_does_from_observations(law):
 def test_gains_are_finite(gain, place):
     gains = [1.0, 2.0, 3.0]
     assert [*DampedLaw(*gains).gains.values()] == gains
+    for other in (True, "1", None, 1j):
+        gains[place] = other
+        with pytest.raises(TypeError, match="(gain|damping) must be a number"):
+            DampedLaw(*gains)
     gains[place] = gain
     with pytest.raises(flockenv.ParameterError, match="a finite number"):
         DampedLaw(*gains)
