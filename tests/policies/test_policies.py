@@ -161,7 +161,7 @@ def test_gains_are_finite(gain, place):
     assert [*DampedLaw(*gains).gains.values()] == gains
     for other in (True, "1", None, 1j):
         gains[place] = other
-        with pytest.raises(TypeError, match="(gain|damping) must be a number"):
+        with pytest.raises(TypeError, match=r"(gain|damping) must be a number"):
             DampedLaw(*gains)
     gains[place] = gain
     with pytest.raises(flockenv.ParameterError, match="a finite number"):

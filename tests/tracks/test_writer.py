@@ -92,6 +92,6 @@ def test_other_endings_and_runs_without_poses_are_refused(seen, tmp_path):
         export(seen.truth, tmp_path / "run.xlsx")
     with pytest.raises(flockenv.ParameterError, match="no poses to export"):
         export(seen.truth.without_poses(), tmp_path / "run.csv")
-    with pytest.raises(TypeError, match="recording must be a Recording, not 'run.npz'"):
+    with pytest.raises(TypeError, match="recording must be a Recording"):
         export("run.npz", tmp_path / "run.csv")
     assert not list(tmp_path.iterdir())
