@@ -22,7 +22,7 @@ from claim import (
     write_claims,
 )
 from study import COLORS, Options, curve, main, picture, write
-from transition_runs import AFTER_MIN, LITERAL, LONG, STARTED, STUDY
+from transition_runs import AFTER_MIN, C4, LITERAL, LONG, STARTED, STUDY
 
 from flockenv.statistics import kaplan_meier
 
@@ -134,6 +134,19 @@ def bistable(table: pd.DataFrame) -> Claims:
     return claims
 
 
+def side_by_side(table: pd.DataFrame) -> Claims:
+    """Judge whether jams last beside rotation in one flock, two hours after a split or longer."""
+    claims = Claims("5.2", "")
+    jams = table[table["start"] == "one-jam"]
+    both = jams.assign(both=(abs(jams["m"]) >= 0.5) & (jams["in_jams"] >= 0.1))
+    for (coverage, n), runs in both.groupby(["coverage", "n_boats"]):
+        claims.reading = f"leapfrog, white c4 = {C4[0]:g}, dt = 0.1 s, coverage {coverage:g}"
+        quantity = "runs that end with |m| of at least 0.5 and a tenth of the boats in jams"
+        count, of = int(runs["both"].sum()), len(runs)
+        claims.exists("Jams last beside rotation in one flock", quantity, count, of, n=f"{n:g}")
+    return claims
+
+
 def _turned(table: pd.DataFrame) -> pd.Series:
     """Return whether runs end in the state that they did not start in."""
     rotates = abs(table["m"]) >= 0.5
@@ -173,7 +186,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.step(x, y, where="post", color=COLORS[place], label=label)
 
     shown = (table["dt_s"] == 0.1) | (table["scheme"] == "paper")
-    noises = list(table[shown & (table["coverage"] == 0.5)].groupby(["scheme", "c4"]))
+    noises = _by_noise(table[shown & (table["coverage"] == 0.5)])
     _panels(options, "transition", noises, lifetimes, "time (min)", "still {}")
 
 
@@ -188,18 +201,43 @@ def draw_map(options: Options, name: str, table: pd.DataFrame, up: str) -> None:
         curve(axes, x, found, **style)
 
     white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
-    noises = list(white.groupby(["scheme", "c4"]))
-    _panels(options, name, noises, shares, "wall coverage", up)
+    _panels(options, name, _by_noise(white), shares, "wall coverage", up)
+
+
+def draw_long(options: Options, table: pd.DataFrame) -> None:
+    """Draw the share of boats in jams at the end of runs that are followed for two hours."""
+    edges = np.linspace(0.0, 1.0, 11)
+
+    def histogram(axes: Any, place: int, n: float, runs: pd.DataFrame) -> None:
+        counts = np.histogram(runs["in_jams"], edges)[0] / len(runs)
+        axes.stairs(counts, edges, color=COLORS[place], label=f"n = {n:g}")
+
+    across = "share of boats in jams at the end"
+    coverages = [(f"coverage {each:g}", runs) for each, runs in table.groupby("coverage")]
+    _panels(options, "transition_long", coverages, histogram, across, "share of runs,\n{} first")
+
+
+def _by_noise(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return the runs of each noise with its name."""
+    return [
+        ("literal" if scheme == "paper" else f"c4 = {c4:g}", runs)
+        for (scheme, c4), runs in table.groupby(["scheme", "c4"])
+    ]
 
 
 def _panels(
-    options: Options, name: str, noises: list[Any], plot: Callable[..., None], across: str, up: str
+    options: Options,
+    name: str,
+    columns: list[tuple[str, pd.DataFrame]],
+    plot: Callable[..., None],
+    across: str,
+    up: str,
 ) -> None:
-    """Draw sizes apart, a column of panels for each noise; the first noise has all sizes."""
+    """Draw sizes apart, a column of panels for each noise or coverage; the first has all sizes."""
     with picture(options, name, height_cm=9.0) as figure:
-        panels = figure.subplots(2, max(len(noises), 1), sharex=True, sharey=True, squeeze=False)
-        for column, ((scheme, c4), group) in zip(panels.T, noises, strict=True):
-            column[0].set_title("literal" if scheme == "paper" else f"c4 = {c4:g}")
+        panels = figure.subplots(2, len(columns), sharex=True, sharey=True, squeeze=False)
+        for column, (title, group) in zip(panels.T, columns, strict=True):
+            column[0].set_title(title)
             column[1].set_xlabel(across)
             for axes, start in zip(column, STARTED, strict=True):
                 sizes = group[group["start"] == start].groupby("n_boats")
@@ -218,7 +256,7 @@ def script(options: Options) -> None:
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
     long = LONG.results(options)
     words = ", two hours after a split"
-    followed = judge(second(long), "second", words) if len(long) else []
+    followed = [*judge(second(long), "second", words), *side_by_side(long)] if len(long) else []
     claims = [*found["first"], *found["second"], *followed, *bistable(table)]
     write_claims(options, "transition", claims)
     if len(table):
@@ -227,6 +265,8 @@ def script(options: Options) -> None:
         draw_map(options, "transition_map_second", second(table), "starts {},\nends so")
         lines = answers(found).to_csv(index=False)
         write(options.out / "results" / "transition_answers.csv", lines.encode())
+    if len(long):
+        draw_long(options, long)
 
 
 if __name__ == "__main__":
