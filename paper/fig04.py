@@ -67,12 +67,11 @@ def script(options: Options) -> None:
         ):
             found = clearest(state, bw_s, 0.5 if options.trial else 16.0)
             axes.set_axis_off()
-            axes.set_title(f"{title}\nbw = {bw_s:g} s" if found else f"{title}: no frame")
+            axes.set_title(f"{title}: no frame")
             if found is not None:
                 snapshot(axes, *found)
-                axes.set_title(
-                    f"{title}\nbw = {bw_s:g} s, Ψ_o = {found[0].order.psi_o[found[1]]:.2f}"
-                )
+                psi_o = found[0].order.psi_o[found[1]]
+                axes.set_title(f"{title}\nbw = {bw_s:g} s, Ψ_o = {psi_o:.2f}")
 
 
 if __name__ == "__main__":

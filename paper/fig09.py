@@ -3,20 +3,7 @@
 import numpy as np
 import pandas as pd
 from claim import Claims, bca, critical_bw, fall, judging, mean
-from section4 import (
-    CCW,
-    CW,
-    FREE,
-    LOW_S,
-    READING,
-    SETUPS,
-    STUDY,
-    at,
-    over,
-    setup,
-    within,
-    words,
-)
+from section4 import CCW, CW, FREE, LOW_S, READING, SETUPS, STUDY, at, over, setup, within, words
 from study import PHI_EDGES, Options, density_map, histograms, main, picture
 
 
@@ -45,9 +32,7 @@ def judge(table: pd.DataFrame) -> Claims:
             least=lost[1],
             most=lost[2],
         )
-    ways_of = {CCW: "ccw", CW: "cw"}
-    for name in (CCW, CW):
-        way = ways_of[name]
+    for name, way in ((CCW, "ccw"), (CW, "cw")):
         ways = by[name].groupby("seed")[["cw", "ccw"]].sum()
         ways = ways[ways.sum(axis=1) > 0]
         claims.add(

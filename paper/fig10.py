@@ -90,15 +90,14 @@ def _peak(noises: list[float], drawn: Any) -> Any:
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw means with intervals, and each run as a point."""
     with picture(options, "fig10", height_cm=6.0) as figure:
-        for axes, color, name in zip(
-            figure.subplots(1, 3, sharey=True), COLORS, SETUPS, strict=False
-        ):
+        panels = figure.subplots(1, 3, sharey=True)
+        for axes, color, name in zip(panels, COLORS, SETUPS, strict=False):
             runs = setup(table, name)
             axes.plot(runs["bw_s"], runs["psi_o"], ".", color="0.7", markersize=2)
             groups = runs.groupby("bw_s")["psi_o"]
             curve(axes, groups.groups, [mean(each) for _, each in groups], color=color)
             axes.set(title=f"{name} ({runs['seed'].nunique()} runs each)", xlabel="bw (s)")
-        figure.axes[0].set_ylabel("mean Ψ_o")
+        panels[0].set_ylabel("mean Ψ_o")
 
 
 script = judging("fig10", STUDY, judge, draw)

@@ -43,16 +43,15 @@ def judge(table: pd.DataFrame) -> Claims:
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw each run and the means."""
     with picture(options, "fig12", width_cm=12.0, height_cm=6.0) as figure:
-        for axes, color, bw_s in zip(
-            figure.subplots(1, 2, sharey=True), COLORS, NOISES_S, strict=False
-        ):
+        panels = figure.subplots(1, 2, sharey=True)
+        for axes, color, bw_s in zip(panels, COLORS, NOISES_S, strict=False):
             runs = table[np.isclose(table["bw_s"], bw_s)]
             axes.plot(runs["n_leaders"], runs["psi_o"], ".", color="0.7", markersize=2)
             groups = runs.groupby("n_leaders")["psi_o"]
             curve(axes, groups.groups, [mean(each) for _, each in groups], color=color)
             axes.set(xlabel="leaders", ylim=(0, 1))
             axes.set_title(f"bw = {bw_s:g} s ({runs['seed'].nunique()} runs each)")
-        figure.axes[0].set_ylabel("mean Ψ_o")
+        panels[0].set_ylabel("mean Ψ_o")
 
 
 script = judging("fig12", STUDY, judge, draw)

@@ -61,13 +61,9 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
     """Draw the densities of each reading."""
     for e in evidence:
         with picture(options, f"fig14_{e.name}", height_cm=9.0) as figure:
-            image = None
             panels = figure.subplots(2, 2, sharex=True, sharey=True)
             for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
                 runs = e.of(n, k)
-                if not len(runs):
-                    axes.set_title(f"n = {n}, k = {k}: no runs yet")
-                    continue
                 groups = runs.groupby("bw_s")["phi_histogram"]
                 found = [histograms(each) for _, each in groups]
                 image = density_map(axes, list(groups.groups), PHI_EDGES, found, 8.0)
@@ -77,8 +73,7 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
                 axes.set_xlabel("bw (s)")
             for axes in panels[:, 0]:
                 axes.set_ylabel("φ_o")
-            if image is not None:
-                figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
+            figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
 
 script = judging_presets("fig14", judge, draw)

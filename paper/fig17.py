@@ -57,13 +57,9 @@ def judge(e: Evidence) -> Claims:
 def draw(options: Options, evidence: list[Evidence]) -> None:
     """Draw the densities of both presets."""
     with picture(options, "fig17", height_cm=9.0) as figure:
-        image = None
         panels = figure.subplots(2, 2, sharex=True)
         for (top, bottom), e in zip(panels.T, evidence, strict=True):
             runs = densities(e)
-            if runs["n_boats"].nunique() < 3:
-                top.set_title(f"{e.name}: no runs yet")
-                continue
             groups = runs.groupby("n_boats")
             for axes, column, edges, most in (
                 (top, "psi_histogram", PSI_EDGES, 8.0),
@@ -76,8 +72,7 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
             bottom.set_yticklabels(["−π/2", "0", "π/2"])
         panels[0, 0].set_ylabel("Ψ_o")
         panels[1, 0].set_ylabel("φ_o")
-        if image is not None:
-            figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
+        figure.colorbar(image, ax=panels, label="density over uniform", extend="max")
 
 
 script = judging_presets("fig17", judge, draw)

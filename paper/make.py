@@ -7,7 +7,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 FIGURES = (
-    *("noise_makes_motion", "fig04", "states", "fig05_06", "fig07", "fig08", "fig09", "fig10"),
+    *("noise_makes_motion", "fig04", "states", "fig07", "fig08", "fig09", "fig10"),
     *("fig11", "fig12", "fit", "fig14", "fig15", "fig16", "fig17"),
     *("headlines", "what_leaders_see", "sizes", "worth", "hysteresis", "transition"),
     "readings",

@@ -8,7 +8,7 @@ import fig16
 import fig17
 import numpy as np
 import pandas as pd
-from claim import Claims, Interval, write_claims
+from claim import Claims, Interval, mean, write_claims
 from section5 import PRESETS, READINGS, SERIES, STUDY, Evidence
 from study import COLORS, Options, main, picture, write
 
@@ -43,7 +43,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         for place, (color, (n, k)) in enumerate(zip(COLORS, SERIES, strict=False)):
             lost = [e.critical(n, k) for e in evidence]
             _bars(left, lost, 0.18 * (place - 1.5), color, f"{n} boats, {k} of them lead")
-        _bars(right, [fig17.mean(_jammed(e)) for e in evidence], 0.0, COLORS[2], "")
+        jams = [fig17.densities(e).query("n_boats == 50")["jammed"] for e in evidence]
+        _bars(right, [mean(each) for each in jams], 0.0, COLORS[2], "")
         left.axvspan(0.6, 0.8, color="0.9", zorder=0)
         left.set_yticks(range(len(names)), names)
         left.set(xlabel="bw at which order is lost (s); shaded: the paper's", ylim=(15.6, -0.6))
@@ -55,11 +56,6 @@ def _bars(axes: Any, found: list[Interval], shift: float, color: str, label: str
     value, low, high = np.array(found).T
     at = np.arange(len(value)) + shift
     axes.errorbar(value, at, xerr=[value - low, high - value], fmt="o", color=color, label=label)
-
-
-def _jammed(e: Evidence) -> np.ndarray:
-    runs = fig17.densities(e)
-    return runs.loc[runs["n_boats"] == 50, "jammed"].to_numpy()
 
 
 def script(options: Options) -> None:

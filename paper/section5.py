@@ -127,14 +127,12 @@ def draw_means(
     with picture(options, name, height_cm=9.0) as figure:
         panels = figure.subplots(2, 2, sharex=True, sharey=True)
         for axes, (n, k) in zip(panels.flat, SERIES, strict=True):
-            axes.set_title(f"n = {n}, k = {k}: no runs yet")
             for color, marker, e in zip(COLORS, "os", evidence, strict=False):
                 runs = e.of(n, k)
                 groups = runs.groupby("bw_s")[column]
-                if len(runs):
-                    found = [mean(each) for _, each in groups]
-                    curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
-                    axes.set_title(panel_title(n, k, runs))
+                found = [mean(each) for _, each in groups]
+                curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
+                axes.set_title(panel_title(n, k, runs))
             if column == "psi_o":
                 axes.axvspan(0.6, 0.8, color="0.9", zorder=0)
         shaded = "; shaded: where the paper has order lost" if column == "psi_o" else ""

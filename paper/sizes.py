@@ -113,7 +113,7 @@ def judge(found: dict[int, Interval], table: pd.DataFrame) -> Claims:
             pair = of(table, n, k, "learned") - of(table, n, k, "tuned law")
             claims.add(
                 "Learned leaders shift m more than those by the tuned law",
-                f"m, learned minus tuned law, paired by seed, k = {k}, bw = {_bw(found, n):g} s",
+                f"m, learned minus tuned law, paired by seed, k = {k}, bw = {found[n][0]:.2g} s",
                 mean(pair.dropna()),
                 least=0.0,
                 n=str(n),
@@ -127,10 +127,6 @@ def judge(found: dict[int, Interval], table: pd.DataFrame) -> Claims:
             n=", ".join(map(str, sizes)),
         )
     return claims
-
-
-def _bw(found: dict[int, Interval], n: int) -> float:
-    return round(found[n][0], 2)
 
 
 def draw(options: Options, found: dict[int, Interval], table: pd.DataFrame) -> None:
@@ -162,7 +158,7 @@ def script(options: Options) -> None:
         known = {n: Interval((0.31, 0.3, 0.32), 2) for n in BOATS[:2]}
     if not known:
         return
-    table = led({n: _bw(known, n) for n in known}).results(options)
+    table = led({n: round(each[0], 2) for n, each in known.items()}).results(options)
     write_claims(options, "sizes", judge(known, table))
     draw(options, known, table)
 

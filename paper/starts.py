@@ -46,8 +46,7 @@ def one_jam(parameters: flockenv.FlockParameters, seed: int) -> flockenv.Flock:
     outer_cm, inner_cm = RADII_CM[pool] if isinstance(pool, str) else pool
     radius_cm = parameters.boat_radius_cm
     core_cm = radius_cm * parameters.boat_shape
-    pose = np.empty((0, 3))
-    wall_cm = outer_cm
+    pose, wall_cm = np.empty((0, 3)), outer_cm
     while len(pose) < parameters.n_boats:
         center_cm = wall_cm - _ROOM * (core_cm + radius_cm)
         if center_cm - core_cm - radius_cm <= inner_cm:

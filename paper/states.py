@@ -1,17 +1,72 @@
-"""Figures 4 to 6 and Table 2: the states of a flock, how long they last, how it changes them."""
+"""Figures 5 and 6 and Table 2: the states of a flock, how long they last, how it changes them."""
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from claim import Claims, judging, mean
 from section4 import LOW_S, MEDIUM_S, READING, over, within, words
-from state_series import cycles, onset
 from study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
+
+import flockenv
+from flockenv.statistics.structure import structure_series
 
 LEVELS_S = (1.4, 1.9, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8)
 STATES = ("jamming", "clustering", "ordered", "disordered", "between")
+_STAYS = 3
+"""Cycles in a row for which a series stays above a level that it has reached."""
+
+
+def cycles(run: flockenv.Recording) -> pd.DataFrame:
+    """Return means over each analysis window, and its most frequent state."""
+    used = np.flatnonzero(run.in_analysis_window)
+    clusters = np.zeros(len(run.time_s))
+    clusters[used] = structure_series("largest_cluster", run.parameters, run.pose[used])
+    states = run.order.states(run.parameters.speed_cm_s, clusters)[used]
+    window = np.cumsum(np.diff(run.time_s[used], prepend=-10.0) > 1.0)
+    order = run.order
+    frames = pd.DataFrame(
+        {
+            "window": window,
+            "time_s": run.time_s[used],
+            "psi_o": order.psi_o[used],
+            "psi_v": order.psi_v[used],
+            "m": order.rotation()[used],
+            "outward": order.outward()[used],
+        }
+    )
+    found = frames.groupby("window").mean()
+    names = pd.Series([s.partition(" ")[0] for s in states]).groupby(window).agg(_most_frequent)
+    return found.assign(state=names.to_numpy())
+
+
+def _most_frequent(names: Any) -> str:
+    return str(names.value_counts().index[0])
+
+
+def onset(found: pd.DataFrame) -> Row:
+    """Return how much earlier Ψ_o is halfway to order than Ψ_v, and how long each rises (s).
+
+    Of runs whose second half rotates (mean |m| of at least 0.5). A series is halfway when it has
+    come half of the way from its first two cycles to its mean over the second half and stays
+    above for three cycles; it rises from a tenth to nine tenths.
+    """
+    late = found[len(found) // 2 :]
+    none = {"lead_s": math.nan, "rise_o_s": math.nan, "rise_v_s": math.nan}
+    if not abs(late["m"]).mean() >= 0.5:
+        return none
+    reached = {}
+    for name in ("psi_o", "psi_v"):
+        start, end = found[name][:2].mean(), late[name].mean()
+        way = ((found[name] - start) / (end - start)).to_numpy()
+        held = np.lib.stride_tricks.sliding_window_view(way, _STAYS).min(axis=1)
+        if held.max() < 0.9:
+            return none
+        reached[name] = [found["time_s"].iloc[int((held >= x).argmax())] for x in (0.1, 0.5, 0.9)]
+    o, v = reached["psi_o"], reached["psi_v"]
+    return {"lead_s": v[1] - o[1], "rise_o_s": o[2] - o[0], "rise_v_s": v[2] - v[0]}
 
 
 def design() -> list[Row]:
@@ -130,8 +185,37 @@ def judge(table: pd.DataFrame) -> Claims:
     return claims
 
 
+def median_run(table: pd.DataFrame, bw_s: float) -> pd.Series:
+    """Return the row of the run whose mean Ψ_o is the median of its level."""
+    runs = table[np.isclose(table["bw_s"], bw_s)].sort_values("psi_o")
+    return runs.iloc[len(runs) // 2]
+
+
+def draw_series(options: Options, table: pd.DataFrame) -> None:
+    """Draw figures 5 and 6: order parameters over time, of the median run of a level."""
+    for name, bw_s in {"fig05": 1.4, "fig06": 1.9}.items():
+        row = median_run(table, bw_s).to_dict()
+        row["n_leaders"] = int(row["n_leaders"])
+        found = cycles(simulated(row, sample_hz=5.0))
+        minutes = found["time_s"] / 60
+        with picture(options, name, height_cm=5.0) as figure:
+            left, middle, right = figure.subplots(1, 3, sharex=True)
+            left.plot(minutes, found["psi_o"], color=COLORS[0])
+            left.set(ylabel="Ψ_o", ylim=(0, 1))
+            middle.plot(minutes, np.arctan2(found["m"], found["outward"]), ".", color=COLORS[1])
+            middle.set(ylabel="φ_o", yticks=[-np.pi / 2, 0, np.pi / 2], ylim=(-3.2, 3.2))
+            middle.set_yticklabels(["−π/2", "0", "π/2"])
+            right.plot(minutes, found["psi_v"], color=COLORS[2])
+            right.set(ylabel="Ψ_v (cm/s)", ylim=(0, None))
+            for axes in (left, middle, right):
+                axes.set_xlabel("time (min)")
+            runs = int(np.isclose(table["bw_s"], bw_s).sum())
+            middle.set_title(f"bw = {bw_s:g} s, 27 boats, no leaders: the median of {runs} runs")
+
+
 def draw(options: Options, table: pd.DataFrame) -> None:
-    """Draw Table 2 as shares of states against noise."""
+    """Draw Table 2 as shares of states against noise, and figures 5 and 6."""
+    draw_series(options, table)
     with picture(options, "table2", width_cm=12.0, height_cm=6.5) as figure:
         axes = figure.subplots()
         for place, (state, marker) in enumerate(zip(STATES, "^vosD", strict=True)):

@@ -21,6 +21,7 @@ from claim import (
     unknown,
     write_claims,
 )
+from fig08 import slope
 from study import COLORS, Options, curve, main, picture, write
 from transition_runs import AFTER_MIN, C4, LITERAL, LONG, STARTED, STUDY
 
@@ -32,8 +33,7 @@ def second(table: pd.DataFrame) -> pd.DataFrame:
 
     A run that ends in its own state has not left it, though its jam may have split.
     """
-    rotates = abs(table["m"]) >= 0.5
-    own = rotates.where(table["start"] == "rotating", ~rotates & (table["in_jams"] >= 0.5))
+    own = _in(table, own=True)
     after = table.get("after_min", AFTER_MIN)
     ended = np.minimum(table["stayed_min"] + after * table["exited"], table["minutes"])
     return table.assign(
@@ -54,12 +54,10 @@ def doubling(table: pd.DataFrame, start: str) -> Interval:
     groups = [
         chosen.loc[chosen["n_boats"] == n, ["stayed_min", "exited"]].to_numpy() for n in sizes
     ]
-    x = np.log2(sizes)
 
     def factor(*runs: np.ndarray) -> np.ndarray:
         rates = [(each[..., 1].sum(-1) + 0.5) / each[..., 0].sum(-1) for each in runs]
-        slope = np.tensordot(x - x.mean(), np.log2(rates), 1) / ((x - x.mean()) ** 2).sum()
-        return np.asarray(2.0**slope)
+        return np.asarray(2.0 ** slope(list(np.log2(sizes)), [np.log2(each) for each in rates]))
 
     return bca(groups, factor)
 
@@ -121,7 +119,7 @@ def bistable(table: pd.DataFrame) -> Claims:
     """
     claims = Claims("5.2", "")
     white = table[(table["scheme"] == "leapfrog") & (table["dt_s"] == 0.1)]
-    other = white.assign(other=_turned(white))
+    other = white.assign(other=_in(white, own=False).astype(int))
     for n, runs in other.groupby("n_boats"):
         turned = runs.groupby(["c4", "coverage", "start"])["other"].agg(["sum", "size"])
         cells = (turned["sum"] / turned["size"]).unstack("start").min(axis=1)
@@ -147,11 +145,11 @@ def side_by_side(table: pd.DataFrame) -> Claims:
     return claims
 
 
-def _turned(table: pd.DataFrame) -> pd.Series:
-    """Return whether runs end in the state that they did not start in."""
+def _in(table: pd.DataFrame, own: bool) -> pd.Series:
+    """Return whether runs end in the state that they started in, or in the other one."""
     rotates = abs(table["m"]) >= 0.5
     jammed = ~rotates & (table["in_jams"] >= 0.5)
-    return rotates.where(table["start"] == "one-jam", jammed).astype(int)
+    return jammed.where((table["start"] == "one-jam") == own, rotates)
 
 
 def answers(found: Mapping[str, Claims]) -> pd.DataFrame:

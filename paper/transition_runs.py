@@ -1,6 +1,7 @@
 """The runs of the transition map: flocks followed from one jam and from rotation."""
 
 import math
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -16,6 +17,7 @@ LITERAL_C4 = 0.1 * math.sqrt(0.02)
 C4 = (round(LITERAL_C4, 4), 0.1, 0.03, 0.05, 0.02, 0.2)
 COVERAGES = (0.5, 0.3, 0.4, 0.7, 0.2, 1.0)
 """Of the whole map; at the lowest noise 0.35 and 0.25 are added."""
+WHITE: Row = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
 STARTED = {"one-jam": "in one jam", "rotating": "rotating"}
 _STARTS = {"one-jam": one_jam, "rotating": rotating}
 
@@ -40,23 +42,15 @@ def design() -> list[Row]:
     Between 0.25 and 0.4 at the lowest noise, and at 0.3 and c4 = 0.03, both states may last in
     flocks of up to 400: there are more runs. A finer step is run at 0.5.
     """
-    white = {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1}
     cells = [
-        (n, coverage, white | {"c4": c4})
+        (n, coverage, WHITE | {"c4": c4})
         for n in (100, 200, 400, 800)
         for coverage in (*COVERAGES, 0.35, 0.25)
         for c4 in (C4 if coverage in COVERAGES else C4[:1])
     ]
-    cells += [(n, 0.5, white | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
+    cells += [(n, 0.5, WHITE | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     return [
-        {
-            **noise,
-            "n_boats": n,
-            "coverage": coverage,
-            "start": start,
-            "minutes": 120.0,
-            "seed": seed,
-        }
+        _row(noise, n, coverage, start, seed)
         for n, coverage, noise in cells
         for seed in range(MORE_RUNS if _both_may_last(n, coverage, noise["c4"]) else RUNS)
         for start in STARTED
@@ -67,14 +61,19 @@ def literal_design() -> list[Row]:
     """Return runs with the literal noise, at three coverages and sizes."""
     literal = {"scheme": "paper", "noise_scheme": "per-step", "dt_s": 0.02, "c4": 0.1}
     return [
-        literal
-        | {"n_boats": n, "coverage": coverage, "start": start, "minutes": 120.0}
-        | {"seed": seed}
+        _row(literal, n, coverage, start, seed)
         for n in (100, 200, 400)
         for coverage in (0.5, 0.3, 0.7)
         for seed in range(RUNS)
         for start in STARTED
     ]
+
+
+def _row(
+    noise: Row, n: int, coverage: float, start: str, seed: int, minutes: float = 120.0, **more: Any
+) -> Row:
+    row = {**noise, "n_boats": n, "coverage": coverage, "start": start, "minutes": minutes}
+    return row | more | {"seed": seed}
 
 
 def _both_may_last(n_boats: int, coverage: float, c4: float) -> bool:
@@ -141,9 +140,7 @@ def _summary(samples: np.ndarray, exit_min: float) -> Row:
 def long_design() -> list[Row]:
     """Return runs near the line at the lowest noise, followed for two hours after a split."""
     return [
-        {"scheme": "leapfrog", "noise_scheme": "white", "dt_s": 0.1, "c4": C4[0], "n_boats": n}
-        | {"coverage": coverage, "start": start, "minutes": 240.0, "after_min": 120.0}
-        | {"seed": MORE_RUNS + seed}
+        _row(WHITE | {"c4": C4[0]}, n, coverage, start, MORE_RUNS + seed, 240.0, after_min=120.0)
         for n in (100, 200, 400, 800)
         for seed in range(RUNS)
         for coverage in (0.25, 0.3, 0.2)

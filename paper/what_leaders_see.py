@@ -24,25 +24,20 @@ BLOCKS, FLOCKS = 16, 32
 """Blocks of flocks; a run is a block with one policy."""
 FIRST = 100_000
 """Seeds that no other study of this folder has."""
-NEAR = ("near", "near_outward", "near_ahead")
 GROUPS: dict[str, tuple[str, ...]] = {
     "its place": ("radial_position", "near_outer_wall"),
     "its velocity": ("outward_velocity", "clockwise_velocity", "forward_velocity"),
     "the flock's headings": ("mean_cos_orientation", "mean_sin_orientation"),
     "the flock's velocity": ("mean_outward_velocity", "mean_clockwise_velocity"),
-    "where neighbors are": NEAR,
+    "where neighbors are": ("near", "near_outward", "near_ahead"),
     "neighbors' headings": ("near_opposed", "near_turned"),
     "neighbors' velocity": ("near_outward_velocity", "near_clockwise_velocity"),
     "headings by place": ("opposed_outward", "opposed_ahead", "turned_outward", "turned_ahead"),
     "the other leaders": ("leaders", "leaders_outward", "leaders_ahead"),
 }
-GROUPS["all of the neighbors"] = (
-    tuple(
-        name
-        for group in ("where neighbors are", "neighbors' headings", "neighbors' velocity")
-        for name in GROUPS[group]
-    )
-    + GROUPS["headings by place"]
+_OF_NEIGHBORS = ("where neighbors are", "neighbors' headings", "neighbors' velocity")
+GROUPS["all of the neighbors"] = tuple(
+    name for group in (*_OF_NEIGHBORS, "headings by place") for name in GROUPS[group]
 )
 """Features that are left out together."""
 FAULTS = {

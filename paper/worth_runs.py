@@ -67,7 +67,8 @@ def measure(row: Row) -> Row:
         target=tuple(sides) or "cw",
         pool="wide" if row["n_boats"] == DENSITY_BOATS else (180.0 * scale, 97.0 * scale),
     )
-    policy = None if row["policy"] == LAW or not sides else _policy(row["policy"])
+    by_law = row["policy"] == LAW or not sides
+    policy: Any = None if by_law else named_policy(row["policy"], "wide")()
     if isinstance(policy, flockenv.policies.LeaningLaw) and row["n_boats"] != DENSITY_BOATS:
         policy.pool = None  # It refuses other pools than its own, also those of the same shape.
     if policy is not None and row["against"]:
@@ -82,10 +83,6 @@ def measure(row: Row) -> Row:
     )
     m = run.analyzed(1 / 3).order.rotation()
     return {"m": m.mean(), "m_squared": (m**2).mean(), "abs_m": abs(m).mean()}
-
-
-def _policy(name: str) -> Any:
-    return named_policy(name, "wide")()
 
 
 STUDY = Study("worth", design, measure, lambda row: row["n_boats"] <= 100)
