@@ -75,7 +75,7 @@ def leader_curve(
 def _draw(axes: Axes, means: pd.DataFrame, shift: float, policy: str, color: str) -> None:
     means = means.sort_values("leaders")
     order = means["signed_order"]
-    ends = [order - means["signed_order_low"], means["signed_order_high"] - order]
+    ends = means[["signed_order_low", "signed_order_high"]].sub(order, axis=0).abs().to_numpy().T
     # Policies may have the names of files: a dollar sign there starts no formula, and a legend
     # leaves out what starts with an underscore.
     label = " " + policy[-40:].replace("$", r"\$")
