@@ -17,8 +17,7 @@ RADII_CM = {"wide": (180.0, 97.0), "narrow": (90.0, 48.5)}
 _STRETCH = 0.75
 """Largest part of the wall that the boats of one jam cover before they stand in several rows."""
 
-_ROOM = 1.001
-"""Distance of boats in a jam, over that at which their hulls touch."""
+_ROOM = 1.001  # Distance of boats in a jam, over that at which their hulls touch.
 
 
 def rotating(parameters: flockenv.FlockParameters, seed: int) -> flockenv.Flock:

@@ -47,6 +47,7 @@ def design() -> list[Row]:
         for n in (100, 200, 400, 800)
         for coverage in (*COVERAGES, 0.35, 0.25)
         for c4 in (C4 if coverage in COVERAGES else C4[:1])
+        if n < 800 or (coverage <= 0.5 and c4 == C4[0]) or (coverage, c4) == (0.5, 0.1)
     ]
     cells += [(n, 0.5, WHITE | {"c4": C4[0], "dt_s": 0.02}) for n in (100, 200)]
     return [
