@@ -71,7 +71,7 @@ impl Contact {
     /// Where the normal pushes the first hull: a point of its surface.
     pub fn point(&self, boat: &HullPose, hull: Hull) -> Vec2 {
         let Gap { along, normal, .. } = self.gap;
-        boat.center + boat.axis * along - normal * hull.radius_at(along)
+        boat.center + boat.axis * along - normal * hull.radius
     }
 
     /// Its boats, with the normal and the lever arm that the contact has for each.

@@ -22,20 +22,6 @@ impl Hull {
         }
     }
 
-    /// A segment without width.
-    pub(crate) fn segment(half_length: f64) -> Self {
-        Self {
-            radius: 0.0,
-            half_length,
-        }
-    }
-
-    /// Radius of the swept disc at a place along the core, from the center to the bow, in cm.
-    #[inline]
-    pub fn radius_at(&self, _along: f64) -> f64 {
-        self.radius
-    }
-
     /// What pictures draw it by, in cm, by name.
     pub fn lengths(&self) -> [(&'static str, f64); 2] {
         [

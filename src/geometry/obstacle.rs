@@ -192,7 +192,10 @@ fn join(obstacles: &mut [Obstacle]) {
 
 /// A wall is a hull of no radius.
 fn wall_hull(half_length: f64) -> Hull {
-    Hull::segment(half_length)
+    Hull {
+        radius: 0.0,
+        half_length,
+    }
 }
 
 /// The gap to a wall, which has no lever arm. Where a wall's end touches the flank, turning the boat either way brings
@@ -202,7 +205,7 @@ fn beside_wall(feature: Feature, gap: Gap, hull: Hull) -> Gap {
     Gap {
         arm_j: 0.0,
         bend: if is_flank {
-            -(gap.gap + hull.radius_at(0.0))
+            -(gap.gap + hull.radius)
         } else {
             0.0
         },
