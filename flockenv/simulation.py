@@ -224,9 +224,7 @@ class _Seat:
         actions, self.state = returned
         actions = real_numbers(actions, "what a policy returns")
         if np.ma.is_masked(actions):
-            raise ParameterError(
-                "what a policy returns is not accepted: numbers, none of them masked"
-            )
+            raise ParameterError("what a policy returns is not accepted: numbers, none masked")
         if actions.size != len(self.leaders):
             raise ParameterError(
                 f"what a policy returns has shape {actions.shape}, expected a rudder for each of "
@@ -245,8 +243,7 @@ def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameter
         only = _resolved(policy, parameters)
         if only is not None and k == 0:
             raise ParameterError(
-                f"policy = {shown(policy)} is not accepted: the flock has n_leaders = 0, so there "
-                "is nobody to steer"
+                f"policy = {shown(policy)} is not accepted: with n_leaders = 0 it steers nobody"
             )
         seats = [] if only is None else [_Seat(only, [*range(k)], is_alone=True)]
     else:

@@ -92,7 +92,7 @@ def test_rudders_are_held_between_control_steps(control_hz, mirrored):
 @pytest.mark.parametrize("policy", [Watching(), "learned", "paper's law"])
 def test_a_policy_without_leaders_is_refused(policy):
     unled = PARAMETERS.replace(n_leaders=0, pool="wide")
-    with pytest.raises(flockenv.ParameterError, match="n_leaders = 0, so there is nobody to steer"):
+    with pytest.raises(flockenv.ParameterError, match="with n_leaders = 0 it steers nobody"):
         simulate(unled, 3, 2.0, policy=policy)
     assert simulate(unled, 3, 2.0, policy={}) == simulate(unled, 3, 2.0)
 

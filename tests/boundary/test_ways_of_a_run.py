@@ -281,7 +281,7 @@ def test_a_mirrored_policy_follows_a_target_that_changes():
             "control_hz = 0.0 of a policy is not",
         ),
         (Says(decision_period_s=-1.0), "decision_period_s = -1.0 of a policy"),
-        (Masked(0.5), "what a policy returns is not accepted: numbers, none of them masked"),
+        (Masked(0.5), "what a policy returns is not accepted: numbers, none masked"),
     ],
 )
 def test_policies_that_do_not_fit_the_leaders_are_refused(policy, words):
