@@ -18,8 +18,8 @@ its "linear" actor is linear in them. The critic of MAPPO sees features of the w
 The design was committed before the first run:
 
 - Settings. One for each algorithm (`SETTINGS`), the same with all inputs. None is searched here.
-  The step, the exploration and the horizons of PPO are those of `flockenv train`, which were
-  searched with the first input (1500 flock-hours). TRPO has its horizons and exploration, too, and
+  PPO takes the step, the exploration and the horizons of `flockenv train`, once searched with the
+  first input (1500 flock-hours). TRPO has its horizons and exploration, too, and
   a divergence that was one of four. All others are first guesses.
 - Trainings. Seeds 0 to 4 with 100 flock-hours each, seed by seed, each for all algorithms and
   inputs. If the time ends early, all that were trained count: this order chose them, and not a
@@ -108,7 +108,7 @@ def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> No
 
 
 def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataFrame:
-    """Return a row for each training, and one for the mean over those of a cell."""
+    """Return a row for each training, and one for the mean of each cell."""
 
     def orders(path: Path) -> np.ndarray:
         read = pd.read_csv(path)

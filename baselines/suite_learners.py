@@ -1,6 +1,6 @@
 """How each of the seven algorithms of suite_grid.py learns.
 
-Each function takes a `Training` and returns its policy. PPO and SAC are those of stable-baselines3,
+Each function takes a `Training` and returns its policy. PPO and SAC come from stable-baselines3,
 TRPO and recurrent PPO of sb3-contrib, IPPO and MAPPO of BenchMARL.
 """
 
