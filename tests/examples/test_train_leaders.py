@@ -38,11 +38,11 @@ def test_it_trains_compares_and_draws(tmp_path, monkeypatch, capsys):
 def _has_the_settings_of_the_command(run):
     own, command = run["Settings"](), TrainingSettings()
     assert (own.seed, own.flock_hours) == (command.seed, command.flock_hours)
-    envs = run["environment"](own), command.venv()
+    envs = run["environment"](run["Task"]()), command.venv()
     found, expected = ({**each._batch.settings, "flocks": each.num_flocks} for each in envs)
     assert found == expected
     assert envs[0].slots[0].parameters == envs[1].slots[0].parameters
-    models = run["untrained"](own, envs[0]), command.model(envs[1])
+    models = run["untrained"](run["Learner"](), envs[0], own.seed), command.model(envs[1])
     for name in ("n_steps", "batch_size", "n_epochs", "gamma", "gae_lambda", "seed", "use_sde"):
         assert getattr(models[0], name) == getattr(models[1], name), name
     assert models[0].policy_kwargs == models[1].policy_kwargs
