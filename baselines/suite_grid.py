@@ -25,6 +25,9 @@ The design was committed before the first run:
   inputs. If the time ends early, all that were trained count: this order chose them, and not a
   result. Then 1000 flock-hours, PPO, TRPO and evolution first. Budgets are rounded up to whole
   rollouts or generations.
+- One training with 10 000 flock-hours, whatever comes of it: `flockenv train --pool wide
+  --n-leaders 3 --flock-hours 10000 --seed 0`, PPO with the first input. It is an entry of the whole
+  suite, and meets the 2048 flocks of docs/leaders.md with one and with three leaders.
 - Judgment. The first 40 seeds of `three-leaders`, `one-leader` and `camera`, where each policy
   decides as in its training. A score is the difference from the tuned law in the same flock. Over
   the three tasks there are the interquartile mean and the probability of improvement.
