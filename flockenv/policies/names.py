@@ -8,6 +8,15 @@ from flockenv import _core
 LAWS: Mapping[str, Mapping[str, Any]] = {each["name"]: each for each in _core.LAWS}
 """What is declared of each law, by name: ``doc``, ``color`` (or None) and ``is_of_pool``."""
 
-EVERY_SUBSTEP, PAPERS_LAW, DAMPED_LAW, TUNED_LAW, LEARNED, *OTHER_LAWS = LAWS
+# By name and not by place: a law may be declared anywhere among them.
+_CONSTANTS = {name.upper().replace("'", "").replace(" ", "_"): name for name in LAWS}
+
+EVERY_SUBSTEP = _CONSTANTS.pop("PAPERS_LAW_AT_EVERY_SUBSTEP")
 """The paper's law evaluated at every substep, from the pose: what `simulate` does without a policy.
 `PAPERS_LAW` is evaluated at every decision, from the observation, as other policies are."""
+PAPERS_LAW = _CONSTANTS.pop("PAPERS_LAW")
+DAMPED_LAW = _CONSTANTS.pop("DAMPED_LAW")
+TUNED_LAW = _CONSTANTS.pop("TUNED_LAW")
+LEARNED = _CONSTANTS.pop("LEARNED")
+OTHER_LAWS = (*_CONSTANTS.values(),)
+"""Laws without a class in Python."""

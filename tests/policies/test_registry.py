@@ -1,6 +1,7 @@
 """Law: a policy's name, its file and the object itself steer the same, wherever they are given."""
 
 import ast
+import runpy
 from pathlib import Path
 
 import pandas as pd
@@ -9,6 +10,7 @@ import pytest
 import flockenv
 from flockenv import _core
 from flockenv.comparison.figure import COLORS
+from flockenv.policies import names
 from flockenv.policies.names import LAWS
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
 from flockenv.runs.seeds import release_seeds
@@ -97,3 +99,15 @@ def test_names_of_laws_and_their_colors_stand_in_the_core_alone():
         if isinstance(node, ast.Constant) and node.value in LAWS
     }
     assert written == set()
+
+
+@pytest.mark.parametrize("place", range(6))
+def test_one_more_law_changes_no_other_name(place: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = {name: value for name, value in vars(names).items() if name.isupper()}
+    more = {"name": "full rudder", "doc": "", "color": None, "is_of_pool": False}
+    declared = [*_core.LAWS]
+    monkeypatch.setattr(_core, "LAWS", [*declared[:place], more, *declared[place:]])
+    found = runpy.run_path(names.__file__)
+    assert found["OTHER_LAWS"] == ("full rudder",)
+    for name in own.keys() - {"LAWS", "OTHER_LAWS", "_CONSTANTS"}:
+        assert found[name] == own[name]
