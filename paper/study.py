@@ -3,9 +3,9 @@
 A design is a list of rows; a row says all that a run depends on, its seed included. The result of a
 study is ``results/<study>.csv`` with one line per run: the row, what was measured, and the results
 version of the code that made it. A run that has a line is not made again, so that work resumes
-where it ended; a file never holds runs of two versions. `flockenv.runs.RunStore` keeps whole
-recordings, which for these studies would be gigabytes. Every claim of the paper that a study judges
-is a line of ``claims.csv``, with the number of its runs.
+where it ended; a file never holds runs of two versions. `flockenv.runs.store.RunStore` keeps
+whole recordings, which for these studies would be gigabytes. Every claim of the paper that a study
+judges is a line of ``claims.csv``, with the number of its runs.
 """
 
 import argparse
