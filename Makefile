@@ -104,7 +104,7 @@ live: ## the live page: the simulator compiled to WebAssembly, in one file that 
 	@rustup target add wasm32-unknown-unknown || rustc --print target-libdir --target wasm32-unknown-unknown
 	$(PYTHON) web/build.py
 
-# The wheel and the source distribution, into dist. Where the processor may have AVX2, the wheel holds the core twice.
+# Wheel and source distribution, into dist. `make live` before it adds the live page. For AVX2 the core is in it twice.
 wheel: $(STAMPS)/venv
 	rm -rf dist
 	$(BIN)/maturin build --release --locked --out dist

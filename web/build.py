@@ -137,7 +137,7 @@ def main() -> None:
     built = page(wasm())
     if len(built.encode()) > MOST_BYTES:
         raise SystemExit(f"the page has {len(built.encode())} bytes, more than {MOST_BYTES}")
-    PAGE.write_text(built, "utf-8")
+    PAGE.write_text(built, "utf-8", newline="\n")
     sys.stdout.write(f"{PAGE.relative_to(ROOT)}: {len(built.encode())} bytes\n")
 
 

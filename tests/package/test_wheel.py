@@ -163,6 +163,9 @@ def test_wheel_holds_all_that_it_should():
     )
     assert set(tracked.stdout.split()) <= set(names)
     assert {"flockenv/py.typed", "flockenv/_core.pyi"} <= set(names)
+    # Git does not know the live page: it is in the wheel if `make live` has built it.
+    page = "flockenv/replay/live.html"
+    assert (page in names) == (REPOSITORY / page).exists()
     cores = {"flockenv/_core.abi3.so"}
     if platform.machine() == "x86_64":
         cores.add("flockenv/_core_avx2.abi3.so")
