@@ -61,14 +61,13 @@ class LeadersEnv(
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
     on. All entries are in the local-angle polar (LAP) frame of the leader's own position, outward
     and clockwise. They are scaled and clipped at their bounds; the end of the episode reports the
-    share of clipped numbers. `observation` switches blocks on and off:
+    share of clipped numbers. `observation` switches blocks on and off, such as:
 
     - `own`: position, heading, velocity, spin and rudder of the leader
     - `phase`: phase of the motors, time left in it, length of the backward phase
     - `target`: +1 clockwise, -1 counter-clockwise
     - `neighbors`: distance, heading and velocity of each of the six nearest boats, nearest first
     - `order`: mean orientation and velocity of the normal boats
-    - `obstacles`, off by default: the nearest discs and walls
     - `lean_features`, off by default: the features that the learned leaders read
 
     `state()` is the global state, for critics: the entries of `boat` for each boat in order, then
@@ -78,10 +77,9 @@ class LeadersEnv(
     ## Rewards
     The weighted sum of reward terms, mean over leaders. `reward` has the weights for all leaders
     or, as a list of dictionaries, for each. By default `signed_order` alone counts: the mean of the
-    order of the normal boats towards the target, in [-1, 1], over the control step. Terms of the
-    flock are `tangential_velocity` and `jam`; terms of a leader alone are `leader_velocity`,
-    `rudder_effort` and, of its contacts, `contact_push`, `contact_alignment` and
-    `touched_order`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
+    order of the normal boats towards the target, in [-1, 1], over the control step. Other terms are
+    of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and, of its contacts,
+    `contact_push`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 
     With `target` a list of "cw" and "ccw", one per leader, each leader has a target of its own: its
     observation, the reflection by `mirror_to_target`, its actions and all its reward terms refer to
