@@ -19,8 +19,9 @@ The design was committed before the first run:
 
 - Settings. One for each algorithm (`SETTINGS`), the same with all inputs. None is searched here.
   PPO takes the step, the exploration and the horizons of `flockenv train`, once searched with the
-  first input (1500 flock-hours). TRPO has its horizons and exploration, too, and
-  a divergence that was one of four. All others are first guesses.
+  first input. TRPO has its horizons and exploration, too, and a divergence that was one of four.
+  Evolution has the spread of six that were tried. All others are first guesses. A row has the
+  flock-hours of these searches (`SEARCHED`), all with the first input.
 - Trainings. Seeds 0 to 4 with 100 flock-hours each, seed by seed, each for all algorithms and
   inputs. If the time ends early, all that were trained count: this order chose them, and not a
   result. Then 1000 flock-hours, PPO, TRPO and evolution first. Budgets are rounded up to whole
@@ -30,11 +31,12 @@ The design was committed before the first run:
   suite, and meets the 2048 flocks of docs/leaders.md with one and with three leaders.
 - Judgment. The first 40 seeds of `three-leaders`, `one-leader` and `camera`, where each policy
   decides as in its training. A score is the difference from the tuned law in the same flock. Over
-  the three tasks there are the interquartile mean and the probability of improvement.
-- Answer. A cell (an algorithm with an input) gains if the 95 % interval of its interquartile mean,
-  of differences averaged over its seeds, is above 0, and loses if it is below. The interval draws
-  flocks. If it holds 0 and reaches above 0.03, which PPO gains in 500 flock-hours, the grid says
-  nothing about that cell.
+  all seeds and tasks there are the interquartile mean and the probability of improvement.
+- Answer. A cell (an algorithm with an input) gains if the 95 % interval of its interquartile mean
+  is above 0, and loses if it is below. The interval draws seeds and flocks (a bootstrap). If it
+  holds 0 and reaches above 0.03, which PPO gains in 500 flock-hours, the grid says nothing about
+  that cell. After three seeds this replaced an interval that averaged the seeds and drew flocks
+  alone, which hides how seeds differ.
 
 What is there is not made again. A folder OUT/ALGORITHM/INPUT/HOURS/SEED holds the policy
 (policy.npz, or model.zip for recurrent PPO), what made it and its orders; OUT/grid.csv has all.
@@ -56,7 +58,7 @@ from suite_learners import INPUTS, Training, learn
 
 from flockenv.comparison.suite import REFERENCE, tasks_named
 from flockenv.policies import NetworkPolicy
-from flockenv.statistics import bootstrap_interval, interquartile_mean
+from flockenv.statistics import interquartile_mean
 
 #: Of each algorithm, as `Training.setting`.
 SETTINGS = {
@@ -68,6 +70,10 @@ SETTINGS = {
     "ippo": 1e-3,
     "mappo": 1e-3,
 }
+#: Of a bootstrap.
+DRAWS = 2000
+#: Flock-hours that chose a setting, before, with the first input; with the others none.
+SEARCHED = {"ppo": 1500.0, "trpo": 1000.0, "evolution": 1500.0}
 SEEDS = range(5)
 JUDGED = ("three-leaders", "one-leader", "camera")
 
@@ -111,7 +117,7 @@ def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> No
 
 
 def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataFrame:
-    """Return a row for each training, and one for the mean of each cell."""
+    """Return a row for each training, and one for all of each cell."""
 
     def orders(path: Path) -> np.ndarray:
         read = pd.read_csv(path)
@@ -125,8 +131,9 @@ def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataF
         beyond = [orders(folder / f"{seed}/orders.csv") - tuned for seed in seeds]
         taken = [each["cpu_s"] for each in made]
         each = [*zip(seeds, [[own] for own in beyond], taken, strict=True)]
-        for seed, own, cpu_s in [*each, ("mean", beyond, np.mean(taken))] if each else []:
+        for seed, own, cpu_s in [*each, ("all", beyond, np.mean(taken))] if each else []:
             row = {"algorithm": algorithm, "input": named, "flock_hours": hours, "seed": seed}
+            row |= {"searched_hours": SEARCHED.get(algorithm, 0.0)}
             row |= {"setting": made[0]["setting"], "cpu_s": cpu_s}
             row |= dict(zip(JUDGED, np.mean(own, axis=(0, 2)), strict=True))
             rows.append(row | over_all(np.array(own)))
@@ -134,19 +141,21 @@ def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataF
 
 
 def over_all(beyond: np.ndarray) -> dict[str, float]:
-    """Return both statistics of differences (seeds, tasks, flocks), averaged over the seeds."""
+    """Return both statistics of differences (seeds, tasks, flocks), with 95 % intervals."""
     better = (beyond > 0.0) + 0.5 * (beyond == 0.0)
-    statistics = {"iqm": (beyond, interquartile_mean), "improvement": (better, mean_of_tasks)}
+    statistics = {"iqm": (beyond, interquartile_mean), "improvement": (better, np.mean)}
+    random, (seeds, tasks, flocks) = np.random.default_rng(0), beyond.shape
+    draws = [
+        (random.integers(seeds, size=(seeds, 1, 1)), random.integers(flocks, size=(tasks, flocks)))
+        for _ in range(DRAWS)
+    ]
+    each = np.arange(tasks)[:, None]
     found = {}
     for name, (values, statistic) in statistics.items():
-        ends = bootstrap_interval(values.mean(axis=0), statistic, paired=False)
-        found |= dict(zip((name, f"{name}_low", f"{name}_high"), ends, strict=True))
+        drawn = [float(statistic(values[seed, each, flock].ravel())) for seed, flock in draws]
+        low, high = np.quantile(drawn, (0.025, 0.975))
+        found |= {name: float(statistic(values.ravel())), f"{name}_low": low, f"{name}_high": high}
     return found
-
-
-def mean_of_tasks(*tasks: np.ndarray, axis: int = -1) -> Any:
-    """Return the mean over tasks of equally many flocks."""
-    return np.mean([task.mean(axis) for task in tasks], axis=0)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -40,7 +40,7 @@ def scores(figure: Figure) -> None:
 
 
 def grid(figure: Figure) -> None:
-    """Draw the scores of each algorithm with each input: means, and the seeds as dots."""
+    """Draw the scores of each algorithm with each input: all seeds together, and each as a dot."""
     panels = figure.subplots(1, 2, sharey=True)
     found = {words: rows(GRID, input=name) for name, words in INPUTS.items()}
     colors = colors_of(found)
@@ -50,13 +50,13 @@ def grid(figure: Figure) -> None:
             words: {
                 ALGORITHMS[row["algorithm"]]: tuple(float(row[name]) for name in names)
                 for row in own
-                if row["seed"] == "mean"
+                if row["seed"] == "all"
             }
             for words, own in found.items()
         }
         grouped(axes, means, colors, reference, SHIFT)
         for place, (words, own) in enumerate(found.items()):
-            seeds = [row for row in own if row["seed"] != "mean"]
+            seeds = [row for row in own if row["seed"] != "all"]
             at = [
                 [*ALGORITHMS].index(row["algorithm"]) + SHIFT * (place - 1) + 0.09 for row in seeds
             ]

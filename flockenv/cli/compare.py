@@ -64,6 +64,12 @@ class CompareOptions(Flocks, Printing):
     seed: int = option(0, "First seed.", min=0)
     suite: str | None = option(None, "Score the policies on the frozen tasks of a suite: v2.")
     task: list[str] | None = option(None, "One task of the suite; repeatable. [every task]")
+    flock_hours: list[float] | None = option(
+        None,
+        "With --suite: flock-hours that made a policy of a file, searches of settings included; "
+        "once for each such policy.",
+        min=0.0,
+    )
     full: bool = option(False, "Also print differences and slopes.", "--full")
     out: Path = option(Path("results/compare"), "Folder for tables and pictures.")
 
@@ -84,13 +90,15 @@ def compare(options: CompareOptions) -> None:
     (seeds, policies, environment), the parameters of each case for `--params`, and the card of
     your first policy, `card.md`.
 
-    `--suite v2` scores policies on frozen tasks, into `scores.csv`.
+    `--suite v2` scores policies on frozen tasks, into `scores.csv`. It asks what policies of files
+    cost (`--flock-hours`).
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
     for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
         require(package, "plot")
     cases, own = _tasks(options) if options.suite else _flocks(options), _own_policies(options)
+    spent = _spent(options, own)
     policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
     prepare(options.out / "runs.csv")
     if options.suite and not options.shows_nothing:
@@ -104,7 +112,8 @@ def compare(options: CompareOptions) -> None:
         write_text(options.out / "card.md", result.card(name, policy))
     tables = {"means": result.means, "differences": result.differences}
     if options.suite:
-        tables["scores"] = scores_table(result)
+        scores = scores_table(result)
+        tables["scores"] = scores.assign(flock_hours=scores["policy"].map(spent))
         write_csv(options.out / "scores.csv", tables["scores"], float_format="%.4f")
     if options.as_json:
         print_json({n: json.loads(table.to_json(orient="records")) for n, table in tables.items()})
@@ -154,6 +163,27 @@ def _compared(
             result = ComparisonReport(cases[: len(finished)], names, runs, conditions)
             result.write(options.out)
     return result
+
+
+def _spent(options: CompareOptions, own: Mapping[str, Any]) -> dict[str, float]:
+    """Return the flock-hours of each policy that is a file; a suite refuses files without them."""
+    hours = options.flock_hours or []
+    if hours and not options.suite:
+        raise ParameterError("--flock-hours is not accepted without --suite")
+    files = [
+        name
+        for name, given in own.items()
+        if any(
+            each.endswith(FILES)
+            for each in (given.values() if isinstance(given, Mapping) else [given])
+        )
+    ]
+    if options.suite and len(hours) != len(files):
+        raise ParameterError(
+            f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
+            "say of each how many flock-hours made it, searches of settings included"
+        )
+    return dict(zip(files, hours, strict=False))
 
 
 def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:

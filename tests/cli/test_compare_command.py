@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flockenv
@@ -174,6 +175,12 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--suite", "v2", "--task", "reversl"], "did you mean 'reversal'"),
         (["--suite", "v2", "--bw-s", "1"], "--bw-s is not accepted with --suite v2"),
         (["--suite", "v2", "--set", "n_boats=9"], "--set is not accepted with --suite v2"),
+        (
+            ["--suite", "v2", "--policy", "mine.npz"],
+            "0 --flock-hours for 1 --policy of a file (mine)",
+        ),
+        (["--suite", "v2", "--policy", "learned", "--flock-hours", "9"], "1 --flock-hours for 0"),
+        (["--policy", "learned", "--flock-hours", "9"], "--flock-hours is not accepted without"),
     ],
 )
 def test_errors_are_one_line_with_exit_code_2(
@@ -199,9 +206,13 @@ def test_a_suite_says_first_how_long_it_takes(cli, tmp_path, monkeypatch):
     monkeypatch.setattr(
         Case, "run", lambda case, *rest: before.append(case.episode_s) or run(case, *rest)
     )
-    words = ["compare", "--suite", "v2", "--policy", "straight ahead", "--out", tmp_path]
+    mine = ["--policy", learned(tmp_path, "mine.npz"), "--flock-hours", "160"]
+    words = ["compare", "--suite", "v2", *mine, "--policy", "straight ahead", "--out", tmp_path]
     done = cli.succeeds(*words)
     assert re.search(r"^2 tasks, 0 flock-hours: about \d+ min here$", done.stderr, re.MULTILINE)
     # A minute of each policy, and then the tasks.
-    assert before == [60.0, 60.0, 20.0, 20.0]
+    assert before == [60.0, 60.0, 60.0, 20.0, 20.0]
+    spent = pd.read_csv(tmp_path / "scores.csv").groupby("policy")["flock_hours"].first()
+    assert spent["mine"] == 160.0
+    assert np.isnan(spent["straight ahead"])
     assert "min here" not in cli(*words, "--quiet").stderr
