@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+SEARCHES = Path(__file__).parents[2] / "docs" / "leaders" / "tuned_laws"
 TINY = ["--episodes", "2", "--minutes", "0.2", "--flocks", "1", "--leaders", "3", "--quiet"]
 
 
@@ -68,3 +69,16 @@ def test_a_finished_search_is_not_made_again(
     monkeypatch.setattr(script, "search", None)
     script.main(arguments)
     assert (tmp_path / "gains.csv").read_bytes() == first
+
+
+@pytest.mark.parametrize("pool", ["wide", "narrow"])
+def test_the_tuned_law_follows_from_the_scores_of_its_search(script, pool: str) -> None:
+    middle, widths = np.array(list(script.RANGES.values())).T
+    cma = script.CMA(mean=np.zeros(len(middle)), sigma=0.5, seed=0)
+    for _, own in pd.read_csv(SEARCHES / f"damped-law-{pool}.csv").groupby("generation"):
+        asked = [cma.ask() for _ in own.index]
+        gains = pd.DataFrame([script.law(np.log(middle) + widths * each) for each in asked])
+        assert (own[list(gains)].to_numpy() == gains.to_numpy()).all()
+        cma.tell(list(zip(asked, -own["signed_order"], strict=True)))
+    found = script.law(np.log(middle) + widths * cma.mean)
+    assert found == script.DampedLaw.tuned(pool).gains
