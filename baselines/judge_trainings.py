@@ -1,4 +1,4 @@
-"""Judge trainings by `examples/train_leaders.py` in the same fresh flocks.
+"""Judge trainings by `examples/train_leaders.py` in the same 512 flocks.
 
     for seed in 0 1 2 3 4; do
         python examples/train_leaders.py $seed 500 16
@@ -10,8 +10,9 @@
         results/evolution/* --out docs/training/algorithms
 
 Each folder is of one seed, and the folder around it of one algorithm. The flocks are those in which
-the example itself compares; their seeds follow from a hash. Brackets hold 95 % intervals, and
-differences are paired by flock. 512 flocks take half a minute of one core for each policy.
+the example itself compares, whatever the design; no training saw them. Brackets hold 95 %
+intervals, and differences are paired by flock. 512 flocks take half a minute of one core for each
+policy.
 
 Each design was fixed before its trainings. All trainings count, and none was chosen:
 
@@ -22,7 +23,6 @@ Each design was fixed before its trainings. All trainings count, and none was ch
   seed 10 and 250 flock-hours each.
 - Paired branches: seeds 0 to 4 with 200 flock-hours each. Ten searches, 1200 flock-hours together,
   chose the length of a branch, the changes and the learning rate, in 256 or 384 other flocks.
-
 
     for seed in 0 1 2 3 4; do python baselines/paired_branches.py --seed $seed; done
     python baselines/judge_trainings.py results/paired/* --out docs/training/paired
@@ -36,10 +36,8 @@ Each design was fixed before its trainings. All trainings count, and none was ch
 - What `make pretrained` makes: seeds 0 to 7, after 500 and 1101 flock-hours, no setting searched.
 
     python baselines/judge_trainings.py results/pretrained/wide/* --out docs/training/pretrained
-    python baselines/judge_trainings.py results/pretrained/wide-500/* --out results/judged-500
-
-  docs/training/pretrained keeps the second pair of files as evaluation-500.csv and
-  algorithms-500.csv.
+    python baselines/judge_trainings.py results/pretrained/wide-500/* --suffix=-500 \\
+        --out docs/training/pretrained
 """
 
 import argparse
@@ -99,12 +97,13 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--flocks", type=int, default=512)
     parser.add_argument("--out", type=Path, default=Path("results/judged"))
+    parser.add_argument("--suffix", default="", help="of the names of both tables")
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     policies = judged(options.folders, options.flocks)
     tables = {"evaluation": policies, "algorithms": algorithms(policies)}
     for name, table in tables.items():
-        table.to_csv(options.out / f"{name}.csv", index=False, float_format="%.4f")
+        table.to_csv(options.out / f"{name}{options.suffix}.csv", index=False, float_format="%.4f")
         print(table.round(3).to_string(index=False))
 
 

@@ -10,7 +10,7 @@ law, within the ranges of tune_laws.py, and a sign: a leader with a negative num
 its target. All start at zero, so that chance decides which way the first leaders steer. A
 candidate's score is its mean order in 32 flocks of four minutes, the same for all candidates of a
 generation (physics of trainings). The budget was fixed before the first search. All seeds count;
-the flocks of the task judge them.
+the flocks of the task judge them, and docs/suite/roles.csv keeps the table `reached.csv`.
 """
 
 import argparse

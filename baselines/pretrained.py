@@ -24,7 +24,8 @@ PPO also keeps its policy after 500 flock-hours. judge_trainings.py has the comm
 all seeds.
 
 The policy of a pool ships if it leads at least as well in the validation flocks as the tuned law
-and as the policy that ships already.
+and as the policy that ships already. docs/training/pretrained keeps what the command wrote, without
+the rows of the policies that shipped before.
 """
 
 import argparse
@@ -165,14 +166,30 @@ def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -
     return run_episodes(flock, policy, seeds, episode_s)["signed_order"]
 
 
-def mean_of(laws: list[LeaningLaw]) -> LeaningLaw:
-    """Return the mean of laws of one pool, number by number."""
+def made_by(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]:
+    """Return the provenance of a policy that follows from these laws."""
+    each = [law.provenance for law in laws]
+    return {
+        "command": command,
+        "chosen": chosen,
+        "flockenv": each[0]["flockenv"],
+        "commit": ", ".join(sorted({own["commit"] for own in each})),
+        "seed": ", ".join(own["seed"] for own in each),
+        **{
+            name: f"{sum(float(own[name]) for own in each):.10g}"
+            for name in ("samples", "flock_hours", "wall_s")
+        },
+    }
+
+
+def mean_of(laws: list[LeaningLaw], made: dict[str, str] | None = None) -> LeaningLaw:
+    """Return the mean of laws of one pool, number by number, with a provenance."""
     pool = laws[0].pool
     weights = {
         name: float(np.mean([each.weights[name] for each in laws])) for name in laws[0].weights
     }
     bias = float(np.mean([each.bias for each in laws]))
-    return LeaningLaw(pool, bias, weights, bound=BOUND[pool])
+    return LeaningLaw(pool, bias, weights, bound=BOUND[pool], provenance=made or {})
 
 
 def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.DataFrame:
@@ -210,17 +227,7 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
     best = str(score[list(laws)].idxmax())
     chosen = "mean" if score["mean"] >= score[best] else best
     used = list(laws.values()) if chosen == "mean" else [laws[chosen]]
-    made = {
-        "command": command,
-        "chosen": f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks",
-        "flockenv": used[0].provenance["flockenv"],
-        "commit": ", ".join(sorted({each.provenance["commit"] for each in used})),
-        "seed": ", ".join(each.provenance["seed"] for each in used),
-        **{
-            name: f"{sum(float(each.provenance[name]) for each in used):.10g}"
-            for name in ("samples", "flock_hours", "wall_s")
-        },
-    }
+    rule = f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks"
     seeds = release_seeds("pretrained", given.judging_flocks)
     signed_order, low, high = mean_interval(
         orders(candidates[chosen], pool, 3, seeds, given.episode_s)
@@ -241,7 +248,7 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
         chosen_law.weights,
         bound=BOUND[pool],
         judged=judged,
-        provenance=made,
+        provenance=made_by(used, command, rule),
     )
     law.save(out / f"{pool}.json")
     print(f"{pool}: {chosen}, signed order {signed_order:.3f} [{low:.3f}, {high:.3f}]", flush=True)

@@ -40,7 +40,8 @@ def main(arguments: list[str] | None = None) -> None:
         if not path.exists():
             pretrained.train_wide(given, seed, path.parent, command).save(path)
         laws.append(pretrained.LeaningLaw.load(path))
-    pretrained.mean_of(laws).save(options.out / "mean.json")
+    made = pretrained.made_by(laws, command, "mean of all seeds")
+    pretrained.mean_of(laws, made).save(options.out / "mean.json")
 
 
 if __name__ == "__main__":

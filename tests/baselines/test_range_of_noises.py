@@ -12,6 +12,9 @@ def test_the_mean_of_all_seeds_is_written(script, tmp_path, monkeypatch):
     assert len({law.bias for law in laws}) == len(laws)
     mean = load(tmp_path / "mean.json")
     assert mean.bias == pytest.approx(sum(law.bias for law in laws) / len(laws))
+    hours = [float(law.provenance["flock_hours"]) for law in laws]
+    assert float(mean.provenance["flock_hours"]) == pytest.approx(sum(hours))
+    assert mean.provenance["seed"] == "0, 1, 2"
     monkeypatch.setattr(script.pretrained, "train_wide", None)  # It is not called.
     script.main(small)
     assert load(tmp_path / "mean.json").weights == mean.weights
