@@ -53,11 +53,11 @@ def budgets(figure: Figure) -> None:
     # Beside other algorithms the example is called `train_leaders`.
     found = [each for each in rows(EXAMPLE) if each["policy"].startswith("train")]
     for place, row in enumerate(found):
-        _seed(axes, [{**row, "at": str(424 + 8 * place)}], "at", fmt="o")
+        _seed(axes, [{**row, "at": str(500 + 16 * (place - 2))}], "at", fmt="o")
     for hours, file in MIXED.items():
         mixed = [each for each in rows(file) if each["policy"].startswith("seed")]
         for place, row in enumerate(mixed):
-            at = hours + 8.0 * (place - 3.5)
+            at = hours + 16 * (place - 3.5)
             _seed(axes, [{**row, "at": str(at)}], "at", fmt="s", mfc="white")
     _levels(axes, rows(MIXED[1101])[:2])
     axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(120, 1300))

@@ -20,5 +20,5 @@ def pretrained() -> str:
     seeds = NUMERALS[int(many["seeds"])]
     return (
         f"**After 1 101 flock-hours, {seeds} seeds reach {many_reached}: {many_gain} more than the "
-        f"tuned law.** After 500 they reach {few_reached}: {few_gain} more."
+        f"tuned law.** On the way, after 500, they reach {few_reached}: {few_gain} more."
     )
