@@ -32,7 +32,7 @@ export class Core {
     return this.exports.memory.buffer.byteLength;
   }
 
-  /** What there is: presets, fields, quantities … */
+  /** What there is: fields, quantities … */
   describe() {
     this.exports.describe();
     return this.#said();

@@ -7,7 +7,7 @@ use flockenv::draw::palette::style_sheet;
 use flockenv::environment::observation::ObservationLayout;
 use flockenv::geometry::Hull;
 use flockenv::integrator::Phase;
-use flockenv::parameters::{Field, FlockParameters, Kind, Preset};
+use flockenv::parameters::{Field, FlockParameters, Kind};
 use flockenv::policies::LawName;
 use serde_json::{Value as Json, json};
 
@@ -33,12 +33,11 @@ fn field(each: &Field<FlockParameters>) -> Json {
     })
 }
 
-/// Presets, parameters, laws, phases, quantities, entries of an observation, and the colors.
+/// Parameters, laws, phases, quantities, entries of an observation, and the colors.
 pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
     json!({
-        "presets": Preset::names(),
         "laws": LawName::ALL.iter().map(|law| written(&law.named())).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),

@@ -87,7 +87,7 @@ pub extern "C" fn text_length() -> usize {
     with(|page| page.text.len())
 }
 
-/// Says what there is: presets, parameters, policies, quantities, what leaders observe, and colors.
+/// Says what there is: parameters, policies, quantities, what leaders observe, and colors.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> u32 {
     with(|page| page.say(Ok(describe::all())))
