@@ -8,17 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.envs.observation import (
+    BLOCKS,
     Entry,
     flock_feature_entries,
     observation_entries,
     state_entries,
 )
+from flockenv.envs.options import OPTIONS
+from flockenv.errors import refuse_unknown
 
 if TYPE_CHECKING:
     _Box = gymnasium.spaces.Box[np.float32]
 else:
     # Not generic before gymnasium 1.4.
     _Box = gymnasium.spaces.Box
+
+
+_OPTIONS = ("observation", "mirror_to_target", "control_hz", "action_mode", "decision_period_s")
 
 
 def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
@@ -44,14 +50,18 @@ class ObservationSpace(_Box):
         bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
         super().__init__(*bounds.T.copy(), dtype=np.float32)
         self.leaders = leaders
-        names = (
-            "observation",
-            "mirror_to_target",
-            "control_hz",
-            "action_mode",
-            "decision_period_s",
-        )
-        self.options = {name: options[name] for name in names}
+        self.options = {name: options[name] for name in _OPTIONS}
+
+    def policy_options(self) -> dict[str, Any]:
+        """Return `options`, also of a space that another build stored in the file of a model.
+
+        An option or a block that is younger than the file has its default. ParameterError for
+        unknown ones.
+        """
+        refuse_unknown(self.options, _OPTIONS, "option that a policy depends on")
+        options = {name: OPTIONS[name].default for name in _OPTIONS} | self.options
+        refuse_unknown(options["observation"], BLOCKS, "block of the observation")
+        return {**options, "observation": {**BLOCKS, **options["observation"]}}
 
 
 def flock_feature_space() -> _Box:

@@ -62,7 +62,7 @@ class ModelPolicy:
     Raises
     ------
     ParameterError
-        If its spaces are none of an environment here.
+        If its spaces are none of an environment here, or have options that are unknown here.
     """
 
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
@@ -78,11 +78,12 @@ class ModelPolicy:
             )
         self.leaders = space.leaders
         self._size = space.shape[0] // space.leaders
-        self.observation: dict[str, Any] = dict(space.options["observation"])
-        self.mirror_to_target: bool = space.options["mirror_to_target"]
-        self.control_hz: float = space.options["control_hz"]
-        self.action_mode: str = space.options["action_mode"]
-        self.decision_period_s: float | None = space.options["decision_period_s"]
+        options = space.policy_options()
+        self.observation: dict[str, Any] = options["observation"]
+        self.mirror_to_target: bool = options["mirror_to_target"]
+        self.control_hz: float = options["control_hz"]
+        self.action_mode: str = options["action_mode"]
+        self.decision_period_s: float | None = options["decision_period_s"]
         self._levels = _levels_of(model.action_space, self.leaders)
 
     def check_leaders(self, n_leaders: int) -> None:

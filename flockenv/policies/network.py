@@ -145,14 +145,15 @@ class NetworkPolicy(RowPolicy):
                 )
             weights.append(np.ones((1, 1), np.float32))
             biases.append(np.zeros(1, np.float32))
-        blocks = space.options["observation"]
+        options = space.policy_options()
+        blocks = options["observation"]
         names = ("mirror_to_target", "action_mode", "decision_period_s")
         return cls(
             weights,
             biases,
             activation,
             observation={name: block for name, block in blocks.items() if block != BLOCKS[name]},
-            **{name: space.options[name] for name in names},
+            **{name: options[name] for name in names},
             provenance=provenance,
         )
 

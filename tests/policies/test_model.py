@@ -14,6 +14,7 @@ import pytest
 import flockenv
 from flockenv import ParameterError
 from flockenv.comparison import compare_leaders, run_episodes
+from flockenv.envs.observation import BLOCKS
 from flockenv.policies import ModelPolicy, SteeringLaw
 
 sb3 = pytest.importorskip("stable_baselines3")
@@ -158,6 +159,40 @@ def test_damaged_files_are_refused(file, tmp_path):
         archive.writestr("policy.pth", b"")
     with pytest.raises(ParameterError, match=r"other.zip is no model"):
         flockenv.policies.load(tmp_path / "other.zip", trust=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "default"),
+    [
+        ("mirror_to_target", False),
+        ("control_hz", 10.0),
+        ("action_mode", "rudder"),
+        ("decision_period_s", None),
+        ("observation", dict(BLOCKS)),
+    ],
+)
+def test_an_option_that_is_younger_than_the_file_has_its_default(name, default, tmp_path):
+    model = PPO("MlpPolicy", rows_env(), device="cpu")
+    del model.observation_space.options[name]
+    model.save(tmp_path / "older.zip")
+    read = flockenv.policies.load(tmp_path / "older.zip", trust=True)
+    assert getattr(read, name) == default
+
+
+def test_blocks_and_options_of_other_builds_are_defaults_or_refused_by_name(tmp_path):
+    model = PPO("MlpPolicy", rows_env(), device="cpu")
+    options = model.observation_space.options
+    options["observation"] = {**options["observation"]}
+    del options["observation"]["obstacles"]
+    model.save(tmp_path / "older.zip")
+    read = flockenv.policies.load(tmp_path / "older.zip", trust=True)
+    assert read.observation == BLOCKS
+    for more in (options, options["observation"]):
+        more["new_option"] = 3
+        model.save(tmp_path / "newer.zip")
+        with pytest.raises(ParameterError, match=r"newer\.zip is not accepted: 'new_option' is no"):
+            flockenv.policies.load(tmp_path / "newer.zip", trust=True)
+        del more["new_option"]
 
 
 def test_models_of_other_things_are_refused():

@@ -104,6 +104,9 @@ def test_a_torch_network_of_all_leaders_at_once_is_refused():
     layers = torch.nn.Linear(2 * SIZE, 2), torch.nn.Tanh(), torch.nn.Linear(2, 2)
     with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 2\)"):
         NetworkPolicy.from_module(torch.nn.Sequential(*layers), two)
+    two.options["new_option"] = 3
+    with pytest.raises(flockenv.ParameterError, match="'new_option' is no option that a policy"):
+        NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), two)
     with pytest.raises(flockenv.ParameterError, match="space = Box"):
         NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), type(two).__mro__[1](-1, 1, (SIZE,)))
 
