@@ -381,9 +381,9 @@ class Recording:
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a recording; nothing in the file is ever executed.
 
-        A quantity that the file lacks is computed from the poses; it is NaN if none were kept.
-        Arrays and parameters that this flockenv does not know are dropped with a
-        `RecordingWarning`.
+        A quantity that the file lacks is computed from the poses. If it has none, the quantity is
+        NaN, with a `RecordingWarning`; and with another one, arrays and parameters that this
+        flockenv does not know are dropped.
 
         Raises
         ------

@@ -1,7 +1,8 @@
 """The file of a recording: its arrays, each by its name.
 
-A quantity that a file lacks is computed from the poses, and what is unknown is dropped with a word:
-files of builds with one quantity, one parameter or one array more or less are read.
+A quantity that a file lacks is computed from the poses, or is NaN with a word where none were kept,
+and what is unknown is dropped with a word: files of builds with one quantity, one parameter or one
+array more or less are read.
 """
 
 import warnings
@@ -27,6 +28,8 @@ FORMAT = "flockenv recording 1"
 
 _OWN = "quantity_"
 _TEXTS = ("format", "version", "parameters", "policy")
+_DROPPED = "has {} that this flockenv does not know, and does not keep"
+_UNDEFINED = "has no poses, from which these quantities would be computed, and they are NaN"
 
 
 class RecordingWarning(UserWarning):
@@ -70,7 +73,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
     own = [name for name in arrays if name.startswith(_OWN)]
     orders = [f"order_{name}" for name in ORDER]
-    _say_dropped("arrays", arrays.keys() - {*needed, *orders, *OPTIONAL, *own})
+    _say(_DROPPED.format("arrays"), arrays.keys() - {*needed, *orders, *OPTIONAL, *own})
     if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
         raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
@@ -92,20 +95,16 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     }
 
 
-def _say_dropped(kind: str, names: Iterable[str]) -> None:
-    if dropped := ", ".join(sorted(names)):
-        warnings.warn(
-            f"the recording has {kind} that this flockenv does not know, and does not keep: "
-            f"{dropped}",
-            RecordingWarning,
-            stacklevel=5,
-        )
+def _say(words: str, names: Iterable[str]) -> None:
+    # Of the same text Python prints the first alone: a sweep may read thousands of such files.
+    if listed := ", ".join(sorted(names)):
+        warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
 
 
 def _parameters(toml: str) -> FlockParameters:
     values = read_toml(toml, "the text of parameters")
     known = FlockParameters.__dataclass_fields__
-    _say_dropped("parameters", values.keys() - known.keys())
+    _say(_DROPPED.format("parameters"), values.keys() - known.keys())
     return FlockParameters(**{name: value for name, value in values.items() if name in known})
 
 
@@ -120,5 +119,6 @@ def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> O
             computed = order_series(pose[:, k:], velocity[:, k:])
             stored |= {name: getattr(computed, name) for name in missing}
         else:
+            _say(_UNDEFINED, (f"order_{name}" for name in missing))
             stored |= dict.fromkeys(missing, undefined)
     return OrderSeries(**stored)

@@ -130,7 +130,8 @@ def test_a_quantity_that_is_missing_is_computed_from_the_poses():
 
 def test_without_poses_a_quantity_that_is_missing_is_undefined():
     columns = {"order_nematic": None, "pose": RUN.pose[:, :0], "velocity": RUN.velocity[:, :0]}
-    read = load(with_arrays(**columns))
+    with pytest.warns(flockenv.recording.RecordingWarning, match="they are NaN: order_nematic$"):
+        read = load(with_arrays(**columns))
     assert np.isnan(read.order.nematic).all()
     assert np.array_equal(read.order.psi_o, RUN.order.psi_o)
     # What is there may not be undefined.

@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.errors import FlockError
 from flockenv.order import ORDER
 from flockenv.recording import RecordingWarning
 from flockenv.runs import store as run_store
@@ -96,22 +98,39 @@ def changed(path: Path, change: Callable[[dict[str, Any]], Any]) -> bytes:
     return path.read_bytes()
 
 
+def words_of(resume: Callable[[], dict[RunSpec, FlockError]]) -> list[str]:
+    """Resume from whole runs, and return what Python prints of what recordings have or lack."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("default", RecordingWarning)
+        assert resume() == {}
+    return [str(each.message).rsplit(": ")[1] for each in said]
+
+
+@pytest.mark.filterwarnings("ignore::flockenv.recording.RecordingWarning")
 @pytest.mark.parametrize("keep", KEEP)
 def test_runs_with_more_or_less_are_read_and_stay(spec: RunSpec, tmp_path: Path, keep: str) -> None:
     """A build with one quantity more or less resumes from the runs of another."""
     store, spec = RunStore(tmp_path), replace(spec, keep=keep)
     store.save(spec, execute(spec))
     less = changed(store.path(spec), lambda arrays: arrays.pop("order_nematic"))
-    assert run_missing([spec], store) == {}
+    undefined = [] if keep == "poses" else ["order_nematic"]
+    assert words_of(lambda: run_missing([spec], store)) == undefined
     run = store.load(spec)
     assert run is not None
     assert np.isnan(run.order.nematic).all() == (keep != "poses")
     assert np.isnan(summary(run)["nematic_mean"]) == (keep != "poses")
     assert store.path(spec).read_bytes() == less
     more = changed(store.path(spec), lambda arrays: arrays.update(order_unknown=arrays["time_s"]))
-    with pytest.warns(RecordingWarning, match="order_unknown"):
-        assert run_missing([spec], store) == {}
+    assert words_of(lambda: run_missing([spec], store)) == ["order_unknown", *undefined]
     assert store.path(spec).read_bytes() == more
+
+
+def test_runs_that_lack_the_same_are_one_word(spec: RunSpec, store: RunStore) -> None:
+    specs = [replace(spec, seed=seed) for seed in range(5)]
+    for each in specs:
+        store.save(each, execute(each))
+        changed(store.path(each), lambda arrays: arrays.pop("order_nematic"))
+    assert words_of(lambda: run_missing(specs, store)) == ["order_nematic"]
 
 
 def test_a_run_that_lacks_what_cannot_be_computed_is_named_and_stays(
