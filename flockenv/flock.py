@@ -344,14 +344,14 @@ class Flock:
         return OrderParameters(*self._in_core.order_parameters(every))
 
     def contacts(self) -> Contacts:
-        """Return contacts and near-contacts of the last substep.
-
-        There are none after a state was set or restored, until the next substep.
-        """
+        """Return contacts and near-contacts of the last substep; none if a state was set since."""
         return Contacts(**self._in_core.contacts())
 
     def snapshot(self) -> bytes:
-        """Return the whole state; continuing from it is bit-identical on the same machine."""
+        """Return the whole state; continuing from it is bit-identical on the same machine.
+
+        Parameters are in it by name. Motion and noise belong to the build that wrote it.
+        """
         return self._in_core.snapshot()
 
     def restore(self, snapshot: bytes, noise_seed: int | None = None) -> None:

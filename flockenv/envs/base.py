@@ -21,7 +21,11 @@ class Resumable(FixedOptions):
     _batch: LeaderBatch
 
     def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes."""
+        """Return everything that the future depends on, as bytes.
+
+        Parameters, options, terms and blocks are in them by name. The rest, such as motion and
+        noise, belongs to the build that wrote it.
+        """
         return self._batch.core.to_bytes()
 
     def set_state(self, state: bytes) -> Any:
