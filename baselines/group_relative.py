@@ -2,6 +2,7 @@
 
     python baselines/group_relative.py --seed 0       # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/group/0/policy.json --n-leaders 3
+    python baselines/judge_trainings.py results/group/*     # in the flocks of docs/learning.md
 
 Seeds 0 to 4 reach an order of 0.459 to 0.500 with 200 flock-hours, 44 to 46 s of one core each. The
 tuned law has 0.451.

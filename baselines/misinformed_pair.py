@@ -1,6 +1,6 @@
 """Two roles, written by hand, for the task `misinformed` of suite v2.
 
-    python baselines/misinformed_pair.py
+    python baselines/misinformed_pair.py    # a minute of one core
 
 The pair has an order of 0.330 in the task's 256 flocks, and two leaders by the tuned law have none.
 

@@ -2,6 +2,7 @@
 
     python baselines/paired_branches.py --seed 0          # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/paired/0/policy.json --n-leaders 3
+    python baselines/judge_trainings.py results/paired/*     # in the flocks of docs/learning.md
 
 Seeds 0 to 4 reach an order of 0.455 to 0.481 with 200 flock-hours, 42 s of one core each, where the
 tuned law has 0.451.

@@ -3,8 +3,8 @@
     python baselines/plan_ahead.py --noise fresh   # how much can be had without knowing the noise
     python baselines/plan_ahead.py --noise known   # an upper mark: the planner foresees the noise
 
-In 64 flocks the planner that knows the noise has an order of 0.753 and the other one 0.494, where
-the pretrained leaders have 0.503.
+In 64 flocks, seeds 2917986337 to 2917986400, the planner that knows the noise reaches an order of
+0.753, the other one 0.494, and the pretrained leaders 0.503.
 
 This is no policy: it clones the whole flock, which no robot can do. It shows how much more order
 the dynamics and the leans allow than the learned leaders reach. Every 8 s each flock is branched
@@ -16,7 +16,8 @@ candidate meets the same continuations of the noise, which the flock itself does
 
 Episodes are those of the task of examples/train_leaders.py (`wide`, three leaders, bw = 0.31 s,
 8 minutes, physics of trainings), with seeds that follow from the words "plan ahead". An interrupted
-command resumes after its last block of flocks.
+command resumes after its last block of flocks. docs/leaders keeps the tables as plan_fresh.csv and
+plan_known.csv.
 """
 
 import argparse

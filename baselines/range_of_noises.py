@@ -7,9 +7,10 @@
 It is not: it leads better than the tuned law in 13 of the twenty.
 
 pretrained.py trains them, as in `wide`, with one change: each episode draws its backward duration
-from 0.2 to 0.4 s. The rule was fixed before the first training: the policy is the mean of the
-weights of three seeds, and none is chosen. It is better everywhere if it leads better than the
-tuned law in each of the twenty kinds of flocks, by the whole interval.
+from 0.2 to 0.4 s. All have 27 boats, as flocks of one environment have one size. The rule was fixed
+before the first training: the policy is the mean of the weights of three seeds, and none is chosen.
+It is better everywhere if it leads better than the tuned law in each of the twenty kinds of flocks,
+by the whole interval.
 """
 
 import argparse
