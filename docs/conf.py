@@ -73,7 +73,7 @@ nitpick_ignore_regex = [
         r"py:.*",
         r"(ArrayLike|DTypeLike|NDArray|np|numpy|pd|pandas|gymnasium|pettingzoo|collections|typing|"
         r"os|pathlib|threading|concurrent|torch|xarray|stable_baselines3|matplotlib|Axes|Path|"
-        r"PathLike|Executor|Future|Any|"
+        r"PathLike|Executor|Future|Any|rich|importlib|"
         r"Self|Mapping|Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
     ),
     # What DTypeLike is short for.
