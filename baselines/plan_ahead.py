@@ -2,6 +2,7 @@
 
     python baselines/plan_ahead.py --noise fresh   # how much can be had without knowing the noise
     python baselines/plan_ahead.py --noise known   # an upper mark: the planner foresees the noise
+                                                   # (two minutes of one core)
 
 In 64 flocks, seeds 2917986337 to 2917986400, the planner that knows the noise reaches an order of
 0.753, the other one 0.494, and the pretrained leaders 0.503.
