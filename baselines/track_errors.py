@@ -3,8 +3,8 @@
     python baselines/track_errors.py    # into results/track_errors.csv
     python baselines/track_errors.py --out docs/results/track_errors.csv    # for docs/tracks.md
 
-With pixels, headings, missing boats and swaps together, Ψ_o is off by 0.03 and milling by 0.09, in
-eight runs of 8 minutes, seeds 0 to 7. All runs take 25 s of one core.
+With pixels, headings, missing boats and swaps together, Ψ_o is off by 0.04 and milling by 0.10, in
+eight runs of 8 minutes, seeds 0 to 7. All runs take 25 s of one core (results version 5).
 
 Runs of the simulator are seen by a camera: positions in whole pixels, headings with an error,
 detections that fail, and names that are exchanged between boats that are close to each other. The
