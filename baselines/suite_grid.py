@@ -39,7 +39,8 @@ The design was committed before the first run:
   alone, which hides how seeds differ.
 
 What is there is not made again. A folder OUT/ALGORITHM/INPUT/HOURS/SEED holds the policy
-(policy.npz, or model.zip for recurrent PPO), what made it and its orders; OUT/grid.csv has all.
+(policy.npz, or model.zip for recurrent PPO), what made it and its orders. OUT/grid-HOURS.csv has
+all of a class.
 """
 
 import argparse
@@ -175,7 +176,9 @@ def main(arguments: list[str] | None = None) -> None:
         for cell in cells:
             make(*cell, seed, budget, options.out)
         found = table(cells, budget.flock_hours, options.out)
-        found.to_csv(options.out / "grid.csv", index=False, float_format="%.4g")
+        found.to_csv(
+            options.out / f"grid-{budget.flock_hours:g}.csv", index=False, float_format="%.4g"
+        )
     print(found.to_string(index=False))
 
 

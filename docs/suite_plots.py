@@ -5,7 +5,7 @@ from interval_plots import Interval, Plot, colors_of, grouped
 from matplotlib.figure import Figure
 
 SCORES = "suite/v2.csv"
-GRID = "suite/grid.csv"
+GRID = "suite/grid-100.csv"
 ALGORITHMS = {
     "ppo": "PPO",
     "trpo": "TRPO",

@@ -28,10 +28,10 @@ def test_a_trial_trains_judges_and_is_not_made_again(script, algorithm, tmp_path
         assert (made / "model.zip").exists()
     else:
         assert load(made / "policy.npz").observation == {}
-    first = (tmp_path / "grid.csv").read_bytes()
+    first = (tmp_path / "grid-0.1.csv").read_bytes()
     times = {path: path.stat().st_mtime_ns for path in folder.rglob("*.*")}
     script.main(given)
-    assert (tmp_path / "grid.csv").read_bytes() == first
+    assert (tmp_path / "grid-0.1.csv").read_bytes() == first
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.*")} == times
 
 
