@@ -168,22 +168,21 @@ def _compared(
 def _spent(options: CompareOptions, own: Mapping[str, Any]) -> dict[str, float]:
     """Return the flock-hours of each policy that is a file; a suite refuses files without them."""
     hours = options.flock_hours or []
-    if hours and not options.suite:
-        raise ParameterError("--flock-hours is not accepted without --suite")
-    files = [
-        name
+    if not options.suite:
+        if hours:
+            raise ParameterError("--flock-hours is not accepted without --suite")
+        return {}
+    parts = {
+        name: [*given.values()] if isinstance(given, Mapping) else [given]
         for name, given in own.items()
-        if any(
-            each.endswith(FILES)
-            for each in (given.values() if isinstance(given, Mapping) else [given])
-        )
-    ]
-    if options.suite and len(hours) != len(files):
+    }
+    files = [name for name, each in parts.items() if any(one.endswith(FILES) for one in each)]
+    if len(hours) != len(files):
         raise ParameterError(
             f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
             "say of each how many flock-hours made it, searches of settings included"
         )
-    return dict(zip(files, hours, strict=False))
+    return dict(zip(files, hours, strict=True))
 
 
 def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:
@@ -305,5 +304,8 @@ def _own_policies(options: CompareOptions) -> dict[str, Any]:
             name = printable(text)
         if name in own:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")
-        own[name] = changed_fields(text.split(","), "--policy") if is_each else text
+        own[name] = text
+        if is_each:  # What reads like a number is the name of no policy, and refused as one.
+            each = changed_fields(text.split(","), "--policy").items()
+            own[name] = {leader: str(policy) for leader, policy in each}
     return own

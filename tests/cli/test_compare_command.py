@@ -170,6 +170,8 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--env", "dropout=0.1"], "did you mean 'dropout_rate'"),
         (["--policy", "leader_0=damped law,leader_2=learned"], "for each of leader_0, leader_1"),
         (["--policy", "leader_0:learned"], "NAME=VALUE"),
+        (["--policy", "leader_0=3"], "'3' is no policy"),
+        (["--suite", "v2", "--policy", "leader_0=3"], "'3' is no policy"),
         (["--task", "reversal"], "without --suite"),
         (["--suite", "v1"], "there is v2"),
         (["--suite", "v2", "--task", "reversl"], "did you mean 'reversal'"),
