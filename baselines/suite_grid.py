@@ -32,6 +32,13 @@ The design was committed before the first run:
 - One training with 10 000 flock-hours, whatever comes of it: `flockenv train --pool wide
   --n-leaders 3 --flock-hours 10000 --seed 0`, PPO with the first input. It is an entry of the whole
   suite, and meets the 2048 flocks of docs/leaders.md with one and with three leaders.
+  docs/suite/v2.csv has the first command's rows, with the command of docs/suite.md for the others;
+  11 500 flock-hours count PPO's searches.
+
+      flockenv compare --suite v2 --policy results/train/model.zip --trust --flock-hours 11500
+      flockenv compare --policy results/train/model.zip --policy "tuned law" --trust --only \\
+          --n-leaders 1,3 --episodes 2048 --seed 2780189507    # docs/training/ten_thousand.csv
+
 - Judgment. The first 40 seeds of `three-leaders`, `one-leader` and `camera`, where each policy
   decides as in its training. A score is the difference from the tuned law in the same flock. Over
   all seeds and tasks there are the interquartile mean and the probability of improvement.
@@ -145,7 +152,10 @@ def table(cells: Iterable[tuple[str, str]], hours: float, out: Path) -> pd.DataF
 
 
 def over_all(beyond: np.ndarray) -> dict[str, float]:
-    """Return both statistics of differences (seeds, tasks, flocks), with 95 % intervals."""
+    """Return both statistics of differences (seeds, tasks, flocks), with 95 % intervals.
+
+    Seeds share their flocks, so both are drawn: `bootstrap_interval` draws along one of them alone.
+    """
     better = (beyond > 0.0) + 0.5 * (beyond == 0.0)
     statistics = {"iqm": (beyond, interquartile_mean), "improvement": (better, np.mean)}
     random, (seeds, tasks, flocks) = np.random.default_rng(0), beyond.shape
