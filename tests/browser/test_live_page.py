@@ -304,6 +304,16 @@ def test_nothing_is_wider_than_the_window(open_live, emulated, size, scheme, fra
     assert (ground == "rgb(20, 25, 31)") == (scheme == "dark")
 
 
+def test_the_page_stays_where_it_was_scrolled_to_while_a_boats_numbers_change(open_live):
+    live = open_live(PHONE).go(f"{FLOCK}&boat=0", plays=True)
+    assert live.find(".card").is_displayed()
+    live.script("window.scrollTo(0, document.documentElement.scrollHeight)")
+    top = live.script("return scrollY")
+    assert top > 0
+    live.until("return page.runs[0].end > arguments[0] + 2", live.script("return page.runs[0].end"))
+    assert live.script("return scrollY") == top
+
+
 def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
     live.script("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
     wanted = live.script("""

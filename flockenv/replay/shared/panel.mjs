@@ -59,6 +59,9 @@ export function runSwitch(runs, show) {
 
 /** A run's canvas with everything around it. */
 export class Panel {
+  /** The boat and the size of the hole for which the card's place was chosen. */
+  #placed = "";
+
   constructor(run, place, several) {
     this.run = run;
     this.root = element("article", "run");
@@ -210,20 +213,26 @@ export class Panel {
       list.append(term, answer, element("dd", "faint", unit));
     }
     this.card.replaceChildren(head, list);
-    this.#placeCard();
+    this.#placeCard(boat);
   }
 
   /** In the hole of the pool if it has room there, otherwise below the picture: never over the flock. */
-  #placeCard() {
+  #placeCard(boat) {
     const { card, canvas, scene } = this;
-    card.classList.add("inside");
-    const [width, height] = [card.offsetWidth, card.offsetHeight];
     const hole = (this.run.lengths.inner_radius_cm ?? 0) * scene.scale;
-    const isInside = Math.hypot(width, height) / 2 < hole;
-    card.classList.toggle("inside", isInside);
-    const [x, y] = isInside ? scene.pixel(0, 0) : [0, 0];
-    card.style.left = isInside ? `${canvas.offsetLeft + x - width / 2}px` : "";
-    card.style.top = isInside ? `${canvas.offsetTop + y - height / 2}px` : "";
+    const asked = `${boat} ${hole}`;
+    if (asked !== this.#placed) {
+      this.#placed = asked;
+      // A copy is measured: without the card in its place for an instant, the page would be shorter, and scroll back.
+      const copy = card.cloneNode(true);
+      copy.className = "card inside";
+      this.picture.append(copy);
+      card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < hole);
+      copy.remove();
+    }
+    const [x, y] = scene.pixel(0, 0);
+    card.style.left = `${canvas.offsetLeft + x}px`;
+    card.style.top = `${canvas.offsetTop + y}px`;
   }
 }
 
