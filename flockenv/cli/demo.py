@@ -16,7 +16,9 @@ class DemoOptions(Printing):
     """Options of `flockenv demo`."""
 
     seed: int = option(7, "Seed of placement and noise.", min=0)
-    minutes: float = option(8.0, "Length of each run.", min=0.1)
+    minutes: float | None = option(
+        None, "Record runs of this length, even if the live page is built. [8]", min=0.1
+    )
     out: Path = option(Path("results/demo.html"), "The page.")
     show: bool = option(True, "Open the page in a browser.", "--open/--no-open")
 
@@ -25,7 +27,8 @@ class DemoOptions(Printing):
 def demo(options: DemoOptions) -> None:
     """Run the paper's law and the learned leaders side by side, and open the page that plays both.
 
-    If `make live` has built the live page, that page opens instead, with the same two flocks.
+    If `make live` has built the live page, that page opens instead, with the same two flocks,
+    unless --minutes is given.
 
     27 boats in the pool wide, four of them leaders, at bw_s = 0.3 s. Both runs have the same
     initial placement and the same noise.
@@ -36,13 +39,15 @@ def demo(options: DemoOptions) -> None:
     from flockenv.replay import write_replay
     from flockenv.replay.demo import DEMO_POLICIES, demo_runs, live_demo, live_page
 
-    out, seed, minutes = options.out, options.seed, options.minutes
+    out, seed = options.out, options.seed
     if out.suffix.lower() != ".html":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .html")
     prepare(out)
-    if options.show and not options.as_json and (page := live_page()) is not None:
+    is_recorded = options.minutes is not None or options.as_json or not options.show
+    if not is_recorded and (page := live_page()) is not None:
         write_text(out, live_demo(page, seed))
     else:
+        minutes = 8.0 if options.minutes is None else options.minutes
         total = len(DEMO_POLICIES) * minutes * 60
         with progress("simulating", total, options.shows_nothing) as advance:
             runs = demo_runs(seed, minutes, advance)

@@ -67,3 +67,7 @@ def test_where_the_live_page_is_built_it_opens_with_the_two_flocks(
     link = json.loads(page.removeprefix("<script>").removesuffix("</script>"))["opening"]
     assert "n_boats=27&n_leaders=4&pool=wide&bw_s=0.3&seed=11" in link
     assert "beside.leaders=" in link
+    done = cli("demo", "--minutes", "0.2", "--out", "recorded.html")
+    assert "paper's law: " in done.stdout
+    assert opened[1:] == [Path("recorded.html")]
+    assert "n_boats=27&n_leaders=4" not in Path("recorded.html").read_text()
