@@ -11,6 +11,8 @@ pub(crate) struct NeighborList {
     reference: Vec<Vec2>,
     /// Boats by polar angle.
     order: Vec<u32>,
+    /// Their centers, in a flock of few.
+    ordered: Vec<Vec2>,
     /// For each place in `order`, where its partners start in `partners`.
     starts: Vec<u32>,
     /// Partners earlier in `order`.
@@ -97,13 +99,15 @@ impl NeighborList {
         self.starts.push(0);
         let reach = cutoff * cutoff;
         if self.reference.len() <= ALL_PAIRS {
-            for place in 0..self.order.len() {
-                let center = self.reference[self.order[place] as usize];
-                for &earlier in &self.order[..place] {
-                    if (center - self.reference[earlier as usize]).norm_squared() < reach {
+            self.ordered.clear();
+            for &boat in &self.order {
+                let center = self.reference[boat as usize];
+                for (&earlier, other) in self.order.iter().zip(&self.ordered) {
+                    if (center - other).norm_squared() < reach {
                         self.partners.push(earlier);
                     }
                 }
+                self.ordered.push(center);
                 self.starts.push(self.partners.len() as u32);
             }
             return;

@@ -6,6 +6,11 @@ use super::Vec2;
 /// may hold: squares and products of such numbers are far from overflowing.
 pub(crate) const LARGEST: f64 = 1e9;
 
+/// NaN is not.
+fn are_in_range(numbers: [f64; 3]) -> bool {
+    numbers.iter().all(|number| number.abs() <= LARGEST)
+}
+
 /// Position and heading of a boat.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
@@ -40,7 +45,7 @@ impl Pose {
 
     /// Whether a flock may hold this pose: nothing beyond [`LARGEST`].
     pub(crate) fn is_in_range(&self) -> bool {
-        self.position.amax() <= LARGEST && self.heading.abs() <= LARGEST && self.is_finite()
+        are_in_range([self.position.x, self.position.y, self.heading])
     }
 }
 
@@ -69,6 +74,6 @@ impl Velocity {
 
     /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
     pub(crate) fn is_in_range(&self) -> bool {
-        self.linear.amax() <= LARGEST && self.angular.abs() <= LARGEST && self.is_finite()
+        are_in_range([self.linear.x, self.linear.y, self.angular])
     }
 }
