@@ -93,13 +93,14 @@ impl ContactCredit {
             return;
         }
         let forgetting = libm::exp(-step_s / MEMORY_S);
+        let hulls = &flock.boats[self.leaders..];
+        let velocities = &flock.velocities[self.leaders..];
         for turned in self.turned.chunks_exact_mut(normal) {
-            for (turned, boat) in turned.iter_mut().zip(self.leaders..) {
+            for ((turned, hull), velocity) in turned.iter_mut().zip(hulls).zip(velocities) {
                 if *turned == Turned::default() {
                     continue;
                 }
-                let velocity = &flock.velocities[boat];
-                let along = flock.boats[boat].axis.dot(&velocity.linear);
+                let along = hull.axis.dot(&velocity.linear);
                 let rate = flock.motion.turn_damping(velocity.angular, along);
                 turned.angle = forgetting * (turned.angle + turned.spin * step_s);
                 turned.spin *= libm::exp(-rate * step_s);
@@ -118,12 +119,12 @@ impl ContactCredit {
         let normal = flock.poses.len() - self.leaders;
         let (push, alignment) = self.given[leader];
         let own = &self.turned[leader * normal..(leader + 1) * normal];
-        let gains = own.iter().zip(self.leaders..).map(|(turned, boat)| {
+        let hulls = &flock.boats[self.leaders..];
+        let gains = own.iter().zip(hulls).map(|(turned, hull)| {
             if turned.angle == 0.0 {
                 return 0.0;
             }
-            let frame = LapFrame::at(flock.poses[boat].position);
-            let orientation = frame.components(flock.boats[boat].axis);
+            let orientation = LapFrame::at(hull.center).components(hull.axis);
             // sin δ and cos δ.
             let (sin, cos) = (
                 -target.sign() * orientation.x,
