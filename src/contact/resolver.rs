@@ -221,7 +221,11 @@ impl ContactResolver {
         let Self {
             trial, detector, ..
         } = &*self;
-        let is_apart = |allowed| self.parting.is_apart(trial, detector, allowed);
+        let velocities = &self.solver.velocities;
+        let is_apart = |allowed| {
+            let parting = &self.parting;
+            parting.is_apart(trial, detector, velocities, dt, allowed)
+        };
         let is_short = !self.is_exhausted && !self.parting.is_empty();
         if is_short && !self.relinearization.allowed_overlap.is_some_and(is_apart) {
             self.take_parting_back(poses.len(), statistics);

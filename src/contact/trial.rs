@@ -85,8 +85,8 @@ impl Trial {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        let mut contacts = contacts.iter();
-        contacts.any(|contact| detector.overlaps_at(contact, &self.hulls, allowed))
+        let mut pairs = contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b));
+        pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
     /// Whether the boats of a contact move far enough to close it.
