@@ -103,8 +103,15 @@ impl Trial {
 
     /// The gap of contact k. Between two hulls, or a hull and an obstacle, the touch may have passed from
     /// one end to the other without moving: a contact follows it, and the only contact of a pair stands
-    /// for the whole pair.
-    pub(super) fn gap(&self, detector: &ContactDetector, contacts: &[Contact], k: usize) -> f64 {
+    /// for the whole pair. `pair` is the contact asked for last at these poses, with the gaps of both ends.
+    #[inline]
+    pub(super) fn gap(
+        &self,
+        detector: &ContactDetector,
+        contacts: &[Contact],
+        k: usize,
+        pair: &mut Option<(usize, [f64; 2])>,
+    ) -> f64 {
         let contact = &contacts[k];
         let end = match contact.feature {
             Feature::Stern if contact.has_ends() => 0,
@@ -112,10 +119,13 @@ impl Trial {
             _ => return detector.gap_at(contact, &self.hulls).gap,
         };
         let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contact.is_twin(other));
-        let has_twin = is_twin(contacts.get(k + 1))
-            || is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
-        let gaps = detector.end_gaps_at(contact, &self.hulls);
-        let gap = if has_twin {
+        let follows = is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
+        let gaps = match *pair {
+            Some((before, gaps)) if follows && before + 1 == k => gaps,
+            _ => detector.end_gaps_at(contact, &self.hulls),
+        };
+        *pair = Some((k, gaps));
+        let gap = if follows || is_twin(contacts.get(k + 1)) {
             gaps[end]
         } else {
             gaps[0].min(gaps[1])

@@ -86,14 +86,18 @@ impl ContactResolver {
     fn aim(&mut self, island: u32, dt: f64, least: f64) -> f64 {
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let velocities = &self.solver.velocities;
-        let mut deepest = 0.0_f64;
+        let (mut deepest, mut pair) = (0.0, None);
         self.relinearization.end_gaps.clear();
         for &k in self.solver.islands().contacts(island as usize) {
             let contact = &self.contacts[k as usize];
-            if self.trial.may_close(contact) && contact.gap.gap >= -self.penetration_slop {
-                let end_gap = self.trial.gap(&self.detector, &self.contacts, k as usize)
-                    - left_over * contact.gap.gap.min(0.0);
-                deepest = deepest.max(-end_gap);
+            let gap = contact.gap.gap;
+            if self.trial.may_close(contact) && gap >= -self.penetration_slop {
+                let (detector, contacts) = (&self.detector, &self.contacts);
+                let end_gap = self.trial.gap(detector, contacts, k as usize, &mut pair)
+                    - left_over * gap.min(0.0);
+                if -end_gap > deepest {
+                    deepest = -end_gap;
+                }
                 self.relinearization.end_gaps.push((k, end_gap));
             }
         }
