@@ -283,6 +283,8 @@ impl ContactDetector {
     }
 
     /// The gap of a known contact at other poses.
+    // Part of its callers, most of which want no more of it than the distance.
+    #[inline(always)]
     pub(crate) fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
         let first = &boats[contact.boat as usize];
         match contact.partner {
@@ -293,15 +295,17 @@ impl ContactDetector {
                 self.pool.outer_radius_cm,
             ),
             Partner::InnerWall => inner_wall_gap(first, self.hull, self.pool.inner_radius_cm),
-            Partner::Boat(second) => {
-                let second = (&boats[second as usize], self.hull);
-                pair_gap(contact.feature, (first, self.hull), second)
-            }
+            Partner::Boat(second) => self.pair_gap_at(contact, first, &boats[second as usize]),
             Partner::Obstacle(number) => {
                 let obstacle = &self.obstacles.obstacles[number as usize];
                 obstacle.gap(contact.feature, first, self.hull)
             }
         }
+    }
+
+    #[inline(never)]
+    fn pair_gap_at(&self, contact: &Contact, first: &HullPose, second: &HullPose) -> Gap {
+        pair_gap(contact.feature, (first, self.hull), (second, self.hull))
     }
 }
 

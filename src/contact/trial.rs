@@ -127,8 +127,10 @@ impl Trial {
         *pair = Some((k, gaps));
         let gap = if follows || is_twin(contacts.get(k + 1)) {
             gaps[end]
+        } else if gaps[1] < gaps[0] {
+            gaps[1]
         } else {
-            gaps[0].min(gaps[1])
+            gaps[0]
         };
         if gap == f64::INFINITY {
             return detector.gap_at(contact, &self.hulls).gap;

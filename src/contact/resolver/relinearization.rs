@@ -56,10 +56,12 @@ impl ContactResolver {
             f64::NEG_INFINITY
         };
         for _ in 0..MOST_PASSES {
-            let mut deepest = 0.0_f64;
+            let mut deepest = 0.0;
             left.retain(|&island| {
                 let overlap = self.aim(island, dt, least);
-                deepest = deepest.max(overlap);
+                if overlap > deepest {
+                    deepest = overlap;
+                }
                 overlap > least
             });
             if deepest <= allowed || !self.solve(Some(&left), free, inertia, statistics) {
