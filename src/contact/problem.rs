@@ -29,13 +29,13 @@ pub struct ContactProblem<'a> {
 
 impl ContactProblem<'_> {
     /// w_k = J_k·v + bias_k: what is left of the gap at the substep's end, over dt.
-    #[inline]
+    #[inline(always)]
     pub fn slack(&self, k: usize, velocities: &[Velocity]) -> f64 {
         self.contacts[k].gap_rate(velocities) + self.biases[k]
     }
 
     /// Changes velocities by an impulse at contact k.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn apply(&self, k: usize, impulse: f64, velocities: &mut [Velocity]) {
         let contact = &self.contacts[k];
         let gap = &contact.gap;
