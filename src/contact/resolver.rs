@@ -86,8 +86,8 @@ impl ContactResolver {
         }
     }
 
-    /// Contacts that carried an impulse in the last substep.
-    pub(crate) fn warm_start_impulses(&self) -> impl Iterator<Item = CachedImpulse> {
+    /// Contacts that carried an impulse in the last substep, and others.
+    pub(crate) fn warm_start_impulses(&self) -> &[CachedImpulse] {
         self.warm_start_cache.impulses()
     }
 

@@ -21,12 +21,9 @@ const NONE: u32 = u32::MAX;
 const AHEAD: usize = 4;
 
 impl WarmStartCache {
-    /// The contacts that carried an impulse, in the order of detection.
-    pub(super) fn impulses(&self) -> impl Iterator<Item = CachedImpulse> {
-        self.entries
-            .iter()
-            .copied()
-            .filter(|&(_, impulse)| impulse > 0.0)
+    /// The contacts that carried an impulse, and others, in the order of detection.
+    pub(super) fn impulses(&self) -> &[CachedImpulse] {
+        &self.entries
     }
 
     /// Forgets all contacts.

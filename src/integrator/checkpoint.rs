@@ -13,7 +13,7 @@ pub(crate) struct Checkpoint {
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
-    /// Contacts that carried an impulse in the last substep.
+    /// Contacts that carried an impulse in the last substep; others may be among them.
     pub warm_start: Vec<CachedImpulse>,
     /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),
@@ -30,6 +30,7 @@ impl Integrator {
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);
+        checkpoint.warm_start.retain(|&(_, impulse)| impulse > 0.0);
         checkpoint
     }
 
@@ -39,7 +40,8 @@ impl Integrator {
         into.velocities.clone_from(&self.velocities);
         into.last.clone_from(&self.last);
         into.warm_start.clear();
-        into.warm_start.extend(self.contacts.warm_start_impulses());
+        into.warm_start
+            .extend_from_slice(self.contacts.warm_start_impulses());
         let neighbors = &self.contacts.detector.neighbors;
         into.neighbor_reference.0.clear();
         into.neighbor_reference
