@@ -25,7 +25,8 @@ pub(super) struct BlockPivoting {
     islands: Vec<IslandSolver>,
     /// How many multiplications are left; negative once an island was given up.
     pub room: i64,
-    /// b, contact by contact.
+    /// J·v_free and b, contact by contact.
+    rates: Vec<f64>,
     rights: Vec<f64>,
     /// The islands that no closed form solves.
     left: Vec<u32>,
@@ -55,7 +56,15 @@ impl BlockPivoting {
         self.places.resize(boats, NONE);
     }
 
-    /// Solves some islands, whose boats have their free velocities.
+    /// Takes on the free velocities.
+    pub(super) fn set_free(&mut self, problem: &ContactProblem) {
+        let contacts = problem.contacts.iter();
+        self.rates.clear();
+        self.rates
+            .extend(contacts.map(|contact| contact.gap_rate(problem.free)));
+    }
+
+    /// Solves some islands, whose boats have the free velocities that were taken on.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
@@ -71,7 +80,7 @@ impl BlockPivoting {
         for &number in which {
             let contacts = islands.contacts(number as usize);
             for &k in contacts {
-                self.rights[k as usize] = problem.slack(k as usize, problem.free);
+                self.rights[k as usize] = self.rates[k as usize] + problem.biases[k as usize];
             }
             if self.solve_directly(problem, contacts, active, impulses, velocities, &mut report) {
                 report.iterations += 1;

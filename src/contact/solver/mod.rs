@@ -187,6 +187,7 @@ impl ContactSolver {
                 velocities.extend_from_slice(problem.free);
                 let active = &mut self.active;
                 let (islands, all) = (&self.islands, &self.all);
+                self.pivoting.set_free(problem);
                 self.pivoting
                     .solve(problem, islands, all, active, impulses, velocities)
             }
