@@ -193,7 +193,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
     let pair = Pair::new(first, second);
     let lengths = hull_a.half_length + hull_b.half_length;
     if distance_squared <= lengths * lengths && pair.cores_cross() {
-        found(Feature::Crossed, crossed_gap(first, second));
+        found(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
         return;
     }
     let farthest = hull_a.radius + hull_b.radius + margin;
@@ -207,7 +207,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
         match pair.gap(&touch) {
             Some(gap) => found(feature, gap),
             None => {
-                found(Feature::Crossed, crossed_gap(first, second));
+                found(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
                 return;
             }
         }
@@ -220,9 +220,10 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
 /// The gap of a known contact at other poses of its hulls.
 #[inline]
 pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
+    let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
     let Some(side) = feature.side() else {
-        return crossed_gap(first, second);
+        return crossed_gap(a, hull_a, b, hull_b);
     };
     // Where no end of the group faces the other hull any more, its own end still has a distance.
     let touch = pair
@@ -230,29 +231,30 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
         .or_else(|| pair.end_of_a(side, false));
     touch
         .and_then(|touch| pair.gap(&touch))
-        .unwrap_or_else(|| crossed_gap(first, second))
+        .unwrap_or_else(|| crossed_gap(a, hull_a, b, hull_b))
 }
 
 /// The gaps of the two groups of ends, at the stern and at the bow of the first hull: infinite where no end faces the
 /// other hull. That of crossed cores counts for both.
 #[inline]
 pub(crate) fn end_gaps(first: Placed, second: Placed) -> [f64; 2] {
+    let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
-    let (hull_a, hull_b) = (pair.hull_a, pair.hull_b);
     let lengths = hull_a.half_length + hull_b.half_length;
     let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
     let near = squares[0].min(squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
     let may_cross = pair.apart.norm_squared() <= lengths * lengths;
     if near || (may_cross && pair.cores_cross()) {
-        return [crossed_gap(first, second).gap; 2];
+        return [crossed_gap(a, hull_a, b, hull_b).gap; 2];
     }
     squares.map(|square| square.sqrt() - (hull_a.radius + hull_b.radius))
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
 /// other's line, and as much more as makes the hulls touch. Where it is inlined, gaps that are not crossed take longer.
+// Arguments in registers: tuples would be stored for each pair, crossed or not.
 #[cold]
-fn crossed_gap((a, hull_a): Placed, (b, hull_b): Placed) -> Gap {
+fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
     let (h_a, h_b) = (hull_a.half_length, hull_b.half_length);
     let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
         gap: distance - (hull_a.radius + hull_b.radius),
