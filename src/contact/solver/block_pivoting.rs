@@ -74,14 +74,13 @@ impl BlockPivoting {
         impulses: &mut [f64],
         velocities: &mut [Velocity],
     ) -> SolveReport {
-        self.rights.resize(problem.contacts.len(), 0.0);
+        let rates = self.rates.iter().zip(problem.biases);
+        self.rights.clear();
+        self.rights.extend(rates.map(|(rate, bias)| rate + bias));
         let mut report = SolveReport::default();
         self.left.clear();
         for &number in which {
             let contacts = islands.contacts(number as usize);
-            for &k in contacts {
-                self.rights[k as usize] = self.rates[k as usize] + problem.biases[k as usize];
-            }
             if self.solve_directly(problem, contacts, active, impulses, velocities, &mut report) {
                 report.iterations += 1;
             } else {

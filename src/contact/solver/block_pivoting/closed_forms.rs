@@ -60,8 +60,8 @@ impl BlockPivoting {
             problem.apply(k, impulse, velocities);
         }
         let residuals = [0, 1].map(|side| {
-            let speed = diagonals[side] * pushes[side];
-            speed.min(problem.slack(contacts[side], velocities)).abs()
+            let slack = problem.slack(contacts[side], velocities);
+            residual(diagonals[side] * pushes[side], slack, self.regularization)
         });
         // Pivoting, which refines what it solves, starts from free velocities again.
         if !residuals.iter().all(|residual| *residual <= 0.5 * EXACT) {
