@@ -4,7 +4,7 @@ use super::near_obstacles::NearObstacles;
 use super::{Contact, Partner};
 use crate::geometry::{
     Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, end_gaps, inner_wall_gap,
-    outer_wall_gap, pair_gap, pair_gaps,
+    outer_wall_gap, pair_gap, pair_gaps, smaller,
 };
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
@@ -120,7 +120,7 @@ impl ContactDetector {
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
         let gap = if contact.has_ends() {
             let [stern, bow] = self.end_gaps_at(contact, boats);
-            stern.min(bow)
+            smaller(stern, bow)
         } else {
             self.gap_at(contact, boats).gap
         };

@@ -1,7 +1,7 @@
 //! The boats where a solve would move them, and the gaps there.
 
 use super::{Contact, ContactDetector};
-use crate::geometry::{Feature, Hull, HullPose, Pose, Velocity};
+use crate::geometry::{Feature, Hull, HullPose, Pose, Velocity, smaller};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
@@ -127,10 +127,8 @@ impl Trial {
         *pair = Some((k, gaps));
         let gap = if follows || is_twin(contacts.get(k + 1)) {
             gaps[end]
-        } else if gaps[1] < gaps[0] {
-            gaps[1]
         } else {
-            gaps[0]
+            smaller(gaps[0], gaps[1])
         };
         if gap == f64::INFINITY {
             return detector.gap_at(contact, &self.hulls).gap;

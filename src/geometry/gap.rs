@@ -6,7 +6,7 @@
 //! bow of the first hull; the ends of a group describe the same touch, and the nearer of them counts.
 //! That leaves at most two contacts a pair, both of them when hulls lie nearly parallel.
 
-use super::{Hull, HullPose, Vec2, cross, turned_left};
+use super::{Hull, HullPose, Vec2, cross, smaller, turned_left};
 
 /// A gap as a function of the motion of the two bodies it separates:
 /// d(gap)/dt = normal·(v_i − v_j) + arm_i·ω_i − arm_j·ω_j.
@@ -167,7 +167,7 @@ impl<'a> Pair<'a> {
         let follows = if self.cosine >= 0.0 { side } else { -side };
         let of_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
         let of_b = self.end_of_b(follows).map_or(f64::INFINITY, square);
-        of_a.min(of_b)
+        smaller(of_a, of_b)
     }
 
     fn cores_cross(&self) -> bool {
@@ -242,7 +242,7 @@ pub(crate) fn end_gaps(first: Placed, second: Placed) -> [f64; 2] {
     let pair = Pair::new(first, second);
     let lengths = hull_a.half_length + hull_b.half_length;
     let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
-    let near = squares[0].min(squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
+    let near = smaller(squares[0], squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
     let may_cross = pair.apart.norm_squared() <= lengths * lengths;
     if near || (may_cross && pair.cores_cross()) {
         return [crossed_gap(a, hull_a, b, hull_b).gap; 2];

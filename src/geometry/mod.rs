@@ -46,3 +46,9 @@ pub fn wrap_angle(angle: f64) -> f64 {
         wrapped.min(PI)
     }
 }
+
+/// The smaller of two numbers. `f64::min` looks for NaN too, which takes as long again.
+#[inline]
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}

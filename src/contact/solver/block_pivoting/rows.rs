@@ -1,6 +1,7 @@
 //! The contact problem of one island in numbers of its own: rows of J, and the boats they join.
 
 use crate::contact::{ContactProblem, InverseInertia};
+use crate::geometry::smaller;
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
 pub(super) const TOLERANCE: f64 = 1e-11;
@@ -19,13 +20,7 @@ pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
     } else {
         regularization
     };
-    // `f64::min` would take longer.
-    let open = slack + compliance * speed;
-    if open < speed {
-        open.abs()
-    } else {
-        speed.abs()
-    }
+    smaller(speed, slack + compliance * speed).abs()
 }
 
 /// Linear and angular parts of a row of J, or of a velocity.
