@@ -181,7 +181,8 @@ impl Factor {
         if self.entries.len() < most {
             self.entries.resize(2 * most, Entry::default());
         }
-        let (nodes, work) = (self.nodes.as_mut_slice(), self.work.as_mut_slice());
+        let nodes = self.nodes.as_mut_slice();
+        let work = &mut self.work[..=nodes.len()];
         let (known, new) = self.entries.split_at_mut(start);
         let mut pivot = rows[k].diagonal * (1.0 + regularization);
         let [mut a, mut b] = starts;
@@ -244,13 +245,15 @@ impl Factor {
 
     /// Puts row k's couplings with the active rows before it to `work`.
     fn add_couplings(&mut self, rows: &[Row], k: usize) {
+        // As long as the rows, so that one place is looked up in all three after a single comparison.
+        let (nodes, work) = (&self.nodes[..rows.len()], &mut self.work[..rows.len()]);
         let row = &rows[k];
         for side in 0..2 {
-            let mut link = self.nodes[k].before[side];
+            let mut link = nodes[k].before[side];
             while link != NONE {
                 let (place, other_side) = (link as usize / 2, link as usize % 2);
-                self.work[place] += row.coupling(side, &rows[place], other_side);
-                link = self.nodes[place].before[other_side];
+                work[place] += row.coupling(side, &rows[place], other_side);
+                link = nodes[place].before[other_side];
             }
         }
     }
