@@ -84,6 +84,8 @@ impl WarmStartCache {
             .map_or(0.0, |&(_, impulse)| impulse)
     }
 
+    // Not part of the lookup, as the search: contacts that come in order are found in registers then.
+    #[inline(never)]
     fn index(&mut self, boats: usize) {
         self.of_boat.clear();
         self.of_boat.resize(boats, NONE);
@@ -95,6 +97,7 @@ impl WarmStartCache {
     }
 
     /// The impulse of contact k, wherever it is.
+    #[inline(never)]
     fn search(&self, contacts: &[Contact], k: usize) -> f64 {
         let key = contacts[k].key();
         let mut inherited = 0.0;
