@@ -131,8 +131,14 @@ impl Trial {
             smaller(gaps[0], gaps[1])
         };
         if gap == f64::INFINITY {
-            return detector.gap_at(contact, &self.hulls).gap;
+            return self.own_gap(detector, contact);
         }
         gap
+    }
+
+    /// The gap of a contact where no end faces the other side any more.
+    #[cold]
+    fn own_gap(&self, detector: &ContactDetector, contact: &Contact) -> f64 {
+        detector.gap_at(contact, &self.hulls).gap
     }
 }
