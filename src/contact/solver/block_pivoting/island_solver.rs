@@ -175,6 +175,7 @@ impl IslandSolver {
     }
 
     /// Adds the solution for the right-hand side at hand to the impulses, and brings slacks up to date.
+    #[inline(always)]
     fn add_solution(&mut self) {
         self.factor.solve(&mut self.solution);
         for (row, value) in self.rows.rows.iter_mut().zip(&self.solution) {

@@ -196,6 +196,7 @@ impl Rows {
     }
 
     /// Sets velocities to those that the impulses give.
+    #[inline(always)]
     fn set_velocities(&mut self) {
         for body in &mut self.bodies {
             body.velocity = body.free;
