@@ -49,6 +49,7 @@ impl ContactResolver {
         let mut left = std::mem::take(&mut self.relinearization.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
+        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let has_islands = self.solver.has_islands();
         let least = if has_islands {
             allowed
@@ -58,7 +59,7 @@ impl ContactResolver {
         for _ in 0..MOST_PASSES {
             let mut deepest = 0.0;
             left.retain(|&island| {
-                let overlap = self.aim(island, dt, least);
+                let overlap = self.aim(island, dt, least, left_over);
                 if overlap > deepest {
                     deepest = overlap;
                 }
@@ -84,9 +85,8 @@ impl ContactResolver {
 
     /// Sets the biases of an island so that its gaps at the substep's end open to zero, if one of them overlaps by more
     /// than `least`. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's
-    /// end in cm. A shortened substep leaves its share of an overlap from before, which does not count.
-    fn aim(&mut self, island: u32, dt: f64, least: f64) -> f64 {
-        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
+    /// end in cm. A shortened substep leaves its share `left_over` of an overlap from before, which does not count.
+    fn aim(&mut self, island: u32, dt: f64, least: f64, left_over: f64) -> f64 {
         let velocities = &self.solver.velocities;
         let (mut deepest, mut pair) = (0.0, None);
         self.relinearization.end_gaps.clear();
