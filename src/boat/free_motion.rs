@@ -105,10 +105,14 @@ impl FreeMotion {
         self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
     }
 
-    /// A bound of the spins at which eq. (9) comes to rest, the roots of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
-    fn fastest_turn(&self, along: f64, rudder: f64) -> f64 {
+    /// The spin that a boat would be driven to, held to its own or to a bound of those at which eq. (9) comes to rest: the
+    /// roots of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
+    #[cold]
+    fn held_back(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
-        (self.c3 * push).sqrt() + libm::cbrt(self.c2 * rudder.abs() * push)
+        let fastest = (self.c3 * push).sqrt() + libm::cbrt(self.c2 * rudder.abs() * push);
+        let most = spin.abs().max(fastest);
+        driven.clamp(-most, most)
     }
 
     /// Second order over `dt` with drag, heading drive and angular damping centered in the substep:
@@ -143,8 +147,7 @@ impl FreeMotion {
         let mut torque = self.angular_acceleration(spin, along, drive.rudder) * dt;
         let driven = spin + torque * angular_mobility;
         if along < 0.0 && torque * self.angular_acceleration(driven, along, drive.rudder) < 0.0 {
-            let most = spin.abs().max(self.fastest_turn(along, drive.rudder));
-            torque = (driven.clamp(-most, most) - spin) / angular_mobility;
+            torque = (self.held_back(driven, spin, along, drive.rudder) - spin) / angular_mobility;
         }
         torque += drive.noise;
         FreeVelocity {
