@@ -307,10 +307,11 @@ def test_nothing_is_wider_than_the_window(open_live, emulated, size, scheme, fra
 def test_the_page_stays_where_it_was_scrolled_to_while_a_boats_numbers_change(open_live):
     live = open_live(PHONE).go(f"{FLOCK}&boat=0", plays=True)
     assert live.find(".card").is_displayed()
-    live.script("window.scrollTo(0, document.documentElement.scrollHeight)")
-    top = live.script("return scrollY")
+    top, now = live.script("""
+        scrollTo(0, document.documentElement.scrollHeight);
+        return [scrollY, page.runs[0].end]""")
     assert top > 0
-    live.until("return page.runs[0].end > arguments[0] + 2", live.script("return page.runs[0].end"))
+    live.until("return page.runs[0].end > arguments[0] + 2", now)
     assert live.script("return scrollY") == top
 
 

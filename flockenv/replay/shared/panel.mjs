@@ -227,7 +227,8 @@ export class Panel {
       const copy = card.cloneNode(true);
       copy.className = "card inside";
       this.picture.append(copy);
-      card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < hole);
+      // With some room for longer numbers, which come later.
+      card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < 0.96 * hole);
       copy.remove();
     }
     const [x, y] = scene.pixel(0, 0);
