@@ -28,8 +28,8 @@ def speed() -> str:
         f"µs on one core. The physics engine rapier needs {float(step['faster']):.1f} times as "
         f"long. A boat that slides along the wall for 2 s is then off by {ours:.2g} cm with the "
         f"default scheme, by {first_order:.2g} cm with the first-order `moreau`, and by "
-        f"{theirs:.2g} cm in rapier. If it hits the wall on the way, the default is no better than "
-        f"`moreau`: {hit[0]} and {hit[1]} cm ([speed against error](docs/speed_vs_error.md))."
+        f"{theirs:.2g} cm in rapier. If it hits the wall on the way, the default is off by "
+        f"{hit[0]} cm, and `moreau` by {hit[1]} cm ([speed against error](docs/speed_vs_error.md))."
     )
 
 

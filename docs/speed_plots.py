@@ -32,7 +32,7 @@ def engines(figure: Figure) -> None:
     lines = [found[name] for name in SHOWN.values()]
     for axes, columns, label in zip(
         panels,
-        ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "overlap, cm"}, {"": "slide, cm"}),
+        ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "jam overlap, cm"}, {"": "slide, cm"}),
         ("step [µs]", "overlap [cm]", "slide error [cm]"),
         strict=True,
     ):

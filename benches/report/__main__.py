@@ -22,10 +22,10 @@ ENGINES = {
     "jam_faster": "jam, speed",
     "cycle_us_per_step": "cycle, µs",
     "cycle_faster": "cycle, speed",
-    "jam_overlap_mean_cm": "overlap, cm",
+    "jam_overlap_mean_cm": "jam overlap, cm",
     "force_error": "force",
     "slide_median_cm": "slide, cm",
-    "cycle_half_second_cm": "0.5 s, cm",
+    "cycle_half_second_cm": "cycle 0.5 s, cm",
 }
 SIZES = {
     "leapfrog": ours("leapfrog", 0),
@@ -75,7 +75,13 @@ def steps(m: Measurements) -> pd.DataFrame:
     rows = m.settings()
     rows = rows[(rows.scheme == "leapfrog") & (rows.solver == "block-pivoting")]
     columns = {"dt_s": "dt, s"}
-    more = {"jam_overlap_max_cm": "deepest overlap, cm", "jam_times_real_time": "jam, × real time"}
+    more = {
+        "jam_overlap_max_cm": "deepest in the jam, cm",
+        "cycle_overlap_max_cm": "deepest in the cycle, cm",
+        "cycle_deep_share": "cycles beyond 0.01 cm",
+        "jam_times_real_time": "jam, × real time",
+        "cycle_times_real_time": "cycle, × real time",
+    }
     return _short(rows, columns, {**ENGINES, **more})
 
 

@@ -184,12 +184,14 @@ impl Tables {
     fn add_timed_run(&mut self, group: &[Judged]) {
         let (task, scene) = (&group[0].task, group[0].task.scene());
         let boats = task.starts[0].poses.len();
-        let mut overlap = overlap::Overlap::new(&scene.parameters(boats));
         let (mut own, mut reference) = (speed::Times::default(), speed::Times::default());
         for run in group {
+            let mut overlap = overlap::Overlap::new(&scene.parameters(boats));
             run.records[0]
                 .iter()
                 .for_each(|record| overlap.look(&record.poses));
+            let cells = overlap::row(scene, boats, run.task.seed, &overlap, None);
+            self.push("overlap", group, cells);
             let yardstick = run
                 .outcome
                 .yardstick_us
@@ -207,7 +209,6 @@ impl Tables {
             group,
             speed::row(scene, boats, task.dt_s, &own, &reference),
         );
-        self.push("overlap", group, overlap::row(scene, boats, &overlap, None));
     }
 
     fn add_order(&mut self, group: &[Judged]) {

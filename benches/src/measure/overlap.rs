@@ -54,9 +54,10 @@ impl Overlap {
 }
 
 /// Names of the columns.
-pub const COLUMNS: [&str; 9] = [
+pub const COLUMNS: [&str; 10] = [
     "scene",
     "n",
+    "seed",
     "overlap_mean_cm",
     "overlap_max_cm",
     "residual_cm_s",
@@ -70,20 +71,26 @@ struct Run {
     configuration: Configuration,
     scene: Scene,
     boats: usize,
+    seed: u64,
     timed_s: f64,
 }
+
+/// Starts of every setting with 27 boats: deep overlaps are rare, and one run tells little of them.
+const SEEDS: u64 = 20;
 
 /// Measures every configuration in every scene.
 pub fn measure(effort: Effort) -> Table {
     let mut runs = Vec::new();
-    let mut add = |configurations: &[Configuration], scene, boats, timed_s| {
-        let run = |&configuration| Run {
-            configuration,
-            scene,
-            boats,
-            timed_s,
-        };
-        runs.extend(configurations.iter().map(run));
+    let mut add = |configurations: &[Configuration], scene, boats, seeds, timed_s| {
+        for seed in 1..=seeds {
+            runs.extend(configurations.iter().map(|&configuration| Run {
+                configuration,
+                scene,
+                boats,
+                seed,
+                timed_s,
+            }));
+        }
     };
     let timed_s = effort.choose(12.0, speed::TIMED_S);
     // The longest first, so that no core waits for them at the end.
@@ -91,6 +98,7 @@ pub fn measure(effort: Effort) -> Table {
         &speed::larger_flocks(),
         Scene::Jam,
         1000,
+        1,
         effort.choose(6.0, 24.0),
     );
     for scene in Scene::ALL {
@@ -98,15 +106,16 @@ pub fn measure(effort: Effort) -> Table {
             &Configuration::all_inexact(),
             scene,
             27,
+            1,
             effort.choose(6.0, 24.0),
         );
     }
     for boats in [200, 50] {
-        add(&speed::larger_flocks(), Scene::Jam, boats, timed_s);
+        add(&speed::larger_flocks(), Scene::Jam, boats, 1, timed_s);
     }
     for scene in Scene::ALL {
         let all = [Configuration::all_exact(), Configuration::all_peers()].concat();
-        add(&all, scene, 27, timed_s);
+        add(&all, scene, 27, effort.choose(2, SEEDS), timed_s);
     }
     let rows = on_all_cores(&runs, measured);
     let mut table = table(&COLUMNS);
@@ -118,8 +127,8 @@ pub fn measure(effort: Effort) -> Table {
 
 fn measured(run: &Run) -> Vec<String> {
     let scene = run.scene.parameters(run.boats);
-    let start = Start::placed(&scene, 1);
-    let mut engine = run.configuration.build(&scene, 1, &start);
+    let start = Start::placed(&scene, run.seed);
+    let mut engine = run.configuration.build(&scene, run.seed, &start);
     engine.advance(run.configuration.steps(speed::WARM_UP_S));
     let before = engine.statistics();
     let mut overlap = Overlap::new(&scene);
@@ -129,21 +138,28 @@ fn measured(run: &Run) -> Vec<String> {
     }
     if engine.is_lost() {
         overlap.forget();
-        return row(run.scene, run.boats, &overlap, None);
+        return row(run.scene, run.boats, run.seed, &overlap, None);
     }
     let work = engine.statistics().zip(before);
-    row(run.scene, run.boats, &overlap, work)
+    row(run.scene, run.boats, run.seed, &overlap, work)
 }
 
 /// The cells of one engine; `work` are its statistics after and before.
 pub fn row(
     scene: Scene,
     boats: usize,
+    seed: u64,
     overlap: &Overlap,
     work: Option<(Statistics, Statistics)>,
 ) -> Vec<String> {
     let [mean, most] = overlap.mean_and_most();
-    let mut cells = vec![text(scene.name()), text(boats), number(mean), number(most)];
+    let mut cells = vec![
+        text(scene.name()),
+        text(boats),
+        text(seed),
+        number(mean),
+        number(most),
+    ];
     cells.extend(work.map_or_else(
         || vec![String::new(); 5],
         |(after, before)| {
