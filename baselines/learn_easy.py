@@ -3,8 +3,8 @@
     python baselines/learn_easy.py                               # five seeds, into results/easy
     python baselines/learn_easy.py --seeds 0 --samples 200000
 
-Seeds 0 to 4 reach an order of 0.344 to 0.383, in 1.6 to 1.8 minutes of one core each, where the
-paper's law has 0.290 and the damped law 0.382.
+Seeds 0 to 4 reach an order of 0.321 to 0.365, in a minute of one core each, where the paper's law
+has 0.294 and the damped law 0.377 (results version 5).
 
 PPO of stable-baselines3 trains four leaders in 64 flocks of `flockenv/Order-easy-v0` at once. The
 last point of a curve is the mean signed order that the mean policy reaches in the same 512 held-out

@@ -2,8 +2,8 @@
 
     python baselines/train_with_trpo.py SEED FLOCK_HOURS FOLDER
 
-Seeds 0 to 4 reach an order of 0.473 to 0.502 with 500 flock-hours, 4.0 to 4.4 minutes of one core
-each, where the tuned law has 0.451.
+Seeds 0 to 4 reach an order of 0.464 to 0.500 with 500 flock-hours, 3.1 to 3.4 minutes of one core
+each, where the tuned law has 0.451 (results version 5).
 
 Flocks, reward, policy and exploration are those of `flockenv train`; the algorithm is another.
 """

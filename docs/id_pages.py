@@ -220,6 +220,7 @@ def _easy() -> tuple[Plot, str]:
     file = "easy/curve.csv"
     found = [row for row in rows(file) if "minus" not in row["policy"]]
     trained = max(int(row["samples"] or 0) for row in found)
+    most_s = max(float(row["cpu_s"] or 0.0) for row in found)
     intervals = {
         f"{row['policy']}, seed {row['seed']}" if row["seed"] else row["policy"]: _interval(
             row, "signed_order"
@@ -229,8 +230,9 @@ def _easy() -> tuple[Plot, str]:
     }
     words = (
         f"Mean signed order with 95 % intervals. PPO was trained for {trained / 1e6:.1f} million "
-        "decisions of leaders, about 100 s of processor time ([curve.csv](../easy/curve.csv), made "
-        "by `python baselines/learn_easy.py`). [Train leaders](../train.md) has the learning curve."
+        f"decisions of leaders, at most {most_s:.0f} s of processor time "
+        "([curve.csv](../easy/curve.csv), made by `python baselines/learn_easy.py`). "
+        "[Train leaders](../train.md) has the learning curve."
     )
     return _plot([file], intervals), words
 

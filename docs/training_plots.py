@@ -44,7 +44,6 @@ def easy(figure: Figure) -> None:
     laws = ("paper's law", "damped law")
     _levels(axes, [row for law in laws for row in rows(EASY, policy=law)])
     axes.set(xlabel="processor time of the training, s", ylabel="signed order")
-    axes.set_xlim(right=118)
 
 
 def budgets(figure: Figure) -> None:
