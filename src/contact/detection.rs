@@ -283,7 +283,7 @@ impl ContactDetector {
     }
 
     /// The gap of a known contact at other poses.
-    // Part of its callers, most of which want no more of it than the distance.
+    // Inlined, as most callers need only the distance.
     #[inline(always)]
     pub(crate) fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
         let first = &boats[contact.boat as usize];

@@ -86,7 +86,7 @@ impl ContactResolver {
         }
     }
 
-    /// Contacts that carried an impulse in the last substep, and others.
+    /// Impulses of the last substep's contacts; some are zero.
     pub(crate) fn warm_start_impulses(&self) -> &[CachedImpulse] {
         self.warm_start_cache.impulses()
     }

@@ -103,7 +103,7 @@ impl Trial {
 
     /// The gap of contact k. Between two hulls, or a hull and an obstacle, the touch may have passed from
     /// one end to the other without moving: a contact follows it, and the only contact of a pair stands
-    /// for the whole pair. `pair` is the contact asked for last at these poses, with the gaps of both ends.
+    /// for the whole pair. `pair` keeps the last such contact and the gaps of its two ends for its twin.
     #[inline]
     pub(super) fn gap(
         &self,

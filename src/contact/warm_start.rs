@@ -21,7 +21,7 @@ const NONE: u32 = u32::MAX;
 const AHEAD: usize = 4;
 
 impl WarmStartCache {
-    /// The contacts that carried an impulse, and others, in the order of detection.
+    /// All entries in the order of detection; some impulses are zero.
     pub(super) fn impulses(&self) -> &[CachedImpulse] {
         &self.entries
     }
@@ -84,7 +84,7 @@ impl WarmStartCache {
             .map_or(0.0, |&(_, impulse)| impulse)
     }
 
-    // Not part of the lookup, as the search: contacts that come in order are found in registers then.
+    // Out of line, like the search, so that looking up contacts in order stays in registers.
     #[inline(never)]
     fn index(&mut self, boats: usize) {
         self.of_boat.clear();

@@ -6,7 +6,7 @@ use super::Vec2;
 /// may hold: squares and products of such numbers are far from overflowing.
 pub(crate) const LARGEST: f64 = 1e9;
 
-/// NaN is not.
+/// Whether all are at most [`LARGEST`] in size; NaN is not.
 fn are_in_range(numbers: [f64; 3]) -> bool {
     numbers.iter().all(|number| number.abs() <= LARGEST)
 }

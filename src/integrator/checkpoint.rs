@@ -13,7 +13,7 @@ pub(crate) struct Checkpoint {
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
-    /// Contacts that carried an impulse in the last substep; others may be among them.
+    /// Contacts of the last substep that carried an impulse; before an advance also those that did not.
     pub warm_start: Vec<CachedImpulse>,
     /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),

@@ -63,7 +63,7 @@ declare_fields! {
     /// Overlap that the paper scheme accepts without a projection.
     overlap_tolerance_cm: f64 = 0.01, "cm", Range::NonNegative, "chosen";
     /// How well gaps hold at a substep's end, where they are curved functions of the motion: 0 linearizes them once;
-    /// 1 and 2 evaluate them again and solve again until overlaps are at most 1e-6 and 1e-9 cm.
+    /// 1 and 2 evaluate them again and solve again until overlaps are at most 1e-6 and 1e-9 cm, at most 20 times.
     relinearizations: usize = 0, "", Range::Within(0.0, 2.0, "0, 1 or 2"), "chosen";
     /// Constant rudder of the normal boats, positive turns counter-clockwise (Section 4.5); 0: off.
     turning_bias: f64 = 0.0, "", Range::Within(-1.0, 1.0, "a rudder in [-1, 1]"), "Section 4.5, off";

@@ -56,7 +56,7 @@ impl BlockPivoting {
         self.places.resize(boats, NONE);
     }
 
-    /// Takes on the free velocities.
+    /// Works out how fast gaps open at the free velocities, for all solves of a substep.
     pub(super) fn set_free(&mut self, problem: &ContactProblem) {
         let contacts = problem.contacts.iter();
         self.rates.clear();
@@ -64,7 +64,7 @@ impl BlockPivoting {
             .extend(contacts.map(|contact| contact.gap_rate(problem.free)));
     }
 
-    /// Solves some islands, whose boats have the free velocities that were taken on.
+    /// Solves some islands, whose boats have their free velocities; [`Self::set_free`] comes first.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,

@@ -245,7 +245,7 @@ impl Factor {
 
     /// Puts row k's couplings with the active rows before it to `work`.
     fn add_couplings(&mut self, rows: &[Row], k: usize) {
-        // As long as the rows, so that one place is looked up in all three after a single comparison.
+        // Cut to one length, so that one bounds check serves all three.
         let (nodes, work) = (&self.nodes[..rows.len()], &mut self.work[..rows.len()]);
         let row = &rows[k];
         for side in 0..2 {
