@@ -37,7 +37,13 @@ def demo(options: DemoOptions) -> None:
     """
     # The page's code is not needed by most commands.
     from flockenv.replay import write_replay
-    from flockenv.replay.demo import DEMO_POLICIES, demo_runs, live_demo, live_page
+    from flockenv.replay.demo import (
+        DEMO_MINUTES,
+        DEMO_POLICIES,
+        demo_runs,
+        live_demo,
+        live_page,
+    )
 
     out, seed = options.out, options.seed
     if out.suffix.lower() != ".html":
@@ -47,7 +53,7 @@ def demo(options: DemoOptions) -> None:
     if not is_recorded and (page := live_page()) is not None:
         write_text(out, live_demo(page, seed))
     else:
-        minutes = 8.0 if options.minutes is None else options.minutes
+        minutes = DEMO_MINUTES if options.minutes is None else options.minutes
         total = len(DEMO_POLICIES) * minutes * 60
         with progress("simulating", total, options.shows_nothing) as advance:
             runs = demo_runs(seed, minutes, advance)

@@ -15,13 +15,16 @@ from flockenv.simulation import simulate
 DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 """Four leaders among 27 boats, near the critical noise."""
 
+DEMO_MINUTES: Final = 8.0
+"""How long recorded runs are."""
+
 DEMO_POLICIES: Final = {PAPERS_LAW: EVERY_SUBSTEP, LEARNED: LEARNED}
 """How the leaders steer, by the name that a run has on the page."""
 
 
 def demo_runs(
     seed: int = 7,
-    minutes: float = 8.0,
+    minutes: float = DEMO_MINUTES,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Recording]:
     """Return the runs of `DEMO_PARAMETERS` by name, both from the same initial state.
