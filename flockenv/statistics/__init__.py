@@ -14,6 +14,7 @@ from flockenv.statistics.intervals import (
     paired_difference,
     student_interval,
     summarize,
+    two_way_interval,
 )
 from flockenv.statistics.line import Line, fit_line
 from flockenv.statistics.survival import Survival, kaplan_meier
@@ -33,4 +34,5 @@ __all__ = [
     "probability_of_improvement",
     "student_interval",
     "summarize",
+    "two_way_interval",
 ]

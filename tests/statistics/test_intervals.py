@@ -14,6 +14,7 @@ from flockenv.statistics import (
     paired_difference,
     student_interval,
     summarize,
+    two_way_interval,
 )
 
 
@@ -96,3 +97,60 @@ def test_pairs_are_compared_seed_by_seed() -> None:
     assert np.isnan(same.effect)
     with pytest.raises(ValueError, match="3 and 2"):
         paired_difference([1, 2, 3], [1, 2])
+
+
+# Five rows and 101 columns, evenly spaced around 0: a mean of 0, and a spread known on paper.
+ROWS, COLUMNS = np.linspace(-1.0, 1.0, 5)[:, None], np.linspace(-3.0, 3.0, 101)
+
+
+def half_width(table: np.ndarray) -> float:
+    mean, low, high = two_way_interval(table)
+    assert mean == pytest.approx(0.0, abs=1e-12)
+    return (high - low) / 2
+
+
+@pytest.mark.parametrize("table", [ROWS + 0.0 * COLUMNS, 0.0 * ROWS + COLUMNS])
+def test_a_table_of_one_effect_has_its_students_interval(table: np.ndarray) -> None:
+    effect = table[:, 0] if np.ptp(table[:, 0]) else table[0]
+    _, _, high = student_interval(effect)
+    # Percentiles of a mean of five equally spaced values are 4 % below those of a normal one.
+    assert half_width(table) == pytest.approx(high, rel=0.06)
+    turned = half_width(table.T)
+    assert turned == pytest.approx(high, rel=0.06)
+
+
+def test_independent_effects_add_as_squares() -> None:
+    """Five rows have the standard error 1/√8 and the quantile 2.776."""
+    both = half_width(ROWS + 2.0 * COLUMNS)
+    rows = 2.776 * np.sqrt(1 / 8)
+    columns = 1.984 * 2.0 * COLUMNS.std(ddof=1) / np.sqrt(101)
+    assert both == pytest.approx(np.hypot(rows, columns), rel=0.06)
+    # The interval over the rows' means alone leaves out the columns' luck.
+    assert rows < 0.9 * both
+
+
+def test_rows_that_share_their_columns_are_covered_as_often_as_it_says() -> None:
+    rng, covered, covered_by_rows = np.random.default_rng(5), 0, 0
+    for _ in range(100):
+        table = rng.normal(size=(8, 1)) * 0.02 + rng.normal(size=40) * 0.2
+        table = table + rng.normal(size=(8, 40)) * 0.2
+        _, low, high = two_way_interval(table)
+        covered += low <= 0.0 <= high
+        _, low, high = mean_interval(table.mean(axis=1))
+        covered_by_rows += low <= 0.0 <= high
+    assert covered >= 87  # As above.
+    assert covered_by_rows < 75
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ([1.0, 2.0], "shape"),
+        ([[1.0, 2.0]], "shape"),
+        ([[1.0, np.nan], [1.0, 2.0]], "finite"),
+        ([["a", "b"], ["c", "d"]], "numbers"),
+    ],
+)
+def test_a_table_without_rows_and_columns_is_refused(values: object, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        two_way_interval(values)
