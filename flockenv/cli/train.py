@@ -10,6 +10,8 @@ from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.parameters import changed_fields, option_of
 from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
+from flockenv.policies.names import TUNED_LAW
+from flockenv.statistics import paired_difference
 
 if TYPE_CHECKING:
     from flockenv.training import Progress as TrainingProgress
@@ -29,7 +31,7 @@ class TrainOptions(Printing):
         None, "Set an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"
     )
     ppo: list[str] | None = option(None, "Set an option of PPO; repeatable.", metavar="NAME=VALUE")
-    episodes: int = option(64, "Held-out flocks of the comparison with the laws.", min=2)
+    episodes: int = option(512, "Held-out flocks of the comparison with the laws.", min=2)
     out: Path = option(Path("results/train"), "Folder for the model and the run.")
     resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
 
@@ -86,13 +88,20 @@ def train(options: TrainOptions) -> None:
             model = training.train(settings, out, report)
     rows = training.compare_with_laws(model, settings, options.episodes)
     write_csv(out / "comparison.csv", rows)
+    orders = rows.pivot(index="seed", columns="policy", values="signed_order")
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
-    laws = {str(name): float(order) for name, order in means.drop("trained").items()}
+    laws = {str(name): float(order) for name, order in means.drop(training.TRAINED).items()}
+    gain = paired_difference(orders[training.TRAINED], orders[TUNED_LAW])
     curve = training.learning_curve(out, settings.venv().decisions_hz)
     training.draw_curve(curve, laws, out / "curve.png")
     if options.as_json:
-        print_json({"signed_order": means.to_dict(), "model": str(out / training.MODEL)})
+        found = {"signed_order": means.to_dict(), "gain": [gain.mean, gain.low, gain.high]}
+        print_json({**found, "model": str(out / training.MODEL)})
         return
     for name, order in means.items():
         say(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
+    say(
+        f"{training.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
+        f"{gain.high:+.3f}), paired by flock"
+    )
     say(f"Written to {out}")

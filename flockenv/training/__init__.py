@@ -8,7 +8,7 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.training.curve import compare_with_laws, draw_curve, learning_curve
+from flockenv.training.curve import TRAINED, compare_with_laws, draw_curve, learning_curve
 from flockenv.training.run import (
     CHECKPOINT,
     MODEL,
@@ -23,6 +23,7 @@ from flockenv.training.settings import TrainingSettings
 __all__ = [
     "CHECKPOINT",
     "MODEL",
+    "TRAINED",
     "Progress",
     "TrainingError",
     "TrainingSettings",

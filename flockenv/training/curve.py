@@ -8,7 +8,6 @@ from stable_baselines3.common.monitor import load_results
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.comparison import compare_leaders
-from flockenv.parameters import FlockParameters
 from flockenv.policies import SteeringLaw
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
 from flockenv.policies.registry import named_policy
@@ -18,6 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _EPISODE_S = 480.0
+TRAINED = "trained"
+"""The name of the trained leaders in the comparison."""
 
 
 def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.DataFrame":
@@ -79,17 +80,17 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     settings
         What it was trained with.
     episodes
-        Number of flocks, each led for 8 minutes with the default physics.
+        Number of flocks, each led for 8 minutes (`TrainingSettings.held_out`).
 
     Returns
     -------
     pandas.DataFrame
         As of `flockenv.comparison.compare_leaders`.
     """
-    flocks = FlockParameters.preset("simulation").replace(**settings.flocks())
     policies = {
         PAPERS_LAW: SteeringLaw,
         TUNED_LAW: named_policy(TUNED_LAW, settings.pool),
-        "trained": lambda: model,
+        TRAINED: lambda: model,
     }
-    return compare_leaders(flocks, [settings.n_leaders], policies, range(episodes), _EPISODE_S)
+    seeds = range(episodes)
+    return compare_leaders(settings.held_out(), [settings.n_leaders], policies, seeds, _EPISODE_S)

@@ -13,6 +13,7 @@ from stable_baselines3.common.utils import LinearSchedule
 
 from flockenv._io.arguments import whole
 from flockenv._io.toml import read_toml_file
+from flockenv.envs.options import EnvOptions
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
@@ -33,6 +34,7 @@ _OBSERVATION: Mapping[str, Any] = {
     "order": False,
     "lean_features": True,
 }
+_PHYSICS: Mapping[str, Any] = {"physics": "training"}
 #: What `TrainingSettings` itself gives to PPO.
 _OWN = ("policy", "env", "seed", "_init_setup_model")
 
@@ -100,6 +102,18 @@ class TrainingSettings:
             "bw_s": FlockParameters.critical_bw_s("simulation", self.pool),
         }
 
+    def held_out(self) -> FlockParameters:
+        """Return the flocks that trained leaders are compared in: those of the training.
+
+        They have its physics, and its changes of the flock. If it draws the noise from a range,
+        they have the critical one.
+        """
+        changed = dict(self.environment)
+        if isinstance(changed.get("bw_s"), list | tuple):
+            del changed["bw_s"]
+        changed.pop("n_leaders", None)
+        return EnvOptions.parse({**self.flocks(), **_PHYSICS, **changed}).parameters
+
     def venv(self) -> LeaderVecEnv:
         """Return the environment.
 
@@ -119,7 +133,7 @@ class TrainingSettings:
             "reward": {"signed_order": 1.0, "contact_alignment": 30.0},
             "episode_s": times["episode"],
             "reward_horizon_s": 40.0,  # returns of order 1, for the critic
-            "physics": "training",
+            **_PHYSICS,
         }
         return LeaderVecEnv(self.num_flocks, **{**options, **self.environment})
 

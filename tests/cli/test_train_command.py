@@ -30,6 +30,10 @@ def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     found = json.loads(done.stdout)
     assert set(found["signed_order"]) == {"paper's law", "tuned law", "trained"}
     assert load(found["model"], trust=True).provenance["samples"] == str(128 * 32 * 2)
+    gain, low, high = found["gain"]
+    orders = found["signed_order"]
+    assert gain == pytest.approx(orders["trained"] - orders["tuned law"])
+    assert low <= gain <= high
     assert len((tmp_path / "run" / "comparison.csv").read_text().splitlines()) == 1 + 3 * 2
     assert (tmp_path / "run" / "curve.png").stat().st_size > 0
     hours = str(128 * 48 / 3600)
@@ -38,6 +42,7 @@ def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     )
     assert f"Resuming from {out}/checkpoint.zip" in more.stderr.replace("\n", "")
     assert "trained: signed order " in more.stdout
+    assert "trained minus tuned law: " in more.stdout
     assert load(found["model"], trust=True).provenance["samples"] == str(128 * 48 * 2)
 
 

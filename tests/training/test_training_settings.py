@@ -31,6 +31,18 @@ def test_changes_reach_the_environment_and_ppo(tiny: TrainingSettings) -> None:
     assert not model.policy.log_std.requires_grad
 
 
+def test_leaders_are_compared_in_flocks_of_their_training(tiny: TrainingSettings) -> None:
+    """The physics of the training and its number of boats; a drawn noise has no single value."""
+    flocks = tiny.held_out()
+    trained = tiny.venv().slots[0].parameters
+    assert (flocks.dt_s, flocks.relinearizations) == (trained.dt_s, trained.relinearizations)
+    assert (flocks.n_boats, flocks.bw_s, flocks.pool) == (6, trained.bw_s, trained.pool)
+    changed = tiny.replace(environment={**tiny.environment, "bw_s": 0.2, "c4": 0.05})
+    assert (changed.held_out().bw_s, changed.held_out().c4) == (0.2, 0.05)
+    drawn = tiny.replace(environment={"bw_s": (0.1, 0.4), "n_leaders": [1, 2]})
+    assert drawn.held_out().bw_s == trained.bw_s
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
