@@ -1,6 +1,7 @@
 """Compare algorithms and inputs with equal budgets, on three tasks of suite v2.
 
-After 100 flock-hours (seeds 0 to 4, 20 to 69 s of one core) no cell gains on the tuned law. After
+After 100 flock-hours (seeds 0 to 4, 20 to 69 s of one core) TRPO and PPO lead better than MAPPO,
+evolution, IPPO and SAC (`compare_grid.py`), and no cell is shown to gain on the tuned law. After
 1000 (seed 0, 199 to 346 s) PPO does with each input; only PPO, evolution and TRPO's first cell ran.
 
     make env-benchmarl
