@@ -1,5 +1,6 @@
-"""Law: a training is judged in the flocks of the laws; without a lean it is the tuned law."""
+"""Laws: without a lean a training is the tuned law; trainings share the luck of their flocks."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -16,3 +17,17 @@ def test_a_lean_of_zero_is_the_tuned_law(script, tmp_path):
     assert list(table.index) == ["paper's law", "tuned law", "seed 7"]
     assert table.loc["seed 7", "signed_order"] == table.loc["tuned law", "signed_order"]
     assert table.loc["seed 7", "gain"] == 0.0 > table.loc["paper's law", "gain"]
+
+
+def test_the_mean_of_trainings_keeps_the_luck_that_they_share(script):
+    """Five trainings with one and the same gain in each of 100 flocks: ± 1.984·0.29/√100."""
+    luck = np.linspace(-0.5, 0.5, 100)
+    found = pd.DataFrame({name: np.zeros(100) for name in script.LAWS})
+    for seed in range(5):
+        found[f"ppo {seed}"] = 0.1 + luck
+    row = script.algorithms(found).iloc[0]
+    assert (row["algorithm"], row["seeds"]) == ("ppo", 5)
+    assert row["gain"] == pytest.approx(0.1)
+    assert row["gain_high"] - 0.1 == pytest.approx(1.984 * luck.std(ddof=1) / 10, rel=0.05)
+    alone = script.algorithms(found[[*script.LAWS, "ppo 0"]]).iloc[0]
+    assert not {"gain_low", "gain_high"} & set(alone.dropna().index)
