@@ -3,7 +3,7 @@
 
 # The interpreter, parallel pytest workers, and how many of each kind of hostile input. Empty unless they are given:
 # PYTHONS, on which `make test-wheel` tries the wheel too, PAGE, the one page that `make extend` follows, and PYTEST_ARGS,
-# COMPARE_ARGS, PAPER_ARGS, PRETRAINED_ARGS and INSTRUCTIONS, which are passed on.
+# COMPARE_ARGS, STUDIES_ARGS, PRETRAINED_ARGS and INSTRUCTIONS, which are passed on.
 PYTHON ?= python3
 JOBS ?= 2
 FUZZ_EXAMPLES ?= 2000
@@ -135,8 +135,11 @@ extend: $(STAMPS)/venv ## follow the pages of docs/extend, or PAGE=policy alone,
 test-processors: ## the tests of the same bits on aarch64, riscv64 and i686, emulated
 	tests/processors.sh
 
-paper: build ## make every figure and question of paper/ that has runs missing, or draw it again
-	OMP_NUM_THREADS=1 $(BIN)/python paper/make.py $(PAPER_ARGS)
+studies: build ## make what is missing of studies/, or draw it again
+	OMP_NUM_THREADS=1 $(BIN)/python -m studies.make $(STUDIES_ARGS)
+
+test-studies: $(STAMPS)/test $(CORE) ## the tests of studies/: every study's shortest form, and the committed results
+	$(PYTEST) -n $(JOBS) --dist loadfile --max-worker-restart 0 studies $(PYTEST_ARGS)
 
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
@@ -165,7 +168,7 @@ instructions:
 
 clean: ## remove everything that was built or installed here
 	cargo clean
-	rm -rf benches/target benches/peers/.venv $(JS_TESTS)/node_modules docs/_build docs/paper dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf benches/target benches/peers/.venv $(JS_TESTS)/node_modules docs/_build docs/studies dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -rf .venv .venv-* flockenv/_core.*.so flockenv/_core.*.pyd
 	find . -name __pycache__ -prune -exec rm -rf {} +
 

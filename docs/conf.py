@@ -24,9 +24,13 @@ from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 environment_pages.write()
 
 # Sphinx knows pages below this folder alone.
-_paper = Path(__file__).parent / "paper"
-shutil.rmtree(_paper, ignore_errors=True)
-shutil.copytree(_paper.parents[1] / "paper", _paper, ignore=shutil.ignore_patterns("software"))
+_studies = Path(__file__).parent / "studies"
+shutil.rmtree(_studies, ignore_errors=True)
+shutil.copytree(
+    _studies.parents[1] / "studies",
+    _studies,
+    ignore=shutil.ignore_patterns("software", "*.py", "*.toml", "__pycache__"),
+)
 _notebooks = Path(__file__).parent / "examples"
 shutil.rmtree(_notebooks, ignore_errors=True)
 _notebooks.mkdir()
@@ -138,10 +142,11 @@ def _link_environment_pages(
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
-    # Links to and from the folder paper, where it was copied to; a folder has no page.
-    link, here = ("../docs/", "../") if "/" in docname else ("../paper/", "paper/")
+    # Links to and from the folder studies, where it was copied to.
+    link, here = ("../../docs/", "../../")
+    if not docname.startswith("studies/"):
+        link, here = ("../studies/", "studies/")
     source[0] = source[0].replace(f"]({link}", f"]({here}")
-    source[0] = source[0].replace("[results/](results/)", "`results/`")
 
 
 def _shorten(

@@ -9,7 +9,7 @@ from committed_data import markdown
 
 REPOSITORY = Path(__file__).parents[1]
 OUTSIDE = (
-    ("`paper`, `baselines`, `examples`, `docs`", "Studies, trainings and pages, on public names"),
+    ("`studies`, `baselines`, `examples`, `docs`", "Studies, trainings and pages, on public names"),
     ("`web`", "The live page: the same crate, compiled to WebAssembly"),
 )
 

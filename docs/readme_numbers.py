@@ -5,8 +5,7 @@ from statistics import fmean
 from committed_data import markdown, one, rows
 
 VERDICTS = ("holds", "fails", "open")
-RESULTS = "../paper/results"
-CLAIMS = "../paper/claims.csv"
+STUDIES = "../studies"
 READING = ("dt_s", "scheme", "noise_scheme", "overlap_tolerance_cm")
 LEAST_RISE = 0.3
 """Rise of mean |m| from bw = 0 to its peak from which on noise counts as what makes motion."""
@@ -33,14 +32,17 @@ def speed() -> str:
     )
 
 
-def lost(reading: str, quantity: str) -> str:
+def lost(study: str, reading: str, quantity: str) -> str:
     """Return at which backward duration order is lost, in s."""
-    return f"{float(one(CLAIMS, reading=reading, quantity=quantity)['measured']):.2f}"
+    row = one(f"{STUDIES}/{study}/claims.csv", reading=reading, quantity=quantity)
+    return f"{float(row['measured']):.2f}"
 
 
 def mean_at(file: str, column: str, bw_s: str, **known: str) -> float:
     """Return a mean over the runs of a study at a noise."""
-    return fmean(float(row[column]) for row in rows(f"{RESULTS}/{file}", bw_s=bw_s, **known))
+    return fmean(
+        float(row[column]) for row in rows(f"{STUDIES}/section4/results/{file}", bw_s=bw_s, **known)
+    )
 
 
 FREE = {"preset": "experiment", "n_leaders": "0", "minutes": "8.0"}
@@ -51,7 +53,7 @@ def rises(n_boats: str) -> list[float]:
     """Return by how much noise raises mean |m|, in each reading of Section 5 in `wide`."""
     wanted = {"pool": "wide", "n_leaders": "0", "n_boats": n_boats}
     found: dict[tuple[str, ...], dict[str, list[float]]] = {}
-    for row in rows(f"{RESULTS}/section5.csv", **wanted):
+    for row in rows(f"{STUDIES}/section5/results/section5.csv", **wanted):
         key = tuple(row[name] for name in READING)
         found.setdefault(key, {}).setdefault(row["bw_s"], []).append(float(row["abs_m"]))
     means = [{bw_s: fmean(runs) for bw_s, runs in each.items()} for each in found.values()]
@@ -67,12 +69,12 @@ def needs(n_boats: str) -> str:
 def with_current(constants: str, current: str) -> list[str]:
     """Return at which backward durations order is lost without leaders and with three, in s."""
     reading = f"{constants} constants, narrow, n = 27"
-    return [lost(reading, f"critical bw (s), {current}, k = {k}") for k in (0, 3)]
+    return [lost("current", reading, f"critical bw (s), {current}, k = {k}") for k in (0, 3)]
 
 
 def finding(headline: str, words: str, picture: str, shown: str) -> str:
     """Return a finding with its picture, which is small and leads to the large one."""
-    file = f"paper/pictures/{picture}.png"
+    file = f"studies/{picture}.png"
     image = f'<img src="{file}" alt="{shown}" width="440">'
     return f"**{headline}** {words}\n\n[{image}]({file})"
 
@@ -90,22 +92,25 @@ def density() -> str:
         "With the default preset, dense flocks hardly rotate at any noise. With `experiment`, "
         f"fitted to jams at low noise, 27 boats in `narrow` reach {quiet:.2f} without noise, "
         f"{moving:.2f} at bw = 1.0 s and {gone:.2f} at 2.8 s.",
-        "density",
+        "density/pictures/density",
         "Rise of the rotation by noise, against density",
     )
 
 
 def overlap() -> str:
     """Return at which noise the readings of the paper lose their order."""
-    boats = "critical bw (s), k = 0"
+    readings = ("simulation", "paper, 0.1 cm", "paper, 0.001 cm")
+    white, early, late = (
+        lost("section5", f"{reading}, n = 20", "critical bw (s), k = 0") for reading in readings
+    )
     return finding(
         "When order is lost depends on choices that the paper leaves open.",
-        f"20 boats in `wide` lose it at bw = {lost('simulation, n = 20', boats)} s with white "
+        f"20 boats in `wide` lose it at bw = {white} s with white "
         "noise and the default scheme. With noise and steps taken literally it is "
-        f"{lost('paper, 0.1 cm, n = 20', boats)} to {lost('paper, 0.001 cm, n = 20', boats)} s: "
+        f"{early} to {late} s: "
         "the less overlap a step tolerates, the later. The paper has 0.6 to 0.8 s (24 runs at each "
         "noise, no leaders).",
-        "readings",
+        "section5/pictures/readings",
         "When each variant of the model loses its order",
     )
 
@@ -118,7 +123,7 @@ def currents() -> str:
         f"27 boats of `experiment` in `narrow` lose it at {own[0]} s, and with the measured "
         f"current at {strong[0]} s (paper: 1.4 s). With three leaders it is {own[1]} and "
         f"{strong[1]} s (paper: 2.0 s; 24 runs at each noise).",
-        "current",
+        "current/pictures/current",
         "Order against noise with both currents",
     )
 
@@ -129,18 +134,18 @@ def findings() -> str:
 
 
 FIGURES = {
-    "states": ("4 to 6, Table 2", "table2"),
-    "fig07": ("7", "fig07"),
-    "fig08": ("8", "fig08"),
-    "fig09": ("9", "fig09"),
-    "fig10": ("10", "fig10"),
-    "fig11": ("11", "fig11"),
-    "fig12": ("12", "fig12"),
-    "noise_makes_motion": ("summary", "noise_makes_motion"),
-    "fig14": ("14", "fig14_paper"),
-    "fig15": ("15", "fig15"),
-    "fig16": ("16", "fig16"),
-    "fig17": ("17", "fig17"),
+    "states": ("4 to 6, Table 2", "section4/pictures/table2"),
+    "fig07": ("7", "section4/pictures/fig07"),
+    "fig08": ("8", "section4/pictures/fig08"),
+    "fig09": ("9", "section4/pictures/fig09"),
+    "fig10": ("10", "section4/pictures/fig10"),
+    "fig11": ("11", "section4/pictures/fig11"),
+    "fig12": ("12", "section4/pictures/fig12"),
+    "noise_makes_motion": ("summary", "density/pictures/noise_makes_motion"),
+    "fig14": ("14", "section5/pictures/fig14_paper"),
+    "fig15": ("15", "section5/pictures/fig15"),
+    "fig16": ("16", "section5/pictures/fig16"),
+    "fig17": ("17", "section5/pictures/fig17"),
 }
 """The paper's figures by the name of their claims: number and picture."""
 
@@ -149,17 +154,17 @@ def figures() -> str:
     """Return how many statements of each figure hold, fail and are open."""
     body, total = [], [0] * len(VERDICTS)
     for name, (number, picture) in FIGURES.items():
-        claims = rows(CLAIMS, figure=name)
+        claims = rows(f"{STUDIES}/{picture.partition('/')[0]}/claims.csv", figure=name)
         found = [sum(row["verdict"] == each for row in claims) for each in VERDICTS]
         total = [before + each for before, each in zip(total, found, strict=True)]
-        body.append([f"[{number}](pictures/{picture}.png)", *map(str, found)])
+        body.append([f"[{number}]({picture}.png)", *map(str, found)])
     body.append(["all", *map(str, total)])
     return markdown(["figure", *VERDICTS], body)
 
 
 def variants() -> str:
-    """Return in how many variants the headlines hold, for paper/README.md."""
-    found = [row["verdict"] for row in rows(CLAIMS, figure="headlines")]
+    """Return in how many variants the headlines hold, for its page."""
+    found = [row["verdict"] for row in rows(f"{STUDIES}/headlines/claims.csv", figure="headlines")]
     held, failed, free = (found.count(each) for each in VERDICTS)
     end = f"{failed} fail" if failed else "none fails"
     return f"**Mostly: {held} of {len(found)} answers hold, {free} are open, and {end}.**"

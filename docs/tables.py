@@ -17,7 +17,7 @@ DOCS = Path(__file__).parent
 PAGES = (
     DOCS.parent / "README.md",
     DOCS.parent / "ARCHITECTURE.md",
-    *sorted((DOCS.parent / "paper").glob("*.md")),
+    *sorted((DOCS.parent / "studies").glob("**/README.md")),
     *sorted(DOCS.glob("*.md")),
 )
 MARKED = re.compile(r"(<!-- table: (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)

@@ -51,8 +51,8 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
     each.use: each
     for each in (
         SeedRange("evaluation", 0, 3_000_000_000),
-        # Of the studies in paper/, which no policy was made with. Words that `release_seeds` hashes
-        # may fall here, too: "train_leaders" does, so that trainings were judged with some of them.
+        # Of studies, which no policy was made with. Words that `release_seeds` hashes may fall
+        # here, too: "train_leaders" does, so that trainings were judged with some of them.
         SeedRange("paper", 3_000_000_000, FIRST_TRAINING_SEED - 3_000_000_000),
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),

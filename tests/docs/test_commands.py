@@ -21,9 +21,10 @@ from flockenv.cli import app
 pytest.importorskip("stable_baselines3")
 
 REPOSITORY = Path(__file__).parents[2]
-DATA = ("baselines", "docs", "examples", "flockenv", "paper", "src")
-SCRIPTS = ("baselines", "docs", "examples", "paper")
-LINE = re.compile(r"^#? *((?:python (?:baselines|examples|paper)/\w+\.py|flockenv \w+)[^|;<>]*)$")
+DATA = ("baselines", "docs", "examples", "flockenv", "src", "studies")
+SCRIPTS = ("baselines", "docs", "examples", "studies")
+PROGRAMS = r"python (?:(?:baselines|examples)/\w+\.py|-m studies\.[\w.]+)|flockenv \w+"
+LINE = re.compile(rf"^#? *((?:{PROGRAMS})[^|;<>]*)$")
 
 
 class Parsed(Exception):
@@ -77,6 +78,9 @@ def refusal(command: str, monkeypatch: pytest.MonkeyPatch) -> str | None:
         except Exception as error:
             return f"{type(error).__name__}: {error}"
         return None
+    if script == "-m":
+        module, *words = words
+        script = f"{module.replace('.', '/')}.py"
     path = REPOSITORY / script
     if not path.exists():
         return f"there is no {script}"
@@ -92,6 +96,7 @@ def refusal(command: str, monkeypatch: pytest.MonkeyPatch) -> str | None:
     monkeypatch.setattr(argparse.ArgumentParser, "parse_args", parse_args)
     monkeypatch.setattr(sys, "argv", [script, *words])
     monkeypatch.syspath_prepend(str(path.parent))
+    monkeypatch.syspath_prepend(str(REPOSITORY))
     try:
         runpy.run_path(str(path), run_name="__main__")
     except Parsed:

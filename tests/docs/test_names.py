@@ -47,7 +47,7 @@ OTHERS = {
         "model.toml",
     },
 }
-FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "paper", "src", "tests", "web")
+FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "src", "studies", "tests", "web")
 FOREIGN = (
     "gymnasium",
     "gymnasium.utils.performance",
@@ -69,7 +69,7 @@ def _pages() -> dict[str, str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "path", [str(DOCS), *sys.path])
         import environment_pages
-    folders = ("docs", "paper", "benches", "baselines", "web", "examples")
+    folders = ("docs", "studies", "benches", "baselines", "web", "examples")
     found = [*REPOSITORY.glob("*.md"), *(f for each in folders for f in _files(each, "*.md"))]
     texts = {str(path.relative_to(REPOSITORY)): path.read_text("utf-8") for path in found}
     made = environment_pages.pages()
@@ -79,7 +79,7 @@ def _pages() -> dict[str, str]:
 def _files(folder: str, pattern: str) -> list[Path]:
     skipped = {"target", "_build", "node_modules", ".venv", "results"}
     names = {path: path.relative_to(REPOSITORY) for path in (REPOSITORY / folder).rglob(pattern)}
-    copied = DOCS / "paper"  # by the build of the pages
+    copied = DOCS / "studies"  # by the build of the pages
     return [
         path
         for path, name in names.items()
@@ -229,11 +229,11 @@ def wrong_command(line: str) -> str | None:
         if words[0] not in _commands():
             return f"flockenv {words[0]}"
         unknown = options - _commands()[words[0]]
-    elif program.startswith("python") and words and words[0].endswith(".py"):
-        path = REPOSITORY / words[0]
-        if words[0].split("/")[0] in ("baselines", "benches", "docs", "examples", "paper"):
+    elif program.startswith("python") and (script := _script(words)):
+        path = REPOSITORY / script
+        if script.split("/")[0] in ("baselines", "benches", "docs", "examples", "studies"):
             if not path.exists():
-                return words[0]
+                return script
             text = path.read_text("utf-8")
             unknown = {
                 option
@@ -246,6 +246,13 @@ def wrong_command(line: str) -> str | None:
     else:
         unknown = set()
     return ", ".join(sorted(unknown)) or None
+
+
+def _script(words: list[str]) -> str | None:
+    """Return the file that the words behind `python` run; None for other modules."""
+    if words[:1] == ["-m"] and words[1].startswith("studies."):
+        return f"{words[1].replace('.', '/')}.py"
+    return words[0] if words and words[0].endswith(".py") else None
 
 
 def wrong_name(name: str) -> str | None:
@@ -345,7 +352,7 @@ def test_commands_and_imports_exist(page):
         "flockenv.policies.SteerLaw",
         "FlockParameters.bw_seconds",
         "Flock::advance_backwards",
-        "python paper/fig99.py",
+        "python -m studies.section4.fig99",
     ],
 )
 def test_what_does_not_exist_is_found(name):

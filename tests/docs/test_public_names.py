@@ -1,4 +1,4 @@
-"""Law: baselines, paper, docs and examples stand on names that the reference lists."""
+"""Law: baselines, studies, docs and examples stand on names that the reference lists."""
 
 import importlib
 import re
@@ -35,10 +35,10 @@ NAMES, MODULES = listed()
 
 def imports() -> Iterator[tuple[str, str, str]]:
     """Each file with what it imports of the package: module and name."""
-    for folder in ("baselines", "paper", "docs", "examples"):
+    for folder in ("baselines", "studies", "docs", "examples"):
         for path in sorted((REPOSITORY / folder).rglob("*")):
             place = path.relative_to(REPOSITORY)
-            copied = {("docs", "_build"), ("docs", "paper"), ("docs", "examples")}
+            copied = {("docs", "_build"), ("docs", "studies"), ("docs", "examples")}
             if path.suffix not in (".py", ".md", ".ipynb") or place.parts[:2] in copied:
                 continue
             for module, several, few in IMPORT.findall(path.read_text("utf-8")):

@@ -1,0 +1,199 @@
+"""Law: a study runs as a trial, resumes where it ended, and refuses what it cannot use."""
+
+import csv
+import importlib
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies import claim, make, study
+from studies.transition import transition, transition_runs
+
+
+@pytest.mark.parametrize("name", make.scripts())
+def test_a_trial_of_every_file(name: str, tmp_path: Path) -> None:
+    script = importlib.import_module(f"studies.{name.replace('/', '.')}").script
+    study.main(script, ["--trial", "--workers", "1", "--out", str(tmp_path)])
+    folder = tmp_path / name.partition("/")[0]
+    pictures = list((folder / "pictures").glob("*.png"))
+    assert pictures
+    assert all(picture.stat().st_size > 5000 for picture in pictures)
+    if (folder / "claims.csv").exists():
+        lines = list(csv.DictReader((folder / "claims.csv").read_text().splitlines()))
+        assert lines
+        assert {line["verdict"] for line in lines} <= {"holds", "fails", "open"}
+
+
+def _counted(calls: list[int]) -> study.Study:
+    def measure(row: dict[str, int]) -> dict[str, float]:
+        calls.append(row["seed"])
+        if row["seed"] == 3:
+            raise KeyboardInterrupt
+        return {"twice": 2.0 * row["seed"]}
+
+    return study.Study(
+        "few/counted", lambda: [{"minutes": 1.0, "seed": s} for s in range(5)], measure
+    )
+
+
+def test_a_killed_study_goes_on(tmp_path: Path) -> None:
+    calls: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        _counted(calls).results(study.Options(workers=1, out=tmp_path))
+    there = _counted(calls).results(study.Options(out=tmp_path, runs=False))
+    assert set(there["seed"]) == set(calls) - {3} >= {0, 1, 2}
+    again: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        _counted(again).results(study.Options(workers=1, out=tmp_path))
+    assert again[0] == 3
+    assert not set(again) & set(there["seed"])
+
+
+def test_a_store_of_another_design(tmp_path: Path) -> None:
+    (tmp_path / "few" / "results").mkdir(parents=True)
+    store = tmp_path / "few" / "results" / "counted.csv"
+    store.write_text("length,seed,twice\n1,0,0\n")
+    with pytest.raises(study.StudyError, match="a store of another design"):
+        _counted([]).results(study.Options(out=tmp_path))
+    assert store.read_text() == "length,seed,twice\n1,0,0\n"
+
+
+def test_a_design_that_was_changed_after_its_runs(tmp_path: Path) -> None:
+    options = study.Options(out=tmp_path, runs=False)
+    with pytest.raises(KeyboardInterrupt):
+        _counted([]).results(study.Options(out=tmp_path))
+    changed = study.Study("few/counted", lambda: [{"minutes": 2.0, "seed": 0}], lambda row: {})
+    with pytest.raises(study.StudyError, match=r"another design: .* was it changed after its runs"):
+        changed.results(options)
+
+
+def test_a_store_of_another_version(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    options = study.Options(out=tmp_path)
+    with pytest.raises(KeyboardInterrupt):
+        _counted([]).results(options)
+    store = tmp_path / "few" / "results" / "counted.csv"
+    before = store.read_text()
+    monkeypatch.setattr(study, "RESULTS_VERSION", study.RESULTS_VERSION + 1)
+    with pytest.raises(study.StudyError, match=r"holds runs of results version \d+, and \d are"):
+        _counted([]).results(options)
+    assert store.read_text() == before
+    judged = _counted([]).results(study.Options(out=tmp_path, runs=False))
+    assert set(judged["results_version"]) == {study.RESULTS_VERSION - 1}
+
+
+def test_a_store_of_two_versions(tmp_path: Path) -> None:
+    (tmp_path / "few" / "results").mkdir(parents=True)
+    store = tmp_path / "few" / "results" / "counted.csv"
+    for text in (
+        "minutes,seed,twice\n1.0,0,0\n",
+        "minutes,seed,twice,results_version\n1.0,0,0,4\n1.0,1,2,5\n",
+    ):
+        store.write_text(text)
+        with pytest.raises(study.StudyError, match="does not say which results version"):
+            _counted([]).results(study.Options(out=tmp_path))
+        assert store.read_text() == text
+
+
+def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "claims.csv"
+    path.write_text("before")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(study.os, "fsync", full)
+    with pytest.raises(study.StudyError, match="No space left on device; it is as it was"):
+        study.write(path, b"after")
+    assert path.read_text() == "before"
+    assert [each.name for each in tmp_path.iterdir()] == ["claims.csv"]
+
+
+def test_an_unknown_study() -> None:
+    with pytest.raises(SystemExit, match="'fig99' is no study of this folder: "):
+        make.main(["fig99"])
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict", "decide"),
+    [
+        ((1.0, 0.6, 1.4), "holds", ""),
+        ((0.0, -0.4, 0.4), "fails", ""),
+        # Half as wide with four times the runs.
+        ((1.0, 0.0, 2.0), "open", "96"),
+        ((0.5, 0.0, 1.0), "open", "more than 10000"),
+        ((math.nan,) * 3, "open", ""),
+    ],
+)
+def test_verdicts(found: tuple[float, float, float], verdict: str, decide: str) -> None:
+    judged = claim.Claim("", "", "", "", claim.Interval(found, 24), least=0.5)
+    assert (judged.verdict, judged.would_decide) == (verdict, decide)
+
+
+def test_existence_has_one_bound() -> None:
+    claims = claim.Claims("", "")
+    for count, runs in ((0, 24), (1, 24), (5, 24), (0, 100), (12, 100)):
+        claims.exists("it happens", "", count, runs)
+    # One run of 24 may be one in a thousand: the bound does not move to what was found.
+    assert [each.verdict for each in claims] == ["open", "open", "holds", "fails", "holds"]
+    assert {each.least for each in claims} == {claim.OCCURS}
+
+
+def test_runs_are_those_that_bear_the_interval() -> None:
+    # 24 seeds at four noises each, whose means over the noises are averaged.
+    assert claim.mean(np.arange(24.0)).runs == 24
+    pairs = np.random.default_rng(0).normal(size=(24, 2))
+    assert claim.bca([pairs, pairs], lambda *each: sum(g[..., 0].mean(-1) for g in each)).runs == 48
+    assert claim.proportion(3, 7).runs == 7
+
+
+def test_critical_noise_of_a_straight_fall() -> None:
+    noises = [0.0, 0.1, 0.2, 0.3, 0.4]
+    fall = [0.9, 0.9, 0.6, 0.3, 0.1]
+    groups = [np.full((4, 2), level) for level in fall]
+    # The middle of 0.9 and 0.1 is 0.5, a third of the way from 0.6 to 0.3.
+    assert claim.fall(noises, groups) == pytest.approx(0.2 + 0.1 / 3)
+    jam = [np.array([[level, 0.2]] * 4) for level in fall]
+    assert math.isnan(claim.critical_bw(noises, jam)[0])
+
+
+def test_a_jam_that_splits_lasts_by_the_second_rule() -> None:
+    # Start, whether and when its largest jam fell below half, and what its last minutes were.
+    runs = pd.DataFrame(
+        [
+            ("one-jam", 1, 30.0, 0.1, 0.9),  # Split: still in jams when its run ended.
+            ("one-jam", 1, 110.0, 0.1, 0.9),
+            ("one-jam", 1, 30.0, 0.8, 0.6),  # Came to rotate.
+            ("one-jam", 1, 30.0, 0.1, 0.2),  # Dissolved.
+            ("one-jam", 0, 119.7, 0.0, 1.0),
+            ("rotating", 0, 119.7, -0.9, 0.0),
+            ("rotating", 1, 10.0, 0.2, 0.7),
+        ],
+        columns=["start", "exited", "stayed_min", "m", "in_jams"],
+    ).assign(minutes=120.0)
+    found = transition.second(runs)
+    assert list(found["exited"]) == [0, 0, 1, 1, 0, 0, 1]
+    assert list(found["stayed_min"]) == [50.0, 120.0, 30.0, 30.0, 119.7, 119.7, 10.0]
+
+
+def test_answers_of_a_map() -> None:
+    claims = claim.Claims("", "")
+    for cell, large, drift in (("A", 24, -0.01), ("B", 24, -0.5), ("C", 2, 0.0)):
+        claims.reading = cell
+        for n, stay in ((100, 0), (200, large)):
+            found = claim.proportion(stay, 24)
+            claims.add("stays", "share of runs that stay", found, least=0.5, n=f"{n}")
+        found = claim.Interval((drift,) * 3, 24)
+        claims.add("shrinks", "drift of the largest jam", found, least=-0.05, n="200")
+        found = claim.Interval((0.5, 0.4, 0.6), 48)
+        claims.add("longer", "factor of exits", found, most=1.0, n="100, 200")
+    found = transition.answers({"first": claims}).set_index("cell")["first rule"].to_dict()
+    # The largest size counts; a jam that shrinks keeps the answer open.
+    assert found == {"A": "for", "B": "open", "C": "against"}
+
+
+def test_wall_slots() -> None:
+    # Six discs of 5 cm touch around a circle of 10 cm; their hulls' bows are 10 cm further out.
+    assert transition_runs.outer_radius_cm(6, 1.0) == pytest.approx(20.0)
