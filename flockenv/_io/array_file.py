@@ -13,17 +13,33 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
 
-MOST_BYTES = 16 << 30
-"""What all arrays of a file may hold together, if nothing else is said."""
+_MOST_BYTES = 16 << 30
+_MOST_TIMES, _FREE_BYTES = 100, 64 << 20
+
+
+def _most_bytes(size: int) -> int:
+    """Return what all arrays of a file of so many bytes may hold together.
+
+    Numbers of runs take a tenth at best if they are compressed, and zeros a thousandth.
+    """
+    return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_TIMES * size))
 
 
 def write_arrays(
     path: str | os.PathLike[str], arrays: Mapping[str, NDArray[Any]], *, compressed: bool = False
 ) -> None:
-    """Write arrays to a file, as `atomic_write` does."""
-    save = np.savez_compressed if compressed else np.savez
+    """Write arrays to a file, as `atomic_write` does.
+
+    Those that compression would make smaller than `read_arrays` accepts are not compressed.
+    """
+    held = sum(array.nbytes for array in arrays.values())
     with atomic_write(path) as file:
-        save(file, allow_pickle=False, **dict(arrays))
+        if compressed:
+            np.savez_compressed(file, allow_pickle=False, **dict(arrays))
+        if not compressed or held > _most_bytes(file.tell()):
+            file.seek(0)
+            file.truncate()
+            np.savez(file, allow_pickle=False, **dict(arrays))
 
 
 def read_arrays(
@@ -32,28 +48,32 @@ def read_arrays(
     """Read all arrays of a file; nothing in it is ever executed.
 
     A ParameterError names a file that is no ``.npz`` file of plain numbers and strings, is cut off
-    or damaged, or whose arrays hold more than `most_bytes` together.
+    or damaged, or whose arrays hold more than `most_bytes` together: by default 16 GiB, and more
+    than 64 MiB only in a file that is a hundredth of it.
     """
-    most = MOST_BYTES if most_bytes is None else most_bytes
     with open_plain(path) as file:
+        most = _most_bytes(os.fstat(file.fileno()).st_size) if most_bytes is None else most_bytes
         try:
             with zipfile.ZipFile(file) as archive:
                 held = sum(entry.file_size for entry in archive.infolist())
                 if held > most:
                     raise ValueError(f"it holds {held} bytes of {most} that are accepted")
-                # Whole entries, whose checksums are compared; NumPy alone may stop before the end.
-                parts = [(each.filename, archive.read(each)) for each in archive.infolist()]
-            arrays: dict[str, NDArray[Any]] = {}
-            for path_within, data in parts:
-                name = path_within.removesuffix(".npy")
-                if name in arrays:
-                    raise ValueError(f"it holds {name!r} twice")
-                array = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-                arrays[name] = array
-                if array.dtype.kind not in "biufU":
-                    raise ValueError(f"{name} must not hold {array.dtype}")
+                return _arrays_in(archive)
         except Exception as error:
             # zipfile, zlib and NumPy raise very different things for damaged bytes.
             reason = str(error) or type(error).__name__
             raise ParameterError(f"{path} is no whole, unharmed .npz file: {reason}") from error
+
+
+def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
+    arrays: dict[str, NDArray[Any]] = {}
+    for entry in archive.infolist():
+        name = entry.filename.removesuffix(".npy")
+        if name in arrays:
+            raise ValueError(f"it holds {name!r} twice")
+        # The whole entry, whose checksum is compared; NumPy alone may stop before its end.
+        data = io.BytesIO(archive.read(entry))
+        arrays[name] = np.lib.format.read_array(data, allow_pickle=False)
+        if arrays[name].dtype.kind not in "biufU":
+            raise ValueError(f"{name} must not hold {arrays[name].dtype}")
     return arrays

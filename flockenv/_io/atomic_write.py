@@ -5,8 +5,9 @@ import importlib
 import os
 import re
 import secrets
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -31,15 +32,17 @@ _temporary: set[Path] = set()
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
 
-    It is removed on every way out but a kill, at the latest when Python ends. If the file cannot be
-    written, which is an OSError, what was there before is still there. A ParameterError refuses to
-    take the place of a device, a pipe or a socket.
+    It is removed on every way out but a kill, at the latest when Python ends. A file that is
+    replaced keeps its mode, and a link stays a link: the file that it names is replaced. If the
+    file cannot be written, which is an OSError, what was there before is still there. A
+    ParameterError refuses to take the place of a device, a pipe or a socket.
     """
-    target = Path(path)
-    check_writable(target)
+    check_writable(path)
+    target = Path(os.path.realpath(path))
     temporary, file = _held_file(target.parent)
     try:
         with file:
+            _keep_access(target, file)
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -68,6 +71,17 @@ def _held_file(folder: Path) -> tuple[Path, IO[bytes]]:
         # Another process took it for a leftover, before it was held.
         file.close()
         _temporary.discard(temporary)
+
+
+def _keep_access(target: Path, file: IO[bytes]) -> None:
+    """Give a new file the mode of the one that it will replace, before anything is in it."""
+    if fcntl is None or not target.exists():
+        return
+    before, now = target.stat(), os.fstat(file.fileno())
+    if (before.st_uid, before.st_gid) != (now.st_uid, now.st_gid):
+        with suppress(OSError):  # Only root gives files away.
+            os.fchown(file.fileno(), before.st_uid, before.st_gid)
+    os.fchmod(file.fileno(), stat.S_IMODE(before.st_mode))
 
 
 def _is_locked(file: IO[bytes]) -> bool | None:
@@ -104,7 +118,8 @@ def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) ->
 def remove_temporary_files() -> None:
     """Remove what unfinished writing left, before the process ends."""
     for path in tuple(_temporary):
-        path.unlink(missing_ok=True)
+        with suppress(OSError):  # One that cannot be removed does not keep the others.
+            path.unlink(missing_ok=True)
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:

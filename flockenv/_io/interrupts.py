@@ -2,7 +2,8 @@
 
 While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
 done, and executors start no further run. A second signal ends the process at once. A request to
-end, as of Slurm before a job's time is over, counts as Ctrl-C.
+end, as of Slurm before a job's time is over, and the end of the terminal count as Ctrl-C. The end
+of a terminal is told by the system and by the shell, and so it ends nothing at once.
 """
 
 import os
@@ -17,7 +18,8 @@ from flockenv._io.atomic_write import remove_temporary_files
 INTERRUPTED = 130
 """Exit code after Ctrl-C."""
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_HANGUP = getattr(signal, "SIGHUP", None)  # None on Windows.
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, *(() if _HANGUP is None else (_HANGUP,)))
 _NOTED = b"\nEnding when the work under way is done. Ctrl-C again does not wait.\n"
 _SHOW_CURSOR = b"\x1b[?25h"
 
@@ -59,7 +61,7 @@ def noted_interrupts() -> Iterator[None]:
 
 def _note(number: int, frame: Any) -> None:
     global _is_noted
-    if not _is_noted:
+    if not _is_noted or number == _HANGUP:
         _is_noted = True
         _write(_NOTED)
         return

@@ -8,6 +8,8 @@ from typing import BinaryIO
 
 from flockenv.errors import ParameterError, shown
 
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
 
 def is_special(path: str | os.PathLike[str]) -> bool:
     """Return whether a path that is there is a device, a pipe or a socket."""
@@ -46,8 +48,18 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:
-    """Refuse to put a file in the place of a device, a pipe or a socket."""
-    if Path(path).exists() and is_special(path):
+    """Refuse to put a file in the place of a device, a pipe or a socket, or of a protected file.
+
+    A file that nobody may write to, or this user may not, is a PermissionError: renaming another
+    one to its name would pass over the protection, as root may anyway.
+    """
+    if not Path(path).exists():
+        return
+    if is_special(path):
         raise ParameterError(
             f"{os.fspath(path)} cannot be written: it is a device, a pipe or a socket"
         )
+    is_protected = not stat.S_IMODE(os.stat(path).st_mode) & _WRITABLE
+    if is_protected or not os.access(path, os.W_OK):
+        words = "it is protected against writing"
+        raise PermissionError(errno.EACCES, words, os.fspath(path))

@@ -143,7 +143,10 @@ def _seconds(cases: list[Case], policies: dict[str, dict[str, Any]]) -> float:
 def _compared(
     options: CompareOptions, cases: list[Case], policies: dict[str, dict[str, Any]]
 ) -> ComparisonReport:
-    """Run the cases and return their report; it is written whenever a case is finished."""
+    """Run the cases and return their report, which is written whenever a case is finished.
+
+    After Ctrl-C it is written, too, of the policies and numbers of leaders that were finished.
+    """
     names = list(dict.fromkeys(name for each in policies.values() for name in each))
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
     shown = {
@@ -156,12 +159,27 @@ def _compared(
     conditions = {"command": command, "policies": shown}
     hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
     finished: list[Any] = []
+
+    def written(**more: Any) -> ComparisonReport:
+        runs = require("pandas", "plot").concat(finished, ignore_index=True)
+        runs.insert(0, "case", runs.pop("case"))
+        there = [case for case in cases if case.name in set(runs["case"])]
+        result = ComparisonReport(there, names, runs, conditions | more)
+        result.write(options.out)
+        return result
+
     with progress("simulating", 3600 * hours, options.shows_nothing) as advance:
-        for case in cases:
-            finished.append(case.run(policies[case.name], advance))
-            runs = require("pandas", "plot").concat(finished, ignore_index=True)
-            result = ComparisonReport(cases[: len(finished)], names, runs, conditions)
-            result.write(options.out)
+        try:
+            for case in cases:
+                case.run(policies[case.name], advance, finished.append)
+                result = written()
+        except KeyboardInterrupt:
+            if not finished:
+                raise
+            written(interrupted=True)
+            pairs = "pair" if len(finished) == 1 else "pairs"
+            words = f"{len(finished)} {pairs} of a policy and a number of leaders"
+            raise KeyboardInterrupt(f"{options.out} holds what was finished: {words}.") from None
     return result
 
 

@@ -14,12 +14,16 @@ from flockenv.cli.console import errors, say
 
 @contextmanager
 def progress(
-    what: str, total: float, quiet: bool, ends: bool = True
+    what: str,
+    total: float,
+    quiet: bool,
+    ends: bool = True,
+    kept: str = "Nothing of it is stored.",
 ) -> Iterator[Callable[..., None]]:
     """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
 
     Yields a function that moves it on by an amount of work, and may change what it says is done;
-    with `ends`, work ends there if Ctrl-C was noted.
+    with `ends`, work ends there if Ctrl-C was noted. Then `kept` says what of the work is stored.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:
@@ -30,7 +34,10 @@ def progress(
             if ends:
                 end_if_interrupted()
 
-        yield advance
+        try:
+            yield advance
+        except KeyboardInterrupt as interrupt:
+            raise KeyboardInterrupt(*(interrupt.args or (kept,))) from None
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
@@ -42,8 +49,8 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
             try:
                 command(*arguments, **options)
                 end_if_interrupted()
-            except KeyboardInterrupt:
-                say("Interrupted. What was finished before is stored.", errors)
+            except KeyboardInterrupt as interrupt:
+                say(" ".join(["Interrupted.", *map(str, interrupt.args)]), errors)
                 raise typer.Exit(INTERRUPTED) from None
 
     return wrapped

@@ -3,22 +3,27 @@
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import errors, print_json, say, warn
-from flockenv.cli.options import Printing, argument, option, takes
+from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
+from flockenv.errors import ParameterError
 from flockenv.runs.executors import named
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
 from flockenv.runs.workload import Shard, measure_workload
 
+if TYPE_CHECKING:
+    from flockenv.runs.sweep import SweepSpec
+
 
 @dataclass(frozen=True, kw_only=True)
-class SweepOptions(Printing):
+class SweepOptions(Overwriting, Printing):
     """Options of `flockenv sweep`."""
 
     spec: Path = argument("TOML file that says what to run.")
@@ -42,6 +47,7 @@ def sweep(options: SweepOptions) -> None:
     `runs/`: give the same command again to resume. Machines that share a folder can make one shard
     each, with `--shard 1/8` to `--shard 8/8`; afterwards the command without `--shard` writes the
     table.
+    A folder holds one sweep: for another one, name another folder or give `--force`.
     `docs/runs.md` describes the TOML file. If a run fails, its row says why, the others go on, and
     the command ends with exit code 1.
 
@@ -61,10 +67,17 @@ def sweep(options: SweepOptions) -> None:
         _show_workload(options, runs, store)
         return
     copy = folder / "sweep.toml"
+    if copy.exists() and not options.force and not _is_same(copy, work):
+        raise ParameterError(
+            f"{copy} is there already, of another sweep: name another folder with --out, or "
+            "replace its table with --force"
+        )
     prepare(copy)
     write_text(copy, options.spec.read_text("utf-8"))
     total = sum(run.cost for run in runs)
-    with progress(f"{len(runs)} runs", total, options.shows_nothing, ends=False) as advance:
+    kept = f"The runs that were finished are stored in {folder}: the same command resumes."
+    bar = progress(f"{len(runs)} runs", total, options.shows_nothing, ends=False, kept=kept)
+    with bar as advance:
 
         def finished(run: RunSpec) -> None:
             advance(run.cost)
@@ -91,6 +104,16 @@ def sweep(options: SweepOptions) -> None:
     if failed:
         say(f"{failed} of {len(runs)} runs failed: {where}", errors)
         raise typer.Exit(1)
+
+
+def _is_same(path: Path, work: "SweepSpec") -> bool:
+    """Return whether the file of a sweep names the same runs, however it is written."""
+    from flockenv.runs.sweep import read_sweep
+
+    try:
+        return read_sweep(path) == work
+    except ParameterError:
+        return False
 
 
 def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) -> None:

@@ -70,7 +70,8 @@ def train(options: TrainOptions) -> None:
         raise ParameterError(
             "--resume takes settings from the folder; only --flock-hours may differ"
         )
-    with progress("training", 1.0, options.shows_nothing, ends=False) as advance:
+    kept = f"{out} holds the last checkpoint: --resume continues from it."
+    with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
         shown = 0.0
 
         def report(now: "TrainingProgress") -> None:

@@ -46,10 +46,12 @@ class Case:
         self,
         policies: Mapping[str, Steering],
         progress: Callable[[float], None] = lambda flock_seconds: None,
+        finished: Callable[["pd.DataFrame"], object] = lambda rows: None,
     ) -> "pd.DataFrame":
         """Run every policy; return a row per episode, as `compare_leaders` with a column ``case``.
 
-        Raises what `compare_leaders` raises.
+        Calls `finished` with the rows of a policy and number of leaders as soon as they are there,
+        and raises what `compare_leaders` raises.
         """
         targets = self.targets or (self.parameters.target,)
         parts = [
@@ -61,6 +63,7 @@ class Case:
                 self.episode_s,
                 progress,
                 self.environment,
+                lambda rows: finished(rows.assign(case=self.name)),
             )
             for place, target in enumerate(targets)
         ]

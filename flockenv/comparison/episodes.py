@@ -70,6 +70,7 @@ def compare_leaders(
     duration_s: float,
     progress: Callable[[float], None] = lambda flock_seconds: None,
     environment: Mapping[str, Any] | None = None,
+    finished: Callable[["pd.DataFrame"], object] = lambda rows: None,
 ) -> "pd.DataFrame":
     """Run seeded episodes for every policy and number of leaders.
 
@@ -97,6 +98,8 @@ def compare_leaders(
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
         ``dropout_rate=0.003``. If there are any, flocks without leaders, the paper's law at every
         substep and a policy for each leader are refused: they run in `simulate`, without options.
+    finished
+        Called with the rows of each policy and number of leaders, as soon as they are there.
 
     Returns
     -------
@@ -114,6 +117,7 @@ def compare_leaders(
     """
     pandas = require("pandas", "plot")
     check_function(progress, "progress")
+    check_function(finished, "finished")
     leaders = [whole(k, "leaders") for k in items(leaders, "leaders")]
     seeds = items(seeds, "seeds")
     check_evaluation_seeds(seeds)
@@ -172,6 +176,7 @@ def compare_leaders(
                 measured = run_episodes(led, fresh, seeds, duration_s, progress, options)
             rows = {"policy": name, "leaders": k, "seed": seeds, **measured}
             tables.append(pandas.DataFrame(rows))
+            finished(tables[-1])
     runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
     return runs
 

@@ -69,13 +69,13 @@ class Recording:
     rudder : float64 array, shape (t, k), or None
         Rudder commands of the leaders in [-1, 1]: eq. (10) at each pose under the law, otherwise
         the command that was held up to each time, 0 at the start. None if they were not recorded,
-        as in files of version 0.1.0 and in stored runs of sweeps.
+        as in stored runs of sweeps.
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None
         What steered the leaders: "paper's law at every substep", or the policy's name; a learned
-        policy's name ends in the first digits of its SHA-256. None if that is unknown, as in files
-        of version 0.1.0.
+        policy's name ends in the first digits of its SHA-256. None if that is unknown, as for
+        tracks.
     duration_s : float
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.

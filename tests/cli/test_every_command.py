@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 
+import pandas as pd
 import pytest
 
 import flockenv
@@ -126,15 +127,42 @@ EPISODES = ["compare", "--episodes", "2", "--minutes", "9", "--set", "n_boats=5"
     [
         (["run"], (sys.modules["flockenv.cli.run"], "simulate")),
         (EPISODES, (episodes, "simulate")),
-        (EPISODES, (flockenv.LeadersVectorEnv, "step")),
+        ([*EPISODES, "--n-leaders", "1"], (flockenv.LeadersVectorEnv, "step")),
     ],
 )
 def test_ctrl_c_leaves_no_half_result(cli, arguments, place, tmp_path, pressed_in):
     pressed_in(*place)
     done = cli(*arguments, "--out", tmp_path / "sub" / "out.npz")
     assert done.returncode == 130, done.stderr
-    assert "Interrupted. " in done.stderr
+    assert "Interrupted. Nothing of it is stored." in done.stderr
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+def test_ctrl_c_keeps_what_a_comparison_has_finished(cli, tmp_path, monkeypatch):
+    """Pressed in the second of eight parts: the first one is there as a whole comparison has it."""
+    reset, calls = flockenv.LeadersVectorEnv.reset, []
+
+    def pressed(*arguments, **options):
+        calls.append(1)
+        if len(calls) == 2:
+            signal.raise_signal(signal.SIGINT)
+        return reset(*arguments, **options)
+
+    words = [*EPISODES[:3], "--set", "n_boats=5", "--n-leaders", "1-2", "--minutes", "0.2"]
+    words += ["--quiet", "--out"]
+    monkeypatch.setattr(flockenv.LeadersVectorEnv, "reset", pressed)
+    done = cli(*words, tmp_path / "part")
+    assert done.returncode == 130, done.stderr
+    words_of_it = "part holds what was finished: 1 pair of a policy and a number of leaders."
+    assert words_of_it in done.stderr.replace("\n", " ")
+    monkeypatch.undo()
+    cli.succeeds(*words, tmp_path / "whole")
+    part, whole = (pd.read_csv(tmp_path / each / "runs.csv") for each in ("part", "whole"))
+    assert part.equals(whole[: len(part)])
+    assert len(part) == 2
+    assert "interrupted = true" in (tmp_path / "part" / "run.toml").read_text()
+    assert "interrupted" not in (tmp_path / "whole" / "run.toml").read_text()
+    assert not list(tmp_path.rglob("*.tmp"))
 
 
 def test_ctrl_c_keeps_the_runs_of_a_sweep(cli, tmp_path, pressed_in):
@@ -143,6 +171,7 @@ def test_ctrl_c_keeps_the_runs_of_a_sweep(cli, tmp_path, pressed_in):
     pressed_in(store, "execute")
     done = cli("sweep", spec, "--workers", "1", "--out", out)
     assert done.returncode == 130, done.stderr
+    assert "are stored in" in done.stderr
     assert len(list(out.rglob("*.npz"))) == 1
     cli.succeeds("sweep", spec, "--out", out)
     assert len(list(out.rglob("*.npz"))) == 9

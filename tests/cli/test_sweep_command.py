@@ -1,6 +1,13 @@
 """`flockenv sweep` writes one table, continues where it was, and refuses mistakes in one line."""
 
+import fcntl
 import json
+import os
+import signal
+import subprocess
+import sys
+import termios
+import time
 from pathlib import Path
 
 from flockenv.runs.sweep import load_sweep
@@ -63,3 +70,53 @@ def test_runs_that_fail_are_counted_and_end_in_exit_code_1(cli, tmp_path: Path) 
     assert shard.returncode == 1
     assert json.loads(shard.stdout) == {"shard": "1/1", "runs": 4, "failed": 2}
     assert "2 of 4 runs failed" in shard.stderr
+
+
+def test_a_folder_holds_one_sweep(cli, tmp_path: Path) -> None:
+    """Another design is refused, before anything changes; the same one may be written anew."""
+    spec, other, out = tmp_path / "a.toml", tmp_path / "other.toml", tmp_path / "out"
+    spec.write_text(SPEC.replace("seeds = 2", "seeds = 1"))
+    other.write_text(SPEC.replace("0.4", "0.6"))
+    cli.succeeds("sweep", spec, "--out", out)
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    for more in ([], ["--shard", "1/2"], ["--json"]):
+        refused = cli("sweep", other, "--out", out, *more)
+        assert refused.returncode == 2
+        assert "sweep.toml is there already, of another sweep" in refused.stderr.replace("\n", " ")
+        assert before == {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    # Looking at it changes nothing, and the same design may have another layout.
+    cli.succeeds("sweep", other, "--out", out, "--dry-run")
+    spec.write_text("# The same.\n" + SPEC.replace("seeds = 2", "seeds = [0]"))
+    cli.succeeds("sweep", spec, "--out", out)
+    assert (out / "sweep.toml").read_text().startswith("# The same.")
+    cli.succeeds("sweep", other, "--out", out, "--force")
+    assert (out / "sweep.toml").read_text() == other.read_text()
+    (out / "sweep.toml").write_text("no sweep")
+    assert cli("sweep", other, "--out", out).returncode == 2
+
+
+def test_the_end_of_the_terminal_keeps_the_runs_under_way(cli, tmp_path: Path) -> None:
+    """Like SIGTERM: the run under way is stored, no other one is started."""
+    spec, out = tmp_path / "noise.toml", tmp_path / "out"
+    spec.write_text("minutes = 20\nseeds = 40\n[[grid]]\nn_boats = [20]\n")
+    master, terminal = os.openpty()
+    call = [sys.executable, "-c", cli.CALL, "sweep", str(spec), "--workers", "1", "--out", str(out)]
+    process = subprocess.Popen(
+        call, stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=True,
+        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+    )  # fmt: skip
+    os.close(terminal)
+    deadline = time.monotonic() + 60
+
+    def stored() -> int:
+        return len(list(out.rglob("*.npz")))
+
+    while stored() < 1:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    os.close(master)
+    before = stored()
+    process.wait(timeout=60)
+    assert process.returncode != -signal.SIGHUP
+    assert before < stored() <= before + 2
+    assert not list(out.rglob(".*.tmp"))

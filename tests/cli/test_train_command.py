@@ -87,7 +87,7 @@ def test_an_interrupt_leaves_a_checkpoint(
     out = tmp_path / "run"
     done = cli("train", *TINY, "--quiet", "--out", out)
     assert done.returncode == 130
-    assert "Interrupted. What was finished before is stored." in done.stderr
+    assert f"Interrupted. {out} holds the last checkpoint: --resume continues" in done.stderr
     monkeypatch.undo()
     assert {path.name for path in out.iterdir()} >= {"checkpoint.zip", "settings.toml"}
     assert not list(out.glob("*.tmp"))

@@ -3,6 +3,7 @@ writer leaves half a file."""
 
 import io
 import os
+import tracemalloc
 import zipfile
 from functools import cache
 from pathlib import Path
@@ -14,7 +15,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from flockenv import FlockError, FlockParameters, ParameterError, Recording, simulate
-from flockenv._io.array_file import read_arrays
+from flockenv._io import array_file
+from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.cli.parameters import OneFlock
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy, load
@@ -207,6 +209,35 @@ def test_an_archive_that_would_fill_the_memory_is_refused_unread(tmp_path):
     )
     with pytest.raises(ParameterError, match="it holds 21474836480 bytes"):
         read_arrays(tmp_path / "bomb.npz")
+
+
+def test_zeros_that_would_fill_the_memory_are_refused_unread(tmp_path):
+    """A hundred times the file, and at least 64 MiB, are accepted; zeros take a thousandth."""
+    entry = io.BytesIO()
+    np.save(entry, np.zeros(20_000_000))
+    blob = archive(["pose"], entry.getvalue(), zipfile.ZIP_DEFLATED)
+    del entry
+    assert len(blob) < 1 << 20
+    (tmp_path / "bomb.npz").write_bytes(blob)
+    tracemalloc.start()
+    try:
+        with pytest.raises(ParameterError, match=f"160000128 bytes of {64 << 20} that are"):
+            Recording.load(tmp_path / "bomb.npz")
+        assert tracemalloc.get_traced_memory()[1] < 10 << 20
+    finally:
+        tracemalloc.stop()
+
+
+def test_what_is_written_is_read_however_little_it_takes(tmp_path, monkeypatch):
+    """Flocks at rest compress like zeros: they are stored plain, and read again."""
+    monkeypatch.setattr(array_file, "_FREE_BYTES", 1000)
+    for arrays in ({"rest": np.zeros(100_000)}, {"noise": np.random.default_rng(1).random(1000)}):
+        write_arrays(tmp_path / "a.npz", arrays, compressed=True)
+        for name, array in read_arrays(tmp_path / "a.npz").items():
+            assert np.array_equal(array, arrays[name])
+    monkeypatch.undo()
+    write_arrays(tmp_path / "b.npz", {"rest": np.zeros(100_000)}, compressed=True)
+    assert (tmp_path / "b.npz").stat().st_size < 10_000
 
 
 WRITERS = {

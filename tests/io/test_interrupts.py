@@ -18,7 +18,7 @@ from flockenv._io.interrupts import end_if_interrupted, interrupted, noted_inter
 press = partial(signal.raise_signal, signal.SIGINT)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_is_noted_until_work_can_end(number, capfd):
     before = signal.getsignal(number)
     with noted_interrupts():
@@ -68,6 +68,43 @@ def test_a_second_one_ends_the_process_and_its_temporary_file(tmp_path):
     done = subprocess.run(words, capture_output=True, text=True, timeout=60)
     assert (done.returncode, done.stdout) == (130, "goes on\n")
     assert list(tmp_path.iterdir()) == []
+
+
+HANGUP = """
+import signal, sys
+from flockenv._io.interrupts import interrupted, noted_interrupts
+with noted_interrupts():
+    for number in sys.argv[1:]:
+        signal.raise_signal(int(number))
+    print(interrupted(), flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("numbers", "code", "printed"),
+    [
+        ((signal.SIGHUP,), 0, "True\n"),
+        # The system and the shell both tell of a terminal's end, and systemd after SIGTERM.
+        ((signal.SIGHUP, signal.SIGHUP), 0, "True\n"),
+        ((signal.SIGTERM, signal.SIGHUP), 0, "True\n"),
+        ((signal.SIGHUP, signal.SIGTERM), 130, ""),
+        ((signal.SIGTERM, signal.SIGINT), 130, ""),
+    ],
+)
+def test_the_end_of_a_terminal_never_ends_work_at_once(numbers, code, printed):
+    words = [sys.executable, "-c", HANGUP, *(str(int(each)) for each in numbers)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (code, printed)
+
+
+def test_nohup_is_kept():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with noted_interrupts():
+            signal.raise_signal(signal.SIGHUP)
+            assert not interrupted()
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 class Interrupt:
