@@ -144,9 +144,8 @@ test-studies: $(STAMPS)/test $(CORE) ## the tests of studies/: every study's sho
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
-tables: build ## fill the tables and draw the curves of README and docs from the committed data
-	$(BIN)/python docs/tables.py
-	$(BIN)/python docs/plots.py
+floors pictures: build ## print the floors of ARCHITECTURE.md from the linter's layers; draw pages' plots whose data changed
+	$(BIN)/python -m docs.scripts.$(if $(filter floors,$@),floors,plots)
 
 audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what this depends on
 	$(UV) --quiet pip-audit

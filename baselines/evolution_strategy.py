@@ -27,11 +27,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from provenance import provenance_of
 
 import flockenv
 from flockenv.policies import LeaningLaw, NetworkPolicy
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
+from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS
 
 SEEDS = POLICY_SEEDS["evolution strategy"]

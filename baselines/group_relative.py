@@ -2,7 +2,7 @@
 
     python baselines/group_relative.py --seed 0       # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/group/0/policy.json --n-leaders 3
-    python baselines/judge_trainings.py results/group/*     # in the flocks of docs/learning.md
+    python -m studies.trainings.judge_trainings results/group/*     # in the same 512 flocks
 
 Seeds 0 to 4 reach an order of 0.459 to 0.500 with 200 flock-hours, 44 to 46 s of one core each. The
 tuned law has 0.451.
@@ -28,9 +28,9 @@ from pathlib import Path
 
 import numpy as np
 from paired_branches import DECAY_1, DECAY_2, Branches, law
-from provenance import provenance_of
 
 from flockenv.policies.laws import LEAN_FEATURES
+from flockenv.policies.provenance import provenance_of
 
 
 @dataclass(frozen=True)

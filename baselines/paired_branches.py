@@ -2,7 +2,7 @@
 
     python baselines/paired_branches.py --seed 0          # from the tuned law, a minute of one core
     flockenv compare --policy "tuned law" --policy results/paired/0/policy.json --n-leaders 3
-    python baselines/judge_trainings.py results/paired/*     # in the flocks of docs/learning.md
+    python -m studies.trainings.judge_trainings results/paired/*     # in the same 512 flocks
 
 Seeds 0 to 4 reach an order of 0.455 to 0.481 with 200 flock-hours, 42 s of one core each, where the
 tuned law has 0.451.
@@ -11,7 +11,7 @@ A policy is linear in the 29 lean features, as in examples/train_leaders.py, and
 law. Each pair of flocks starts from one snapshot and meets one noise. The two flocks differ by a
 Gaussian change of the weights, added in one and subtracted in the other. For about a minute what
 the noise does to them is nearly the same, so that the difference of their orders shows the change
-of the weights (docs/learning.md has the measurement). Adam follows the sum of changes times
+of the weights (studies/paired_signal has the measurement). Adam follows the sum of changes times
 differences. Then both flocks of a pair continue from the present state of one of them, drawn by a
 coin, until an episode of 8 minutes is over and the pair starts at rest again. So no flock-hour is
 spent on anything but the comparison, and the states are those that the policy leads to.
@@ -29,12 +29,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from evolution_strategy import lean
-from provenance import provenance_of
 
 import flockenv
 from flockenv.policies import LeaningLaw
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
+from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS
 
 DECAY_1, DECAY_2 = 0.9, 0.99
@@ -61,9 +60,21 @@ class Branches:
 
     def __init__(self, settings: Any, groups: int, seed: int, size: int = 2) -> None:
         self.settings, self.groups, self.size = settings, groups, size
-        task = {**lean(settings.pool, settings.branch_s), "reward_horizon_s": 1.0}
+        others = dict.fromkeys(("own", "phase", "target", "order"), False)
         self.env = flockenv.LeadersVectorEnv(
-            size * groups, autoreset_mode="disabled", mirror_to_target=True, **task
+            size * groups,
+            autoreset_mode="disabled",
+            pool=settings.pool,
+            n_boats=27,
+            n_leaders=3,
+            bw_s=flockenv.FlockParameters.critical_bw_s("simulation", settings.pool),
+            observation={**others, "neighbors": 0, "lean_features": True},
+            mirror_to_target=True,
+            action_mode="lean",
+            decision_period_s=1.0,
+            episode_s=settings.branch_s,
+            reward_horizon_s=1.0,
+            physics="training",
         )
         self._coins = np.random.default_rng([seed, 1])
         self._seeds = iter(POLICY_SEEDS["paired branches"].seeds(1 << 20, run=seed))

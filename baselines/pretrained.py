@@ -2,7 +2,7 @@
 
     make pretrained                              # an hour and a half of one core
     python baselines/pretrained.py --trial       # all of it with little of everything, a minute
-    python baselines/pretrained.py --ship        # copies what passes to baselines/policies
+    python baselines/pretrained.py --ship        # copies what passes to src/policies/learned
 
 In `wide` three leaders reach a signed order of 0.503 in the mean of eight seeds, 0.481 to 0.520,
 where the tuned law reaches 0.451. In `narrow` no seed passes the tuned law.
@@ -24,7 +24,7 @@ PPO also keeps its policy after 500 flock-hours. judge_trainings.py has the comm
 all seeds.
 
 The policy of a pool ships if it leads at least as well in the validation flocks as the tuned law
-and as the policy that ships already. docs/training/pretrained keeps what the command wrote, without
+and as the policy that ships already. studies/trainings keeps what the command wrote, without
 the rows of the policies that shipped before.
 """
 
@@ -41,18 +41,18 @@ from typing import Any
 import numpy as np
 import paired_branches
 import pandas as pd
-from provenance import provenance_of
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 
 from flockenv import FlockParameters
 from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, LeaningLaw
+from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.statistics import mean_interval
 from flockenv.training import TrainingSettings
 
-SHIPPED = Path(__file__).parent / "policies"
+SHIPPED = Path(__file__).parents[1] / "src" / "policies" / "learned"
 
 
 @dataclass(frozen=True)
@@ -259,9 +259,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=tuple(MAKERS), action="append", help="[both]")
     parser.add_argument("--trial", action="store_true", help="little of everything")
-    parser.add_argument(
-        "--ship", action="store_true", help="copy to baselines/policies if it passes"
-    )
+    parser.add_argument("--ship", action="store_true", help="copy into the core if it passes")
     parser.add_argument("--out", type=Path, default=Path("results/pretrained"))
     options = parser.parse_args(arguments)
     if options.trial and options.ship:

@@ -14,10 +14,9 @@ from sphinx.environment import BuildEnvironment
 
 import flockenv
 
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent / "extensions")]
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "extensions")]
 
-import environment_pages  # noqa: E402
-
+from docs.scripts import environment_pages  # noqa: E402
 from flockenv.replay import write_replay  # noqa: E402
 from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 

@@ -131,7 +131,7 @@ class FlockParameters:
         """Critical noise of 27 boats: the bw_s at which leaderless flocks lose their order.
 
         There the mean Ψ_o of leaderless runs falls through the middle between its ordered and its
-        disordered level. ``baselines/critical_noise.py`` measured it for Table 3's presets in both
+        disordered level. ``studies/critical_noise`` measured it for Table 3's presets in both
         named pools, and for ``"experiment"`` in ``"narrow"``. A ParameterError refuses other
         presets and pools.
         """
@@ -140,7 +140,7 @@ class FlockParameters:
             raise ParameterError(
                 f"pool = {shown(pool)}: the critical noise of preset {preset!r} has not been "
                 "measured there. Choose another pool, or give a backward duration (bw_s; on the "
-                "command line `--pool narrow` or `--set bw_s=1.0`); baselines/critical_noise.py "
+                "command line `--pool narrow` or `--set bw_s=1.0`); studies/critical_noise "
                 "measures it"
             )
         return bw_s

@@ -12,7 +12,7 @@ export VIRTUAL_ENV="$PWD/.venv-$name" PATH="$PWD/.venv/bin:$PATH"
 case $name in
   benchmarl)
     needs=(--extra benchmarl --extra train --extra plot sb3-contrib)
-    tests=(-m "benchmarl or not benchmarl" tests/benchmarl tests/torchrl tests/baselines/test_suite_grid.py)
+    tests=(-m "benchmarl or not benchmarl" tests/benchmarl tests/torchrl studies/suite/test_suite_grid.py)
     ;;
   rllib)
     needs=(--extra ray "torch>=2.5")

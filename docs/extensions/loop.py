@@ -7,9 +7,10 @@ from typing import ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
-from loops import LoopError, draw_commands, shown
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
+
+from docs.scripts.loops import LoopError, draw_commands, shown
 
 
 class Loop(SphinxDirective):

@@ -60,9 +60,9 @@ impl DampedLaw {
     /// The tuned law: the damped law with the gains tuned in a pool, by the pool's name.
     ///
     /// Source: CMA-ES (seed 0) for three leaders among 27 boats at each pool's critical noise, on training seeds. In
-    /// docs/leaders/tuned_laws, gains.toml names its command and commit, and damped-law-POOL.csv has its candidates and
-    /// their scores, from which a test finds these gains again. Today's baselines/tune_laws.py searches for longer, and
-    /// found no better ones.
+    /// studies/tuned_laws (results), gains.toml names its command and commit, and damped-law-POOL.csv has its
+    /// candidates and their scores, from which a test finds these gains again. Today's tune_laws.py there searches for
+    /// longer, and found no better ones.
     pub const TUNED: [(&str, Self); 2] = [
         (
             "wide",

@@ -47,7 +47,7 @@ def recorded() -> Iterator[tuple[str, str, str]]:
     for folder in DATA:
         for path in sorted((REPOSITORY / folder).rglob("*")):
             name = str(path.relative_to(REPOSITORY))
-            if {"_build", "results", "__pycache__"} & {*path.parts}:
+            if {"_build", "__pycache__"} & {*path.parts}:
                 continue
             if path.suffix == ".json":
                 yield from ((name, *each) for each in records(json.loads(path.read_text("utf-8"))))
@@ -127,9 +127,9 @@ EVERY = [*recorded()]
 def test_commands_are_found():
     files = {file for file, _, _ in EVERY}
     assert files >= {
-        "baselines/tune_laws.py",
+        "studies/tuned_laws/tune_laws.py",
         "docs/sweep-example.toml",
-        "docs/leaders/tuned_laws/gains.toml",
+        "studies/tuned_laws/results/gains.toml",
         "src/policies/learned/wide.json",
     }
 
@@ -153,7 +153,7 @@ def test_commands_are_taken(file, command, commit, monkeypatch, capsys):
         "flockenv judge",
         "python baselines/average_policies.py a.npz",
         "python baselines/evolution_strategy.py --form leaning",
-        "python baselines/train_from_nothing.py wide 0 1",
+        "python -m studies.planning.plan_ahead --noise none",
     ],
 )
 def test_what_no_program_takes_is_found(command, monkeypatch):

@@ -1,19 +1,15 @@
 """Law: the moving picture of a page is what the commands beside it make, and drawn once."""
 
-import importlib
 import re
-import sys
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
+from docs.scripts import id_pages, loops
 from flockenv.envs.ids import ENVIRONMENTS
 
 DOCS = Path(__file__).parents[2] / "docs"
-sys.path.append(str(DOCS))  # as for conf.py
-loops = importlib.import_module("loops")
-id_pages = importlib.import_module("id_pages")
 LOOP = re.compile(r"^```\{loop\} (\S+)\n:alt: .+\n((?:flockenv .*\n(?: .*\n)*)+)```$", re.MULTILINE)
 GALLERY = (DOCS / "pictures.md").read_text("utf-8")
 SMALL = """flockenv run -q --n-boats 3 --minutes 0.1 --out small.npz

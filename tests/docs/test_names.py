@@ -7,7 +7,6 @@ import inspect
 import io
 import re
 import shlex
-import sys
 import tokenize
 from functools import cache
 from pathlib import Path
@@ -33,7 +32,6 @@ OTHERS = {
     "benches/README.md": {"callgrind_annotate"},
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
     "docs/extend/task.md": {"carousel.monitor.csv"},
-    "docs/leaders.md": {"damped-law-POOL.csv", "damped-law-POOL-LEADERS.csv"},
     "docs/other_learners.md": {"TanhNormal"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
     "docs/speed_vs_error.md": {"boids"},
@@ -66,9 +64,8 @@ FOREIGN = (
 
 def _pages() -> dict[str, str]:
     """The text of each page, those that are generated included."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "path", [str(DOCS), *sys.path])
-        import environment_pages
+    from docs.scripts import environment_pages
+
     folders = ("docs", "studies", "benches", "baselines", "web", "examples")
     found = [*REPOSITORY.glob("*.md"), *(f for each in folders for f in _files(each, "*.md"))]
     texts = {str(path.relative_to(REPOSITORY)): path.read_text("utf-8") for path in found}

@@ -2,7 +2,6 @@
 
 import inspect
 import re
-import sys
 from pathlib import Path
 
 import gymnasium
@@ -45,9 +44,7 @@ LONGEST = 150
 @pytest.fixture(scope="module")
 def tables():
     """The page of tables: its rows by section."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "path", [str(DOCS), *sys.path])
-        import environment_pages
+    from docs.scripts import environment_pages
 
     sections = re.split(r"^## ", environment_pages.tables(), flags=re.MULTILINE)[1:]
     return {text.split("\n", 1)[0]: re.findall(r"^\| `(.+?)` ", text, re.M) for text in sections}

@@ -4,7 +4,6 @@ import ast
 import runpy
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
 import flockenv
@@ -13,7 +12,6 @@ from flockenv.comparison.figure import COLORS
 from flockenv.policies import names
 from flockenv.policies.names import LAWS
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
-from flockenv.runs.seeds import release_seeds
 
 REPOSITORY = Path(__file__).parents[2]
 PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
@@ -32,28 +30,8 @@ def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
 def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
     named = flockenv.policies.load("learned", pool="wide")
     assert named.law == named_policy("learned", "wide")().law
-    file = REPOSITORY / "baselines" / "policies" / "wide.json"
+    file = REPOSITORY / "src" / "policies" / "learned" / "wide.json"
     assert named.to_json() == flockenv.policies.load(file).to_json()
-
-
-def test_learned_leaders_are_what_the_recipe_made() -> None:
-    named = flockenv.policies.load("learned", pool="wide")
-    made = REPOSITORY / "docs" / "training" / "pretrained" / "wide" / named.provenance["seed"]
-    trained = flockenv.policies.load(made / "policy.json")
-    assert (named.bias, named.weights) == (trained.bias, trained.weights)
-    assert trained.provenance["command"] == named.provenance["command"]
-    script, *arguments = named.provenance["command"].split()[1:]
-    assert (REPOSITORY / script).exists()
-    assert arguments == ["--pool", "wide"]
-    scores = pd.read_csv(made.parents[1] / "validation-wide.csv", index_col="policy")["score"]
-    assert scores.idxmax() == f"seed {made.name}"
-    seeds = release_seeds("pretrained", 512)
-    assert named.judged["seeds"] == [seeds[0], seeds[-1]]
-
-
-def test_no_search_in_narrow_passes_the_tuned_law() -> None:
-    file = REPOSITORY / "docs" / "training" / "pretrained" / "validation-narrow.csv"
-    assert pd.read_csv(file, index_col="policy")["score"].idxmax() == "tuned law"
 
 
 def test_a_pool_without_learned_leaders_says_which_have_some() -> None:

@@ -1,0 +1,171 @@
+"""The pages of the environments, written whenever the pages are built.
+
+`classes.md` has the docstring of each class, and id_pages.py makes a page for each id. `tables.md`
+lists what the core declares: parameters, options, terms of the reward, entries of the observation
+and of the global state, features of the flock.
+"""
+
+import inspect
+import re
+from collections.abc import Iterable
+from dataclasses import fields
+from pathlib import Path
+
+import flockenv
+from docs.scripts.id_pages import draw_films, id_pages
+from docs.scripts.plots import DOCS, markdown
+from flockenv.envs.observation import (
+    BLOCKS,
+    Entry,
+    flock_feature_entries,
+    observation_entries,
+    state_entries,
+)
+from flockenv.envs.options import OPTIONS, TERMS
+from flockenv.parameters import FlockParameters
+from flockenv.sb3 import LeaderVecEnv
+
+FOLDER = DOCS / "environments"
+CLASSES = (
+    flockenv.LeadersEnv,
+    flockenv.LeadersParallelEnv,
+    flockenv.LeadersVectorEnv,
+    LeaderVecEnv,
+)
+EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
+
+
+def pages() -> dict[Path, str]:
+    """Return the text of every page."""
+    texts = {**id_pages(), "classes": classes(), "tables": tables()}
+    return {FOLDER / f"{name}.md": text for name, text in texts.items()}
+
+
+def classes() -> str:
+    """Return the page of the classes, which are their docstrings."""
+    docs = "\n\n".join(f"# {each.__name__}\n\n{inspect.getdoc(each)}" for each in CLASSES)
+    docs = docs.replace("docs/environments/tables.md", "[Tables](tables.md)")
+    docs = re.sub("^(#+ )", r"#\1", docs, flags=re.MULTILINE)
+    return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{docs}\n"
+
+
+def tables() -> str:
+    """Return the page of everything that the core declares of the environments."""
+    options = markdown(
+        ["option", "default", "meaning"],
+        [[f"`{name}`", f"`{each.default!r}`", _plain(each.doc)] for name, each in OPTIONS.items()],
+    )
+    terms = markdown(
+        ["term", "meaning"], [[f"`{name}`", _plain(meaning)] for name, meaning in TERMS.items()]
+    )
+    return f"""# Tables
+
+Every parameter of a flock, every option of the environments, every term of the reward, and every \
+number that a policy can observe. This page is written from what the core declares, so that it \
+lists what the installed version has.
+
+## Parameters
+
+The fields of `FlockParameters`, with their values in the presets: one value if all presets have \
+it. [The model](../model.md) says what they do to a flock.
+
+{_parameters()}
+
+## Options
+
+Any field of `FlockParameters` is an option too.
+
+{options}
+
+## Reward terms
+
+The option `reward` gives each a weight. `flockenv.envs.options.TERMS` holds this table.
+
+{terms}
+
+## Observation
+
+`observation_entries()` returns the rows of the blocks that are on, in the order of an \
+observation. The entries of `neighbors` and `obstacles` repeat for each boat or obstacle, nearest \
+first. A value is divided by its scale and then clipped at its bounds. *Mirrored* entries change \
+their sign if `mirror_to_target` reflects the view.
+
+{_by_block(observation_entries(EVERY_BLOCK))}
+
+## Global state
+
+`state()` has the entries of `boat` for each boat in order, then those of `clock`.
+
+{_by_block(state_entries(1))}
+
+## Flock features
+
+`flock_features()` has these for the normal boats, then for the leaders, then the rest.
+
+{_features()}
+"""
+
+
+def _parameters() -> str:
+    presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
+    body = []
+    for each in fields(FlockParameters):
+        values = [str(values[each.name]) for values in presets.values()]
+        preset = values[0] if len({*values}) == 1 else ", ".join(values)
+        unit = each.metadata["unit"]
+        meaning = each.metadata["doc"] + (f" [{unit}]" if unit else "")
+        body.append([f"`{each.name}`", meaning, preset, each.metadata["accepted"]])
+    return markdown(["field", "meaning", ", ".join(presets), "accepted"], body)
+
+
+def _by_block(entries: Iterable[Entry]) -> str:
+    blocks: dict[str, list[Entry]] = {}
+    for entry in entries:
+        blocks.setdefault(entry.block, []).append(entry)
+    header = ["entry", "bounds", "scale", "mirrored", "meaning"]
+    return "\n\n".join(
+        f"### `{block}`\n\n"
+        + markdown(
+            header,
+            [
+                [
+                    f"`{each.name}`",
+                    _bounds(each),
+                    _plain(each.scale),
+                    "yes" if each.mirrored else "",
+                    _plain(each.meaning),
+                ]
+                for each in own
+            ],
+        )
+        for block, own in blocks.items()
+    )
+
+
+def _features() -> str:
+    of: dict[str, list[str]] = {}
+    entries = {entry.name: entry for entry in flock_feature_entries()}
+    for entry in flock_feature_entries():
+        of.setdefault(entry.name, []).append(entry.block)
+    body = [
+        [f"`{name}`", ", ".join(of[name]), _bounds(each), _plain(each.meaning)]
+        for name, each in entries.items()
+    ]
+    return markdown(["feature", "of", "bounds", "meaning"], body)
+
+
+def _bounds(entry: Entry) -> str:
+    return f"[{entry.low:g}, {entry.high:g}]"
+
+
+def _plain(text: str) -> str:
+    """Return a text in which no character means something to a table in Markdown."""
+    return text.replace("|", r"\|").replace("*", r"\*")
+
+
+def write() -> None:
+    """Write the pages that differ, and draw what they show."""
+    draw_films()
+    for path, text in pages().items():
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")

@@ -1,0 +1,57 @@
+"""Print the floors of ARCHITECTURE.md from the layers that `make lint` checks: `make floors`."""
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+
+from docs.scripts.plots import REPOSITORY, markdown
+
+PAGE = REPOSITORY / "ARCHITECTURE.md"
+MARKED = re.compile(r"(?<=<!-- floors -->\n\n).*?(?=\n\n<!-- end -->)", re.DOTALL)
+OUTSIDE = (
+    ("`studies`, `baselines`, `examples`, `docs`", "Studies, trainings and pages, on public names"),
+    ("`web`", "The live page: the same crate, compiled to WebAssembly"),
+)
+
+
+def floors() -> str:
+    """Return a row for each layer, from the top down."""
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf-8"))
+    contracts = project["tool"]["importlinter"]["contracts"]
+    python = next(each["layers"] for each in contracts if each["type"] == "layers")
+    cargo = tomllib.loads((REPOSITORY / "Cargo.toml").read_text("utf-8"))
+    layers = [(REPOSITORY / "flockenv", names) for names in python]
+    layers += [(REPOSITORY / "src", names) for names in cargo["package"]["metadata"]["layers"]]
+    body = [["", *row] for row in OUTSIDE]
+    for below, (folder, names) in enumerate(layers):
+        for path in (_module(folder, name) for name in names.split(" | ")):
+            number = str(len(layers) - below)
+            body.append([number, f"`{path.relative_to(REPOSITORY)}`", _what(path)])
+    return markdown(["floor", "module", "what it is"], body)
+
+
+def _module(folder: Path, name: str) -> Path:
+    files = (folder / f"{name}.{ending}" for ending in ("py", "rs"))
+    return next((path for path in files if path.exists()), folder / name)
+
+
+def _what(path: Path) -> str:
+    """Return the first sentence of a module's own words."""
+    inside = (path / "__init__.py", path / "mod.rs")
+    file = path if path.is_file() else next(each for each in inside if each.exists())
+    text = file.read_text("utf-8")
+    if file.suffix == ".py":
+        words = ast.get_docstring(ast.parse(text)) or ""
+    else:
+        words = " ".join(re.findall(r"^//! (.*)", text.split("\n//!\n")[0], re.MULTILINE))
+    return re.split(r"\.$|\.\s+(?=[A-Z])", " ".join(words.split()), maxsplit=1)[0]
+
+
+def filled(text: str) -> str:
+    """Return a page whose floors are those of the linter."""
+    return MARKED.sub(lambda _: floors(), text)
+
+
+if __name__ == "__main__":
+    PAGE.write_text(filled(PAGE.read_text("utf-8")), encoding="utf-8")

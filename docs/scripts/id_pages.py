@@ -1,0 +1,269 @@
+"""A page for each registered id of the environments: film, purpose, options, what policies reach.
+
+All of it follows from the declaration in flockenv/envs/ids.py and from committed data, so that an
+id costs that one file.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+from matplotlib.figure import Figure
+from PIL import Image
+
+from docs.scripts.loops import HEIGHT, SHOWN, draw, shown
+from docs.scripts.plots import STUDIES, markdown
+from flockenv.comparison.suite import REFERENCE, TASK_IDS
+from flockenv.envs.ids import ENVIRONMENTS
+from flockenv.envs.observation import observation_entries
+from flockenv.envs.options import OPTIONS, EnvOptions
+from flockenv.policies.registry import named_policy
+from studies.leaders.draw import LADDER, MEANS
+from studies.plots import Plot, Row, colors_of, listed, rows
+
+LEADERS, EASY = "flockenv/Leaders-v0", "flockenv/Order-easy-v0"
+GOOD_POLICIES = {"wide": "learned"}
+"""What steers in a film, by the pool; elsewhere the damped law does."""
+BEFORE_S, FRAMES, STEP_S, SEED = 10.0, 100, 0.8, 10
+"""A film starts so long before a quarter of the episode is over, when targets may change. With this
+seed the flocks follow."""
+
+SCORES = STUDIES / "suite" / "results" / "v2.csv"
+Interval = tuple[float, float, float]
+
+
+def page_name(env_id: str) -> str:
+    """Return the name of an id's page: its own, without the package and the version."""
+    return env_id.removeprefix("flockenv/").rpartition("-v")[0]
+
+
+def id_pages() -> dict[str, str]:
+    """Return the text of every page by its name, and of the list of them."""
+    return {**{page_name(each): page(each) for each in ENVIRONMENTS}, "_registered": registered()}
+
+
+def registered() -> str:
+    """Return the list of all ids, each with a still of its film."""
+    cards = []
+    for env_id, each in ENVIRONMENTS.items():
+        name, short = page_name(env_id), env_id.removeprefix("flockenv/")
+        still = f'<img src="../loops/{name}-still.webp" alt="" loading="lazy">'
+        link = f'<a href="{name}.html">{still}</a>'
+        cards.append(
+            f"::::{{container}} id\n{link}\n\n[`{short}`]({name}.md)\n\n{each.purpose}\n::::"
+        )
+    names = "\n".join(map(page_name, ENVIRONMENTS))
+    shelf = "\n\n".join([":::::{container} ids", *cards, ":::::"])
+    return f"{shelf}\n\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
+
+
+def page(env_id: str) -> str:
+    """Return the page of an id."""
+    declared, name = ENVIRONMENTS[env_id], page_name(env_id)
+    env = gymnasium.make(env_id)
+    steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
+    spaces = markdown(
+        ["", ""],
+        [
+            ["actions", f"`{env.action_space}`"],
+            ["observations", f"`{env.observation_space.shape}`, float32"],
+            ["an episode", f"{steps} decisions, each of {step_s:g} s"],
+        ],
+    )
+    alt = f"A flock in {env_id}. Its leaders have a ring, and steer by the {good_policy(env_id)}."
+    parts = [
+        f"# {env_id.removeprefix('flockenv/')}",
+        f"```{{raw}} html\n{shown(name, alt, '../')}\n```",
+        declared.purpose,
+        "```python\nimport gymnasium\n\n"
+        f'env = gymnasium.make("flockenv:{env_id}")\n'
+        "observation, info = env.reset(seed=7)\n```",
+        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. Both '
+        "take every [option](tables.md), and [`LeadersEnv`](classes.md#leadersenv) specifies the "
+        f"task. In the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} "
+        f"(seed {SEED}, a flock that follows), at ten times real time.",
+        spaces,
+    ]
+    if env_id != LEADERS:
+        parts += ["## What differs from `flockenv/Leaders-v0`", _differences(env_id)]
+    if found := reached(env_id):
+        _, words = found
+        picture = (
+            f'<img class="plot" src="../loops/{name}.png" alt="Signed order by policy" width="540">'
+        )
+        parts += ["## What policies reach", f"```{{raw}} html\n{picture}\n```", words]
+    history = "\n".join(f"- {each}" for each in declared.history)
+    return "\n\n".join([*parts, "## Versions", history]) + "\n"
+
+
+def _differences(env_id: str) -> str:
+    usual, own = _settings(LEADERS), _settings(env_id)
+    body = [
+        [f"`{name}`", f"`{usual[name]}`", f"`{value}`"]
+        for name, value in own.items()
+        if value != usual[name]
+    ]
+    return markdown(["option", *(f"`{page_name(each)}`" for each in (LEADERS, env_id))], body)
+
+
+def _settings(env_id: str) -> dict[str, Any]:
+    """Return all parameters and options by name, those that an id leaves at their default too."""
+    parsed = EnvOptions.parse(ENVIRONMENTS[env_id].options)
+    parameters = asdict(parsed.parameters)
+    defaults = {name: each.default for name, each in OPTIONS.items()}
+    found = {**parameters, **defaults, **parameters, **parsed.settings}
+    for block, value in {**defaults["observation"], **found.pop("observation")}.items():
+        found[f'observation["{block}"]'] = value
+    # None stands for a length that depends on the target.
+    env = gymnasium.make(env_id)
+    found["episode_s"] = round(env.spec.max_episode_steps / env.metadata["render_fps"])
+    return found
+
+
+# --- films ----------------------------------------------------------------------------------------
+
+
+def draw_films() -> None:
+    """Draw the film and the plot of each id, if they are not there already."""
+    code = Path(__file__).read_text(encoding="utf-8")
+    for env_id, declared in ENVIRONMENTS.items():
+        draw(page_name(env_id), partial(film, env_id), repr(declared.options), code)
+        if found := reached(env_id):
+            SHOWN.mkdir(parents=True, exist_ok=True)
+            found[0].save(SHOWN / f"{page_name(env_id)}.png")
+
+
+def good_policy(env_id: str) -> str:
+    """Return the name of the policy in the film."""
+    if _told(env_id):
+        # Learned leaders see the flock in the frame of their own target.
+        return REFERENCE
+    pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
+    return GOOD_POLICIES.get(pool, "damped law")
+
+
+def _told(env_id: str) -> str:
+    is_each = isinstance(ENVIRONMENTS[env_id].options.get("target"), tuple)
+    return ", which are both told the direction of leader 0" if is_each else ""
+
+
+def film(env_id: str) -> Iterator[Image.Image]:
+    """Yield pictures of a flock that a good policy leads."""
+    pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
+    policy: Any = named_policy(good_policy(env_id), pool)()
+    layout = {name: getattr(policy, name) for name in ("observation", "mirror_to_target")}
+    size = (HEIGHT, HEIGHT)
+    env = gymnasium.make(env_id, render_mode="rgb_array", render_size=size, **layout)
+    observation, _ = env.reset(seed=SEED)
+    hz = env.metadata["render_fps"]
+    skipped = round(env.spec.max_episode_steps / 4 - BEFORE_S * hz)
+    for step in range(skipped + FRAMES * round(STEP_S * hz)):
+        if step >= skipped and (step - skipped) % round(STEP_S * hz) == 0:
+            yield Image.fromarray(env.render())
+        rows = observation.reshape(env.unwrapped.num_leaders, -1)
+        if _told(env_id):
+            # The roles of studies/roles/misinformed_pair.py.
+            rows[:, _TOLD] = rows[0, _TOLD]
+        observation = env.step(policy.predict(rows.reshape(-1))[0])[0]
+    env.close()
+
+
+_TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
+
+
+# --- what policies reach --------------------------------------------------------------------------
+
+
+def reached(env_id: str) -> tuple[Plot, str] | None:
+    """Return the plot of committed data of an id, and what stands below it; None without data."""
+    task = next((name for name, each in TASK_IDS.items() if each == env_id), None)
+    if task is not None:
+        return _suite(task)
+    return DATA[env_id]() if env_id in DATA else None
+
+
+def _suite(task: str) -> tuple[Plot, str]:
+    found = rows(SCORES, task=task)
+    intervals = {
+        f"{row['policy']}: {float(row['signed_order']):.2f}": _interval(row, "score", "score_")
+        for row in found
+    }
+    own = float(found[0]["signed_order"]) - float(found[0]["score"])
+    words = (
+        "The number beside a policy is its mean signed order. The dot is its difference from the "
+        "tuned law in the same 256 episodes, with a 95 % interval "
+        "([v2.csv](../../studies/suite/results/v2.csv)). "
+        f"[The suite](../suite.md) scores this environment as its task `{task}`, and has "
+        "trained policies too."
+    )
+    label = f"signed order minus the tuned law's {own:.2f}"
+    return _plot([SCORES], intervals, label, 0.0), words
+
+
+AT_THREE = {"case": "wide-bw-0.31", "leaders": "3"}
+
+
+def _leaders() -> tuple[Plot, str]:
+    found = [row for name in LADDER for row in rows(MEANS, **AT_THREE, policy=name)]
+    intervals = {row["policy"]: _interval(row, "signed_order", "signed_order_") for row in found}
+    words = (
+        "Mean signed order with 95 % intervals, in 256 episodes with a little more noise than "
+        "here: bw = 0.31 s ([means.csv](../../studies/leaders/results/means.csv)). "
+        "[Leaders compared](../leaders.md) has other numbers of leaders and the pool `narrow`, and "
+        "[Train leaders](../train.md) has learning curves."
+    )
+    return _plot([MEANS], intervals), words
+
+
+def _easy() -> tuple[Plot, str]:
+    file = STUDIES / "easy" / "results" / "curve.csv"
+    found = [row for row in rows(file) if "minus" not in row["policy"]]
+    trained = max(int(row["samples"] or 0) for row in found)
+    most_s = max(float(row["cpu_s"] or 0.0) for row in found)
+    intervals = {
+        f"{row['policy']}, seed {row['seed']}" if row["seed"] else row["policy"]: _interval(
+            row, "signed_order"
+        )
+        for row in sorted(found, key=lambda row: not row["seed"])
+        if row["samples"] in ("", str(trained))
+    }
+    words = (
+        f"Mean signed order with 95 % intervals. PPO was trained for {trained / 1e6:.1f} million "
+        f"decisions of leaders, at most {most_s:.0f} s of processor time "
+        "([curve.csv](../../studies/easy/results/curve.csv), made by "
+        "`python baselines/learn_easy.py`). "
+        "[Train leaders](../train.md) has the learning curve."
+    )
+    return _plot([file], intervals), words
+
+
+DATA: dict[str, Callable[[], tuple[Plot, str]]] = {LEADERS: _leaders, EASY: _easy}
+"""Of ids that are no task of the suite."""
+
+
+def _interval(row: Row, mean: str, ends: str = "") -> Interval:
+    return float(row[mean]), float(row[f"{ends}low"]), float(row[f"{ends}high"])
+
+
+def _plot(
+    data: list[Path],
+    intervals: dict[str, Interval],
+    label: str = "signed order",
+    reference: float | None = None,
+) -> Plot:
+    colors = colors_of(dict.fromkeys(map(_policy, intervals)))
+
+    def draw_intervals(figure: Figure) -> None:
+        axes = figure.subplots()
+        listed(axes, intervals, {name: colors[_policy(name)] for name in intervals}, reference)
+        axes.set_xlabel(label)
+        axes.locator_params(axis="x", nbins=5)
+
+    return Plot(data, draw_intervals, (6.0, 0.8 + 0.35 * len(intervals)))
+
+
+def _policy(shown_name: str) -> str:
+    return shown_name.partition(":")[0].partition(", seed")[0]

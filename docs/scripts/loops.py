@@ -1,0 +1,97 @@
+"""The moving pictures of the pages: drawn when pages are built, and kept until they would differ.
+
+A picture depends on the commands or the code that make it, and on the package; it lies below
+docs/_build, beside a still of it for those whose system asks for less motion.
+"""
+
+import hashlib
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PIL import Image, ImageSequence
+
+import flockenv
+from docs.scripts.plots import DOCS
+
+SHOWN = DOCS / "_build" / "shown" / "loops"
+"""Where a page finds them: conf.py copies what is in _build/shown."""
+
+_KEYS = DOCS / "_build" / "loops"
+HEIGHT = 360
+"""Of a picture in pixels."""
+
+_FPS = 12.5
+
+Frames = Iterable[Image.Image]
+
+
+class LoopError(Exception):
+    """A command of a page that fails, or that does not write the picture it should."""
+
+
+def draw(name: str, make: Callable[[], Frames], *made_of: str) -> None:
+    """Draw NAME.webp and its still, unless they are there and made of the same."""
+    key = hashlib.sha256("\0".join((_package(), *made_of)).encode()).hexdigest()
+    files = [SHOWN / f"{name}.webp", SHOWN / f"{name}-still.webp"]
+    kept = _KEYS / f"{name}.key"
+    if kept.is_file() and kept.read_text() == key and all(map(Path.is_file, files)):
+        return
+    frames = list(make())
+    for folder in (SHOWN, _KEYS):
+        folder.mkdir(parents=True, exist_ok=True)
+    moving = {"save_all": True, "append_images": frames[1:], "duration": round(1000 / _FPS)}
+    frames[0].save(files[0], loop=0, quality=35, method=4, **moving)
+    frames[len(frames) // 2].save(files[1], quality=70)
+    kept.write_text(key)
+
+
+@cache
+def _package() -> str:
+    """Return the digest of everything that could draw a flock differently."""
+    folder = Path(flockenv.__file__).parent
+    files = sorted(path for path in folder.rglob("*") if path.suffix in (".py", ".so"))
+    digests = (hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
+    return hashlib.sha256("".join(digests).encode()).hexdigest()
+
+
+def draw_commands(name: str, commands: str) -> None:
+    """Draw a picture by the commands of a page, which write NAME.gif."""
+    draw(name, lambda: _of_commands(name, commands), commands)
+
+
+def _of_commands(name: str, commands: str) -> Frames:
+    with TemporaryDirectory() as folder:
+        for line in re.sub(r"\\\n\s*", " ", commands).splitlines():
+            program, *words = shlex.split(line)
+            if program != "flockenv":
+                raise LoopError(f"{name}: {program} is not flockenv")
+            command = [sys.executable, "-m", "flockenv", *words]
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                raise LoopError(f"{name}: {line}\n{done.stderr}")
+        picture = Path(folder, f"{name}.gif")
+        if not picture.is_file():
+            raise LoopError(f"{name}: no command writes {picture.name}")
+        with Image.open(picture) as frames:
+            width = round(HEIGHT * frames.width / frames.height)
+            return [
+                each.convert("RGB").resize((width, HEIGHT), Image.Resampling.LANCZOS)
+                for each in ImageSequence.Iterator(frames)
+            ]
+
+
+def shown(name: str, alt: str, above: str = "", width: int = HEIGHT) -> str:
+    """Return HTML that shows a picture on a page; `above` leads from there to the first page."""
+    file = f"{above}loops/{name}"
+    return (
+        f'<picture class="loop">'
+        f'<source srcset="{file}-still.webp" media="(prefers-reduced-motion: reduce)">'
+        f'<img src="{file}.webp" alt="{alt}" width="{width}" loading="lazy">'
+        f"</picture>"
+    )

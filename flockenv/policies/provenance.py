@@ -1,0 +1,64 @@
+"""The provenance of a policy's file: version, commit, command."""
+
+import platform
+import subprocess
+from pathlib import Path
+
+from flockenv._core import __version__
+
+
+def commit() -> str:
+    """Return the commit that flockenv runs from, with a + where files differ from it; or unknown.
+
+    Only a checkout knows its commit: an installed package has its version.
+    """
+    root = Path(__file__).parents[2]
+    if not (root / ".git").exists():
+        return "unknown"
+
+    def git(*arguments: str) -> str:
+        done = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
+        done.check_returncode()
+        return done.stdout.strip()
+
+    try:
+        changed = "+" if git("status", "--porcelain", "--untracked-files=no") else ""
+        return git("rev-parse", "--short=12", "HEAD") + changed
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def provenance_of(
+    command: str, *, seed: int, samples: int, wall_s: float, flock_hours: float | None = None
+) -> dict[str, str]:
+    """Return the provenance of a policy's file as short texts.
+
+    Parameters
+    ----------
+    command
+        Makes the policy again.
+    seed
+        Of the training.
+    samples
+        Decisions of leaders that the training saw.
+    wall_s
+        Time that it took in s.
+    flock_hours
+        Simulated hours of flocks that it saw.
+
+    Returns
+    -------
+    dict
+        These as texts, with the versions of flockenv and Python and the commit.
+    """
+    hours = {} if flock_hours is None else {"flock_hours": f"{flock_hours:.6g}"}
+    return {
+        "command": command,
+        "flockenv": __version__,
+        "commit": commit(),
+        "python": platform.python_version(),
+        "seed": str(seed),
+        "samples": str(samples),
+        **hours,
+        "wall_s": f"{wall_s:.0f}",
+    }

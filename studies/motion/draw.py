@@ -1,0 +1,51 @@
+"""Draw where leaders are and how they head."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from studies.plots import Interval, Plot, Row, drawing, grouped, rows
+from studies.study import main
+
+RESULTS = Path(__file__).parent / "results"
+MOTION = RESULTS / "motion.csv"
+POOLS = ("wide", "narrow")
+SHOWN = {
+    "in the row at the wall": "at_wall",
+    "beside that row": "beside_wall",
+    "close to a leader": "beside_leader",
+    "heading, mean cosine": "alignment",
+}
+"""What the plot of motion shows: shares of the time, and how close to the target leaders head."""
+
+
+def motion(figure: Figure) -> None:
+    """Draw where leaders are and how they head."""
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    for axes, pool in zip(panels, POOLS, strict=True):
+        found = {
+            row["policy"]: {
+                words: _ends(row, name, f"{name}_low", f"{name}_high")
+                for words, name in SHOWN.items()
+            }
+            for row in rows(MOTION, pool=pool)[::-1]
+        }
+        grouped(axes, found)
+        axes.set(title=pool, xlabel="share of the time, or cosine", xlim=(0, 1))
+    panels[0].legend(loc="lower left", fontsize=9)
+
+
+def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
+    return float(row[mean]), float(row[low]), float(row[high])
+
+
+PLOTS = {
+    "motion": Plot([MOTION], motion, (8.4, 3.4)),
+}
+
+
+script = drawing(__name__, PLOTS)
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,38 @@
+"""Draw what learned leaders add to the tuned law in flocks unlike their training."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from studies.plots import Interval, Plot, Row, drawing, listed, rows
+from studies.study import main
+
+RESULTS = Path(__file__).parent / "results"
+BEYOND = RESULTS / "beyond.csv"
+
+
+def beyond(figure: Figure) -> None:
+    """Draw what learned leaders add to the tuned law in other flocks than those of the training."""
+    axes = figure.subplots()
+    found = {
+        " ".join({row["what"]: 0, row["value"]: 0}): _ends(row, "gain", "gain_low", "gain_high")
+        for row in rows(BEYOND)
+    }
+    listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
+    axes.set(xlabel="learned minus tuned law", xticks=(-0.05, 0.0, 0.05, 0.1))
+
+
+def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
+    return float(row[mean]), float(row[low]), float(row[high])
+
+
+PLOTS = {
+    "beyond": Plot([BEYOND], beyond, (6.8, 6.2)),
+}
+
+
+script = drawing(__name__, PLOTS)
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,38 @@
+"""Draw how clearly samples of each reward show the way to a better policy."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from studies.plots import Plot, drawing, listed, rows
+from studies.study import main
+
+RESULTS = Path(__file__).parent / "results"
+SIGNALS = RESULTS / "signals.csv"
+
+
+def signals(figure: Figure) -> None:
+    """Draw how clearly samples of each reward show the way to a better policy."""
+    names = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
+    cases = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
+    panels = figure.subplots(1, 3, sharey=True)
+    for axes, (mode, pool) in zip(panels, cases, strict=True):
+        found = {}
+        for name in names:
+            (row,) = rows(SIGNALS, pool=pool, action_mode=mode, reward=name)
+            z, error = float(row["z_per_million"]), float(row["error"])
+            found[name] = (z, z - 1.96 * error, z + 1.96 * error)
+        listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
+        axes.set(title=f"{mode}s in {pool}", xlabel="z for a million samples")
+
+
+PLOTS = {
+    "signals": Plot([SIGNALS], signals, (8.4, 2.8)),
+}
+
+
+script = drawing(__name__, PLOTS)
+
+
+if __name__ == "__main__":
+    main(script)

@@ -1,0 +1,81 @@
+"""Draw what trainings reach, by flock-hours and by algorithm."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from studies.plots import OWN, Plot, drawing, levels, listed, numbers, rows, seed_points
+from studies.study import main
+
+RESULTS = Path(__file__).parent / "results"
+EXAMPLE = RESULTS / "algorithms/evaluation.csv"
+"""The evaluation of trainings by the example, 500 flock-hours each."""
+MIXED = {
+    500: RESULTS / "pretrained/evaluation-500.csv",
+    1101: RESULTS / "pretrained/evaluation.csv",
+}
+"""Evaluations of the trainings with one to four leaders of `make pretrained`, by flock-hours."""
+ALGORITHMS = {
+    "PPO, 500 flock-hours": ("algorithms", "train_leaders"),
+    "TRPO, 500": ("algorithms", "trpo"),
+    "groups of branches, 200": ("group", "seed"),
+    "pairs of branches, 200": ("paired", "seed"),
+    "evolution strategy, 500": ("algorithms", "evolution"),
+}
+"""Folders of algorithms and their names there."""
+
+
+def budgets(figure: Figure) -> None:
+    """Draw the order of each seed against the flock-hours of its training."""
+    axes = figure.subplots()
+    # Beside other algorithms the example is called `train_leaders`.
+    found = [each for each in rows(EXAMPLE) if each["policy"].startswith("train")]
+    for place, row in enumerate(found):
+        seed_points(axes, [{**row, "at": str(500 + 16 * (place - 2))}], "at", fmt="o")
+    for hours, file in MIXED.items():
+        mixed = [each for each in rows(file) if each["policy"].startswith("seed")]
+        for place, row in enumerate(mixed):
+            at = hours + 16 * (place - 3.5)
+            seed_points(axes, [{**row, "at": str(at)}], "at", fmt="s", mfc="white")
+    levels(axes, rows(MIXED[1101])[:2])
+    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(120, 1300))
+
+
+def algorithms(figure: Figure) -> None:
+    """Draw what each algorithm gains on the tuned law, its seeds as dots."""
+    axes = figure.subplots()
+    means, seeds = {}, []
+    for name, (folder, called) in ALGORITHMS.items():
+        (row,) = rows(RESULTS / f"{folder}/algorithms.csv", algorithm=called)
+        means[name] = numbers(row, "gain", "gain_low", "gain_high")
+        own = [
+            each
+            for each in rows(RESULTS / f"{folder}/evaluation.csv")
+            if each["policy"][:4] == called[:4]
+        ]
+        seeds.append([float(each["gain"]) for each in own])
+    listed(axes, means, dict.fromkeys(means, OWN), 0.0)
+    for line, gains in enumerate(seeds):
+        axes.plot(gains, [line + 0.22] * len(gains), ".", color="0.5")
+    axes.set_xlabel("signed order minus the tuned law's")
+
+
+PLOTS = {
+    "budgets": Plot([EXAMPLE, *MIXED.values()], budgets),
+    "gains": Plot(
+        [
+            RESULTS / f"{each}/{file}.csv"
+            for each in ("algorithms", "paired", "group")
+            for file in ("algorithms", "evaluation")
+        ],
+        algorithms,
+        (6.8, 2.8),
+    ),
+}
+
+
+script = drawing(__name__, PLOTS)
+
+
+if __name__ == "__main__":
+    main(script)
