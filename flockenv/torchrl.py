@@ -19,9 +19,12 @@ from torchrl.data import Binary, Bounded, Categorical, Composite, Unbounded
 from torchrl.envs import EnvBase
 
 from flockenv import _core
-from flockenv.envs.batch import LeaderBatch, at_least_one, seeds_from
+from flockenv.envs.base import OwnFlocks
+from flockenv.envs.batch import LeaderBatch, at_least_one
 from flockenv.envs.observation import state_entries
-from flockenv.envs.options import EnvOptions, FixedOptions
+from flockenv.envs.options import EnvOptions
+from flockenv.envs.reset_options import reset_requests
+from flockenv.envs.seeds import OwnGenerator, drawn_seed, seeds_from
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import UnknownOptionError, refuse_unknown
 
@@ -32,7 +35,7 @@ STATES = ("boats", "set", "features", "none")
 """What the entry ``state`` may hold."""
 
 
-class LeadersEnv(FixedOptions, EnvBase):
+class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     """Many flocks for TorchRL, stepped at once in Rust: batch size ``[flocks]``, leaders a group.
 
     All flocks have equally many leaders. Tensors share the memory of the arrays that the core
@@ -52,9 +55,9 @@ class LeadersEnv(FixedOptions, EnvBase):
     ========================================= =============================================
 
     The same seed gives the same bits as in `LeadersVectorEnv`: ``set_seed(s)`` makes the next reset
-    seed flock i with s + i. Flocks that have had no seed draw one from torch's generator. ``reset``
-    with a ``"_reset"`` mask starts the flocks in it, and ``reset(options={...})`` takes the
-    options of `LeadersVectorEnv.reset`.
+    seed flock i with s + i. Flocks that have had no seed draw one from `np_random`. ``reset`` with
+    a ``"_reset"`` mask starts the flocks in it, and ``reset(options={...})`` takes the options of
+    `LeadersVectorEnv.reset`.
 
     Parameters
     ----------
@@ -101,7 +104,7 @@ class LeadersEnv(FixedOptions, EnvBase):
     ) -> None:
         flocks = at_least_one(num_flocks, "num_flocks")
         refuse_unknown((state,), STATES, "state")
-        parsed = EnvOptions.parse(options)
+        parsed = EnvOptions.parse(options, counts="num_flocks")
         self.parameters = parsed.parameters
         self.num_flocks, self.num_leaders = flocks, parsed.parameters.n_leaders
         at_least_one(self.num_leaders, "n_leaders")
@@ -161,10 +164,12 @@ class LeadersEnv(FixedOptions, EnvBase):
                 f"reset got an unexpected keyword argument {name!r}: options of a reset are given "
                 f"as options={{...}}, the seed by set_seed"
             )
+        flocks = self.num_flocks
         given = None if tensordict is None else tensordict.get("_reset", None)
-        mask = None if given is None else given.reshape(self.num_flocks).cpu().numpy()
-        self._batch.reset(self._seeds, options, _drawn_seed, mask)
-        started = np.ones(self.num_flocks, np.bool_) if mask is None else mask
+        mask = None if given is None else given.reshape(flocks).cpu().numpy()
+        requests = reset_requests(options, flocks)
+        self._batch.reset(self._seeds, requests, lambda: drawn_seed(self.np_random), mask)
+        started = np.ones(flocks, np.bool_) if mask is None else mask
         for flock in np.flatnonzero(started).tolist():
             self._seeds[flock] = None
         return self._seen(self._batch.core.observe())
@@ -219,8 +224,3 @@ def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
     own = states[:, :-rest].reshape(len(states), boats, -1)
     clock = np.broadcast_to(states[:, None, -rest:], (len(states), boats, rest))
     return np.concatenate([own, clock], axis=2)
-
-
-def _drawn_seed() -> int:
-    """Draw a seed from torch's generator."""
-    return int(torch.randint(2**63 - 1, ()).item())

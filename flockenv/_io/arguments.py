@@ -56,14 +56,38 @@ def once(values: Any) -> Any:
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
 
 
+def listed(value: Any) -> Any:
+    """Return what an array holds, as a list or as a number, and everything else as `once` does.
+
+    Arrays of other libraries are arrays too. What is masked, a table and what is larger than any
+    option stay as they are, for the refusal that names them.
+    """
+    if not hasattr(value, "__array__") or hasattr(value, "columns") or np.ma.is_masked(value):
+        return once(value)
+    try:
+        array = np.asarray(value)
+    except Exception:  # Arrays of other libraries raise what they like.
+        return value
+    return array.tolist() if array.size <= _MOST_ITEMS else value
+
+
 def whole(value: Any, name: str) -> int:
-    """Return a whole number as an int; a TypeError refuses what is none, bools among them."""
+    """Return a whole number as an int, 8.0 among them.
+
+    A ParameterError refuses other real numbers, a TypeError everything else, bools among them.
+    """
     # As the core takes whole numbers: also NumPy's, and arrays of one without a dimension.
     try:
         if not isinstance(value, bool | np.bool_):
             return operator.index(value)
     except TypeError:
         pass
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, float | np.floating):
+        if float(value).is_integer():
+            return int(value)
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: a whole number")
     kind = type(value).__name__
     raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")
 

@@ -1,21 +1,30 @@
 """What environments have in common: all of them, those of many flocks, and those of one."""
 
 import copy
-from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from flockenv._io.arguments import blob, once
+from flockenv._io.arguments import blob
 from flockenv.envs.batch import LeaderBatch
-from flockenv.envs.options import EnvOptions, FixedOptions
+from flockenv.envs.fixed_options import FixedOptions
+from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
+from flockenv.envs.reset_options import reset_requests
+from flockenv.envs.seeds import drawn_seed, seed_of
 from flockenv.flock import Flock
 
 
-class Resumable(FixedOptions):
+class OwnFlocks(FixedOptions):
+    """An environment whose copies have flocks of their own, shallow copies too."""
+
+    def __copy__(self) -> Self:
+        return copy.deepcopy(self)
+
+
+class Resumable(OwnFlocks):
     """An environment that continues from what it was, or as a copy of itself."""
 
     _batch: LeaderBatch
@@ -33,7 +42,10 @@ class Resumable(FixedOptions):
         self._batch.core.restore(blob(state, "state"))
 
     def clone(self) -> Self:
-        """Return an independent copy that continues with the same bits."""
+        """Return an independent copy that continues with the same bits.
+
+        A copy of an environment that was never reset draws a seed of its own.
+        """
         return copy.deepcopy(self)
 
 
@@ -88,6 +100,7 @@ class SingleEnvironmentBase(Resumable):
     """The base of the environments of one flock: its episodes, infos and frames."""
 
     metadata: dict[str, Any]
+    np_random: np.random.Generator
     _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_leaders", "render_mode")
 
     def _set_up(self, options: dict[str, Any], render_mode: str | None, render_size: Any) -> None:
@@ -101,17 +114,12 @@ class SingleEnvironmentBase(Resumable):
         self._render_mode = RenderMode(render_mode, render_size, fps)
         self.metadata = {**self.metadata, "render_fps": fps}
 
-    def _reset(self, seed: int | None, options: Any, new_seed: Callable[[], int]) -> None:
-        if isinstance(options, Mapping):
-            # Of several flocks a list has one entry per flock; here it is a value.
-            held = {name: once(value) for name, value in options.items()}
-            options = {
-                name: tuple(value)
-                if isinstance(value, list | np.ndarray) and np.ndim(value)
-                else value
-                for name, value in held.items()
-            }
-        self._batch.reset([seed], options, new_seed)
+    def _reset(self, seed: Any, options: Any) -> int | None:
+        """Start an episode; return the seed that was given, as an int."""
+        requests = reset_requests(options, 1, is_each=False)
+        given = None if seed is None else seed_of(seed)
+        self._batch.reset([given], requests, lambda: drawn_seed(self.np_random))
+        return given
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""

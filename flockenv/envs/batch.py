@@ -1,4 +1,4 @@
-"""What the environment classes share: one batch of flocks in the core, its seeds and its infos."""
+"""What the environment classes share: one batch of flocks in the core, and its infos."""
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
@@ -8,22 +8,18 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import blob, once, real_numbers, whole
-from flockenv.envs.options import RESET_OPTIONS, TERMS, EnvOptions, known_reset_options
+from flockenv._io.arguments import real_numbers, whole
+from flockenv.envs.options import TERMS, EnvOptions
+from flockenv.envs.seeds import Seed
 from flockenv.envs.spaces import flock_feature_space, state_space
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
-_SEEDS = 2**64
 # So many numbers and more are added by NumPy in another order.
 _UNROLLED = 8
 # More would fill the memory before anything is simulated.
 _MOST = 100_000
-
-
-class Seed(int):
-    """A seed in infos: JSON takes it, and Gymnasium's arrays too, which end at 2^63 for an int."""
 
 
 class LeaderBatch:
@@ -49,42 +45,22 @@ class LeaderBatch:
     def reset(
         self,
         seeds: Sequence[int | None],
-        options: Mapping[str, Any] | None,
+        requests: Sequence[Mapping[str, Any]],
         new_seed: Callable[[], int],
         mask: NDArray[np.bool_] | None = None,
-        takes: tuple[str, ...] = RESET_OPTIONS,
     ) -> None:
-        """Start episodes; `new_seed` gives flocks a seed that have never had one.
+        """Start episodes, of all flocks or of those in a mask, as `reset_requests` asks.
 
-        `takes` names the options that there are.
+        `new_seed` gives flocks a seed that have never had one.
         """
-        per_flock = self._per_flock(known_reset_options(options, takes))
         chosen = np.ones(self.num_flocks, np.bool_) if mask is None else mask
-        requests: list[dict[str, Any] | None] = [None] * self.num_flocks
+        asked: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock in np.flatnonzero(chosen).tolist():
             seed = seeds[flock]
             if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
-            requests[flock] = {**per_flock[flock], "seed": seed}
-            if "snapshot" in per_flock[flock]:
-                blob(per_flock[flock]["snapshot"], "snapshot")
-        self.core.reset(requests)
-
-    def _per_flock(self, options: Mapping[str, Any]) -> list[dict[str, Any]]:
-        """Options for each flock: a list has one entry for each, anything else holds for all."""
-        per_flock: list[dict[str, Any]] = [{} for _ in range(self.num_flocks)]
-        for name, value in options.items():
-            is_each = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
-            values = once(value)
-            if values is value and not is_each:
-                values = [value] * self.num_flocks
-            if len(values) != self.num_flocks:
-                raise ParameterError(
-                    f"reset option {name!r} lists {len(values)} values, expected {self.num_flocks}"
-                )
-            for own, each in zip(per_flock, values, strict=True):
-                own[name] = each
-        return per_flock
+            asked[flock] = {**requests[flock], "seed": seed}
+        self.core.reset(asked)
 
     def step(
         self, env: Any, actions: NDArray[np.float64], precision: DTypeLike = np.float64
@@ -171,28 +147,9 @@ def is_plain(action: Any, shape: tuple[int, ...]) -> bool:
     return type(action) is np.ndarray and action.dtype in _FLOATS and action.shape == shape
 
 
-def drawn_seed(random: np.random.Generator) -> int:
-    """Draw a seed for an environment that was given none."""
-    return int(random.integers(_SEEDS // 2))
-
-
 def at_least_one(count: Any, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
     number = whole(count, name)
     if not 1 <= number <= _MOST:
         raise ParameterError(f"{name} = {shown(number)} is not accepted: 1 to {_MOST}")
     return number
-
-
-def seeds_from(first: Any, flocks: int) -> list[int]:
-    """Return the seeds of flocks where the first one has this seed: each has the next."""
-    if isinstance(first, float):
-        # As the core says it for a single flock.
-        raise ParameterError(f"seed = {first!r} is not accepted: a whole number")
-    number = whole(first, "seed")
-    if not 0 <= number <= _SEEDS - flocks:
-        raise ParameterError(
-            f"seed = {shown(number)} is not accepted: at least 0, and below 2^64 for the last of "
-            f"{flocks} flocks"
-        )
-    return [number + flock for flock in range(flocks)]

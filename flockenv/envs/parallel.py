@@ -11,10 +11,11 @@ from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
 
 from flockenv import _core
-from flockenv.envs.base import SingleEnvironmentBase
-from flockenv.envs.batch import drawn_seed, is_plain
-from flockenv.envs.options import TERMS, FixedOptions
+from flockenv.envs.base import OwnFlocks, SingleEnvironmentBase
+from flockenv.envs.batch import is_plain
+from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
+from flockenv.envs.seeds import OwnGenerator
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -24,7 +25,9 @@ Infos = dict[str, dict[str, Any]]
 
 
 class LeadersParallelEnv(
-    SingleEnvironmentBase, ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int]
+    OwnGenerator,
+    SingleEnvironmentBase,
+    ParallelEnv[str, NDArray[np.float32], NDArray[np.float32] | int],
 ):
     """Lead a flock of boats around a ring-shaped pool: each leader is an agent.
 
@@ -76,7 +79,6 @@ class LeadersParallelEnv(
         self.action_spaces = {
             agent: leader_action_space(settings["rudder_levels"]) for agent in self.possible_agents
         }
-        self._random = np.random.default_rng()
         self._every_agent = frozenset(self.possible_agents)
         self._levels: int | None = settings["rudder_levels"]
 
@@ -108,7 +110,9 @@ class LeadersParallelEnv(
             By agent; observations have shape (observation size,), float32. Each info has target,
             backward duration and seed of the episode.
         """
-        self._reset(seed, options, lambda: drawn_seed(self._random))
+        given = self._reset(seed, options)
+        if given is not None:
+            self._seed_generator(given)
         self.agents = self.possible_agents[:]
         self._show()
         info = self._batch.reset_info(0)
@@ -207,12 +211,21 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
     return LeadersParallelEnv(render_mode=render_mode, **options)
 
 
-class _Turns(FixedOptions, OrderEnforcingWrapper[str, Any, Any]):
+class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
     """Agents that act in turn, and in order; what is no action is refused in its agent's turn."""
 
     def __init__(self, flock: LeadersParallelEnv) -> None:
         self._flock = flock
         super().__init__(parallel_to_aec(flock))
+
+    @property
+    def np_random(self) -> np.random.Generator:
+        """The generator that draws a seed if a reset is given none."""
+        return self._flock.np_random
+
+    @np_random.setter
+    def np_random(self, generator: np.random.Generator) -> None:
+        self._flock.np_random = generator
 
     def step(self, action: Any) -> None:
         # Those whose episode is over take none.

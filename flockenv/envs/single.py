@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv.envs.base import SingleEnvironmentBase, SpecOfEpisodes
-from flockenv.envs.batch import drawn_seed, is_plain, mean_rows
-from flockenv.envs.options import TERMS, refuse_attribute
+from flockenv.envs.batch import is_plain, mean_rows
+from flockenv.envs.options import TERMS
 from flockenv.envs.render_mode import RENDER_MODES
 from flockenv.envs.spaces import ObservationSpace, joint_action_space
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -170,8 +170,7 @@ class LeadersEnv(
         info : dict
             Target, backward duration and seed of the episode.
         """
-        self._reset(seed, options, lambda: drawn_seed(self.np_random))
-        super().reset(seed=None if seed is None else int(seed))
+        super().reset(seed=self._reset(seed, options))
         self._show()
         return self.observe(), self._batch.reset_info(0)
 
@@ -213,7 +212,7 @@ class LeadersEnv(
 
     def set_wrapper_attr(self, name: str, value: Any, *, force: bool = True) -> bool:
         """Set an attribute that there is, for Gymnasium's wrappers; options are refused."""
-        refuse_attribute(name, self._next_episode)
+        self._refuse_from_outside(name)
         return super().set_wrapper_attr(name, value, force=force)
 
     def observe(self) -> NDArray[np.float32]:

@@ -1,5 +1,6 @@
 """What Gymnasium knows of an environment: its spaces."""
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,14 @@ else:
     _Box = gymnasium.spaces.Box
 
 
-_OPTIONS = ("observation", "mirror_to_target", "control_hz", "action_mode", "decision_period_s")
+#: Options of the environment that a policy depends on.
+POLICY_OPTIONS = (
+    "observation",
+    "mirror_to_target",
+    "control_hz",
+    "action_mode",
+    "decision_period_s",
+)
 
 
 def _bounds(entries: Iterable[Entry]) -> NDArray[np.float32]:
@@ -35,7 +43,9 @@ class ObservationSpace(_Box):
     """The space of one leader's observation, or of several leaders' one after another.
 
     Models keep the space that they were trained on, also in their files. It says how observations
-    are made, so that a model gets the same ones wherever it steers.
+    are made, so that a model gets the same ones wherever it steers. Spaces with other options are
+    not equal, so that libraries refuse a model for flocks that look like its own and mean something
+    else. A plain `Box` says nothing of its meaning, and is equal if its bounds are.
 
     Attributes
     ----------
@@ -50,7 +60,26 @@ class ObservationSpace(_Box):
         bounds = np.tile(_bounds(observation_entries(options["observation"])), (leaders, 1))
         super().__init__(*bounds.T.copy(), dtype=np.float32)
         self.leaders = leaders
-        self.options = {name: options[name] for name in _OPTIONS}
+        self.options = {name: options[name] for name in POLICY_OPTIONS}
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another space has the same bounds and, if it has any, the same options."""
+        if not isinstance(other, ObservationSpace):
+            return super().__eq__(other)
+        if self.leaders != other.leaders or not super().__eq__(other):
+            return False
+        return not differing_options(self.options, other.options)
+
+    # As other spaces, which can be changed.
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return shape, leaders and options; the layout of the observation by what it changes."""
+        own = {name: value for name, value in self.options.items() if name != "observation"}
+        blocks = self.options["observation"]
+        own["observation"] = {each: n for each, n in blocks.items() if BLOCKS.get(each) != n}
+        words = ", ".join(f"{name}={value!r}" for name, value in own.items())
+        return f"ObservationSpace({self.shape}, leaders={self.leaders}, {words})"
 
     def policy_options(self) -> dict[str, Any]:
         """Return `options`, also of a space that another build stored in the file of a model.
@@ -58,10 +87,33 @@ class ObservationSpace(_Box):
         An option or a block that is younger than the file has its default. ParameterError for
         unknown ones.
         """
-        refuse_unknown(self.options, _OPTIONS, "option that a policy depends on")
-        options = {name: OPTIONS[name].default for name in _OPTIONS} | self.options
-        refuse_unknown(options["observation"], BLOCKS, "block of the observation")
-        return {**options, "observation": {**BLOCKS, **options["observation"]}}
+        refuse_unknown(self.options, POLICY_OPTIONS, "option that a policy depends on")
+        refuse_unknown(self.options.get("observation", {}), BLOCKS, "block of the observation")
+        return _completed(self.options)
+
+
+def differing_options(
+    options: Mapping[str, Any], others: Mapping[str, Any]
+) -> dict[str, tuple[Any, Any]]:
+    """Return the options of two policies, or of a policy and flocks, that mean something else.
+
+    A pair for each name. Options that are not given have their defaults.
+    """
+    one, other = _completed(options), _completed(others)
+    names = dict.fromkeys((*one, *other))
+    pairs = {name: (one.get(name), other.get(name)) for name in names}
+    return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
+
+
+def _completed(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options with the defaults of those that are missing."""
+    full = {name: OPTIONS[name].default for name in POLICY_OPTIONS} | dict(options)
+    full["observation"] = {**BLOCKS, **full["observation"]}
+    period = full["decision_period_s"]
+    # To hold an action for one control step is not to hold it.
+    if period is not None and math.isclose(period * full["control_hz"], 1.0):
+        full["decision_period_s"] = None
+    return full
 
 
 def flock_feature_space() -> _Box:

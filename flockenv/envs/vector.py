@@ -1,6 +1,6 @@
 """`LeadersVectorEnv`: many flocks behind Gymnasium's vector interface, stepped at once in Rust."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import gymnasium
@@ -10,11 +10,12 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import once
 from flockenv.envs.base import ManyFlocks, SpecOfEpisodes
-from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
-from flockenv.envs.options import RESET_OPTIONS, EnvOptions
+from flockenv.envs.batch import LeaderBatch, at_least_one
+from flockenv.envs.options import EnvOptions
 from flockenv.envs.render_mode import RenderMode
+from flockenv.envs.reset_options import RESET_OPTIONS, reset_requests
+from flockenv.envs.seeds import drawn_seed, seeds_of_flocks
 from flockenv.envs.spaces import ObservationSpace, joint_action_space
 from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
@@ -89,7 +90,7 @@ class LeadersVectorEnv(
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
-        parsed = EnvOptions.parse(options, takes_function=True)
+        parsed = EnvOptions.parse(options, takes_function=True, counts="num_envs")
         if parsed.own_reward is not None and self.autoreset_mode == AutoresetMode.SAME_STEP:
             raise ParameterError(
                 "reward = a function is not accepted with autoreset_mode 'same_step': "
@@ -142,14 +143,12 @@ class LeadersVectorEnv(
         infos : dict
             Of the flocks that were reset.
         """
-        seeds = _seed_each(seed, self.num_envs)
-        mask = None
-        if isinstance(options, Mapping):
-            mask = _checked_mask(options.get("reset_mask"), self.num_envs)
-        takes = (*RESET_OPTIONS, "reset_mask")
-        self._batch.reset(seeds, options, lambda: drawn_seed(self.np_random), mask, takes)
-        if isinstance(seed, int | np.integer):
-            super().reset(seed=int(seed))
+        seeds = seeds_of_flocks(seed, self.num_envs)
+        requests = reset_requests(options, self.num_envs, takes=(*RESET_OPTIONS, "reset_mask"))
+        mask = None if options is None else _checked_mask(options.get("reset_mask"), self.num_envs)
+        self._batch.reset(seeds, requests, lambda: drawn_seed(self.np_random), mask)
+        if seeds[0] is not None:
+            super().reset(seed=seeds[0])
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
             infos = self._add_info(infos, _arrayed(self._batch.reset_info(flock)), flock)
@@ -299,14 +298,3 @@ def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
     if not mask.any():
         raise ParameterError("options['reset_mask'] is False everywhere: at least one flock")
     return mask
-
-
-def _seed_each(seed: Any, num_envs: int) -> Sequence[int | None]:
-    if seed is None:
-        return [None] * num_envs
-    seeds = seed.tolist() if isinstance(seed, np.ndarray) else once(seed)
-    if not isinstance(seeds, Sequence) or isinstance(seeds, str | bytes):
-        return seeds_from(seeds, num_envs)
-    if len(seeds) != num_envs:
-        raise ParameterError(f"seed lists {len(seeds)} seeds, expected {num_envs}")
-    return list(seeds)

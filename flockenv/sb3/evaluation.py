@@ -1,19 +1,23 @@
 """Evaluation of models on a `LeaderVecEnv` that counts episodes of flocks, not of leaders."""
 
+import copy
+import math
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from stable_baselines3.common.callbacks import EvalCallback
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
 from flockenv._io.arguments import whole
-from flockenv.envs.spaces import ObservationSpace
-from flockenv.errors import ParameterError
+from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
+from flockenv.errors import ParameterError, shown
 from flockenv.policies import ModelPolicy
 from flockenv.policies.base import check_action_mode, check_pool
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
@@ -48,22 +52,7 @@ class PerFlock(VecEnvWrapper):
         self._leaders = np.bincount(leaders.flock_of_slot)
         self._first = np.cumsum(self._leaders) - self._leaders
         self.num_envs = leaders.num_flocks
-        self.pool = leaders._batch.parameters(0).pool
-
-    def check_action_mode(self, model: Any) -> None:
-        """Refuse a model that was trained with another action mode than the flocks have.
-
-        Raises
-        ------
-        ParameterError
-            If the model's observation space names another one.
-        """
-        leaders = self.venv.unwrapped
-        assert isinstance(leaders, LeaderVecEnv)
-        if isinstance(getattr(model, "observation_space", None), ObservationSpace):
-            model = ModelPolicy(model)
-        mode = leaders.action_mode
-        check_action_mode(model, mode, "in this evaluation")
+        self.leaders = leaders
 
     def reset(self) -> Any:
         """Start episodes in all flocks; return observations, a row per leader."""
@@ -117,6 +106,84 @@ class FlockEvaluation:
         return f"signed order {self.mean:.3f} [{low:.3f}, {high:.3f}] in {count} episodes"
 
 
+class _AsTrained:
+    """A model that acts on what `PerFlock` returns as it acted in its training.
+
+    Observations are normalized as there, and a recurrent model learns of the start of an episode
+    for each leader.
+    """
+
+    def __init__(self, model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
+        # It normalizes too, and turns levels into rudders.
+        self.model = model.model if isinstance(model, ModelPolicy) else model
+        self._flock_of_row = leaders.flock_of_slot
+        own = getattr(self.model, "get_vec_normalize_env", lambda: None)()
+        normalizes = any(isinstance(each, VecNormalize) for each in _layers(flocks))
+        self._normalizing = None if normalizes else own
+        trained_in = getattr(self.model, "env", None)
+        if normalizes and own is None and trained_in is not None:
+            raise ParameterError(
+                f"{shown(self.model)} was trained on observations that are not normalized: "
+                "evaluate it without VecNormalize"
+            )
+        if normalizes and own is not None:
+            _follow(own, flocks)
+
+    def predict(
+        self, observation: Any, state: Any = None, episode_start: Any = None, **options: Any
+    ) -> tuple[Any, Any]:
+        """Return what the model does; `episode_start` has an entry for each flock."""
+        if self._normalizing is not None:
+            observation = self._normalizing.normalize_obs(observation)
+        if episode_start is not None:
+            episode_start = np.asarray(episode_start)[self._flock_of_row]
+        found: tuple[Any, Any] = self.model.predict(
+            observation, state=state, episode_start=episode_start, **options
+        )
+        return found
+
+
+def _follow(training: VecNormalize, flocks: VecEnv) -> None:
+    """Give the flocks' `VecNormalize` the statistics of the training's."""
+    for each in _layers(flocks):
+        if isinstance(each, VecNormalize):
+            if hasattr(training, "obs_rms"):
+                each.obs_rms = copy.deepcopy(training.obs_rms)
+            each.ret_rms = copy.deepcopy(training.ret_rms)
+
+
+def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
+    """Refuse a model that was trained on observations or actions of another meaning."""
+    model = model.model if isinstance(model, ModelPolicy) else model
+    check_pool(model, leaders._batch.parameters(0).pool)
+    space, here = getattr(model, "observation_space", None), leaders.observation_space
+    options = here.options
+    if isinstance(space, ObservationSpace):
+        said = space.policy_options()
+    else:
+        check_action_mode(model, leaders.action_mode, "in this evaluation")
+        said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
+        said = {name: value for name, value in said.items() if value is not None}
+        # What a policy does not say it does not depend on.
+        options = {name: value for name, value in options.items() if name in said}
+    if differing := differing_options(said, options):
+        raise ParameterError(
+            f"{shown(model)} is not accepted in these flocks: "
+            + ", ".join(
+                f"it is made for {name} = {own!r}, not {other!r}"
+                for name, (own, other) in differing.items()
+            )
+        )
+    spaces = {"observation": (space, flocks.observation_space)}
+    spaces["action"] = (getattr(model, "action_space", None), flocks.action_space)
+    for kind, (own, other) in spaces.items():
+        if own is not None and own != other:
+            raise ParameterError(
+                f"{shown(model)} is not accepted in these flocks: its {kind} space is {own}, not "
+                f"{other}"
+            )
+
+
 def evaluate_flocks(
     model: Any,
     env: VecEnv,
@@ -127,10 +194,15 @@ def evaluate_flocks(
 ) -> FlockEvaluation:
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
+    A model that was trained in `VecNormalize` gets observations that are normalized as there, also
+    if `env` is a plain `LeaderVecEnv`. If `env` is in a `VecNormalize` of its own, that takes the
+    statistics of the training's.
+
     Parameters
     ----------
     model
-        A model or policy whose ``predict`` takes one leader's observation per row, without memory.
+        A model or policy whose ``predict`` takes one leader's observation per row, such as ``PPO``
+        or ``RecurrentPPO``.
     env
         A `LeaderVecEnv`, also inside other wrappers. Returns are its own, whatever a wrapper does
         to rewards.
@@ -151,24 +223,54 @@ def evaluate_flocks(
     TypeError
         If `env` is no `LeaderVecEnv`.
     ParameterError
-        For a model that was trained with another action mode, or is made for another pool, and for
-        no episodes.
+        For a model that was trained with other options that a policy depends on (such as
+        ``mirror_to_target`` or ``control_hz``), or is made for another pool, and for no episodes.
     """
-    flocks = PerFlock(env)
-    flocks.check_action_mode(model)
-    check_pool(model, flocks.pool)
-    if whole(n_eval_episodes, "n_eval_episodes") < 1:
+    episodes = whole(n_eval_episodes, "n_eval_episodes")
+    if episodes < 1:
         raise ParameterError(f"n_eval_episodes = {n_eval_episodes} is not accepted: at least 1")
+    counted = _per_flock(env)
+    trained = _trained(model, counted)
     if seed is not None:
-        flocks.seed(seed)
+        counted.seed(whole(seed, "seed"))
+    return _evaluated(trained, counted, episodes, deterministic)
+
+
+def _per_flock(env: VecEnv) -> VecEnv:
+    """Return an environment that counts flocks."""
+    return env if any(isinstance(each, PerFlock) for each in _layers(env)) else PerFlock(env)
+
+
+def _trained(model: Any, flocks: VecEnv) -> _AsTrained:
+    """Return a model as it acts in flocks whose task is that of its training."""
+    (leaders,) = (each.leaders for each in _layers(flocks) if isinstance(each, PerFlock))
+    _check_task(model, flocks, leaders)
+    return _AsTrained(model, flocks, leaders)
+
+
+def _evaluated(
+    model: _AsTrained,
+    flocks: VecEnv,
+    episodes: int,
+    deterministic: bool,
+    render: bool = False,
+    keep: Callable[[dict[str, Any], dict[str, Any]], None] = lambda *_: None,
+) -> FlockEvaluation:
     orders: list[float] = []
 
-    def keep(step: dict[str, Any], _: dict[str, Any]) -> None:
+    def kept(step: dict[str, Any], everything: dict[str, Any]) -> None:
+        keep(step, everything)
         if step["done"]:
             orders.append(step["info"]["episode_summary"].get("signed_order", np.nan))
 
     returns, lengths = evaluate_policy(
-        model, flocks, n_eval_episodes, deterministic, callback=keep, return_episode_rewards=True
+        cast(Any, model),
+        flocks,
+        episodes,
+        deterministic,
+        render,
+        callback=kept,
+        return_episode_rewards=True,
     )
     return FlockEvaluation(np.array(orders), np.array(returns), np.array(lengths))
 
@@ -176,64 +278,147 @@ def evaluate_flocks(
 class FlockEvalCallback(EvalCallback):
     """stable-baselines3's `EvalCallback` on a `LeaderVecEnv`, with episodes of flocks.
 
-    It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The last
-    evaluation is in `evaluation`.
+    It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The best
+    model is the one with the highest mean signed order; if episodes end before the analysis window,
+    that with the highest mean return. The file ``evaluations.npz`` has the signed orders as
+    ``signed_order``, beside the returns. A training that goes on (``reset_num_timesteps=False``)
+    goes on with the file, and with its best.
 
     Parameters
     ----------
     eval_env
-        A `LeaderVecEnv`. In `VecNormalize` wrap it as ``VecNormalize(PerFlock(venv))``.
+        A `LeaderVecEnv`, also in wrappers. Observations are normalized as in the training.
     seed
         Each evaluation starts with this seed of the first flock, so that models meet the same
         flocks; None: each continues with the next episodes.
     options
         All others of `EvalCallback`; ``n_eval_episodes`` counts flocks.
 
+    Attributes
+    ----------
+    evaluation : FlockEvaluation or None
+        The last evaluation.
+    best_signed_order : float
+        Mean signed order of the best model; NaN before the first evaluation.
+
     Raises
     ------
     TypeError
         If `eval_env` is no `LeaderVecEnv`.
+    ParameterError
+        Before the training, for flocks whose options are not those of the training, as
+        `evaluate_flocks`, and for a file with another number of episodes to go on with.
     """
 
     def __init__(self, eval_env: VecEnv, *, seed: int | None = None, **options: Any) -> None:
-        counted = any(isinstance(each, PerFlock) for each in _layers(eval_env))
-        super().__init__(eval_env if counted else PerFlock(eval_env), **options)
+        super().__init__(_per_flock(eval_env), **options)
+        self.n_eval_episodes = whole(self.n_eval_episodes, "n_eval_episodes")
+        if self.n_eval_episodes < 1:
+            raise ParameterError(
+                f"n_eval_episodes = {self.n_eval_episodes} is not accepted: at least 1"
+            )
         self.seed = None if seed is None else whole(seed, "seed")
         self.evaluation: FlockEvaluation | None = None
-        self._ended: list[tuple[float, float, int]] = []
+        self.best_signed_order = math.nan
+        self._evaluations_order: list[list[float]] = []
 
     def _init_callback(self) -> None:
         with warnings.catch_warnings():
             # The types differ by `PerFlock` on purpose.
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
-        for each in _layers(self.eval_env):
-            if isinstance(each, PerFlock):
-                each.check_action_mode(self.model)
+        _trained(self.model, self.eval_env)
+        if self.model.num_timesteps > 0 and not self._evaluations_order:
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Take over the evaluations of a training that goes on."""
+        path = None if self.log_path is None else Path(f"{self.log_path}.npz")
+        if path is None or not path.is_file():
+            return
+        with np.load(path) as stored:
+            before = stored["timesteps"] <= self.model.num_timesteps
+            parts = {name: stored[name][before] for name in stored.files}
+        episodes = parts["results"].shape[1]
+        if episodes != self.n_eval_episodes:
+            raise ParameterError(
+                f"n_eval_episodes = {self.n_eval_episodes} is not accepted: {path} goes on, which "
+                f"has {episodes} episodes in each evaluation"
+            )
+        self.evaluations_timesteps = parts["timesteps"].tolist()
+        self.evaluations_results = parts["results"].tolist()
+        self.evaluations_length = parts["ep_lengths"].tolist()
+        unknown = np.full(parts["results"].shape, np.nan)
+        self._evaluations_order = parts.get("signed_order", unknown).tolist()
+        for orders, returns in zip(self._evaluations_order, self.evaluations_results, strict=True):
+            self._is_best(float(np.mean(orders)), float(np.mean(returns)))
 
     def _on_step(self) -> bool:
+        if self.eval_freq <= 0 or self.n_calls % self.eval_freq != 0:
+            return True
         if self.seed is not None:
             self.eval_env.seed(self.seed)
-        self._ended.clear()
-        before, verbose, self.verbose = self.best_mean_reward, self.verbose, 0
-        try:
-            goes_on = super()._on_step()
-        finally:
-            self.verbose = verbose
-        if self._ended:
-            self.evaluation = FlockEvaluation(*map(np.array, zip(*self._ended, strict=True)))
-            if self.verbose >= 1:
-                best = ", the best return so far" if self.best_mean_reward > before else ""
-                print(f"{self.num_timesteps} steps: {self.evaluation}{best}")  # noqa: T201
-        return goes_on
+        self._is_success_buffer = []
+        found = self.evaluation = _evaluated(
+            _trained(self.model, self.eval_env),
+            self.eval_env,
+            self.n_eval_episodes,
+            self.deterministic,
+            self.render,
+            self._log_success_callback,
+        )
+        self._store(found)
+        self._log(found)
+        self.last_mean_reward = float(found.returns.mean())
+        is_best = self._is_best(found.mean, self.last_mean_reward)
+        if self.verbose >= 1:
+            best = ", the best so far" if is_best else ""
+            print(f"{self.num_timesteps} steps: {found}{best}")  # noqa: T201
+        goes_on = True
+        if is_best:
+            if self.best_model_save_path is not None:
+                self.model.save(Path(self.best_model_save_path) / "best_model")
+            if self.callback_on_new_best is not None:
+                goes_on = self.callback_on_new_best.on_step()
+        return goes_on and (self.callback is None or self._on_event())
 
-    def _log_success_callback(self, locals_: dict[str, Any], globals_: dict[str, Any]) -> None:
-        super()._log_success_callback(locals_, globals_)
-        if locals_["done"]:
-            info = locals_["info"]
-            order = info["episode_summary"].get("signed_order", np.nan)
-            self._ended.append((order, info["episode"]["r"], info["episode"]["l"]))
-            self.logger.record("eval/signed_order", np.mean([each[0] for each in self._ended]))
+    def _is_best(self, order: float, mean_return: float) -> bool:
+        """Return whether a model is the best so far, and take note of it."""
+        if math.isnan(order) and math.isnan(self.best_signed_order):
+            is_best = mean_return > self.best_mean_reward
+        else:
+            is_best = math.isnan(self.best_signed_order) or order > self.best_signed_order
+        if is_best:
+            self.best_signed_order, self.best_mean_reward = order, mean_return
+        return is_best
+
+    def _store(self, found: FlockEvaluation) -> None:
+        self.evaluations_timesteps.append(self.num_timesteps)
+        self.evaluations_results.append(found.returns.tolist())
+        self.evaluations_length.append(found.lengths.tolist())
+        self._evaluations_order.append(found.signed_order.tolist())
+        if self._is_success_buffer:
+            self.evaluations_successes.append(self._is_success_buffer)
+        if self.log_path is not None:
+            columns: dict[str, Any] = {
+                "timesteps": self.evaluations_timesteps,
+                "results": self.evaluations_results,
+                "ep_lengths": self.evaluations_length,
+                "signed_order": self._evaluations_order,
+            }
+            if self.evaluations_successes:
+                columns["successes"] = self.evaluations_successes
+            np.savez(self.log_path, **columns)
+
+    def _log(self, found: FlockEvaluation) -> None:
+        self.logger.record("eval/signed_order", found.mean)
+        self.logger.record("eval/mean_reward", float(found.returns.mean()))
+        self.logger.record("eval/mean_ep_length", float(found.lengths.mean()))
+        if self._is_success_buffer:
+            self.logger.record("eval/success_rate", np.mean(self._is_success_buffer))
+        # So that the evaluation is logged with its own number of steps.
+        self.logger.record("time/total_timesteps", self.num_timesteps, exclude="tensorboard")
+        self.logger.dump(self.num_timesteps)
 
 
 def _layers(env: VecEnv) -> list[VecEnv]:

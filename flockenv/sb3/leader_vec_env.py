@@ -10,24 +10,21 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv._io.arguments import items, once, whole
+from flockenv._io.arguments import items, listed, once, whole
 from flockenv.envs.base import ManyFlocks
-from flockenv.envs.batch import LeaderBatch, at_least_one, drawn_seed, seeds_from
-from flockenv.envs.options import (
-    RESET_OPTIONS,
-    UPCOMING_OPTIONS,
-    EnvOptions,
-    known_reset_options,
-)
+from flockenv.envs.batch import LeaderBatch, at_least_one
+from flockenv.envs.options import EnvOptions
 from flockenv.envs.registration import registered
 from flockenv.envs.render_mode import RenderMode
+from flockenv.envs.reset_options import UPCOMING_OPTIONS, reset_requests
+from flockenv.envs.seeds import OwnGenerator, drawn_seed, seeds_from
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
 from flockenv.errors import EpisodeError, ParameterError, shown
 from flockenv.rendering.frames import DEFAULT_SIZE
 from flockenv.sb3.leader_slot import LeaderSlot
 
 
-class LeaderVecEnv(ManyFlocks, VecEnv):
+class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
@@ -98,7 +95,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         num_flocks = at_least_one(num_flocks, "num_flocks")
         counts = None if n_leaders is None else _leader_counts(n_leaders)
         options = {**options, "n_leaders": max(counts)} if counts else options
-        parsed = EnvOptions.parse(options, takes_function=True)
+        parsed = EnvOptions.parse(options, takes_function=True, counts="num_flocks")
         counts = counts or [parsed.parameters.n_leaders]
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
         # Flocks start again here, once their rewards are known.
@@ -109,7 +106,7 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         self.render_mode = render_mode
         fps = self._batch.decisions_hz
         self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
-        self.observation_space = ObservationSpace(settings)
+        self.observation_space: ObservationSpace = ObservationSpace(settings)
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
         self.flock_feature_space = self._batch.flock_feature_space
@@ -123,7 +120,6 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         ]
         #: Flock of each slot.
         self.flock_of_slot = np.repeat(np.arange(num_flocks), leaders)
-        self._random = np.random.default_rng()
         self._actions: NDArray[np.float64] | None = None
         super().__init__(len(self.slots), self.observation_space, self.action_space)
         self.metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": fps}
@@ -146,8 +142,9 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""
-        first = drawn_seed(self._random) if seed is None else seed
+        first = drawn_seed(self.np_random) if seed is None else seed
         seeds = seeds_from(first, self.num_flocks)
+        self._seed_generator(seeds[0])
         self._seeds = [seeds[flock] for flock in self.flock_of_slot]
         return self._seeds
 
@@ -164,12 +161,12 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         ParameterError
             For options whose values are not accepted; they do not stay for the next reset.
         """
-        options = self._options_by_flock(self._options)
+        requests = self._requests(self._options)
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
         # What is refused does not stay for the next reset.
         self._reset_options()
-        self._batch.reset(seeds, options, lambda: drawn_seed(self._random))
+        self._batch.reset(seeds, requests, self._drawn_seed)
         self._reset_seeds()
         start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
         self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
@@ -189,26 +186,27 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         self._reset_options()
         each = once({} if options is None else options)
         each = [each] * self.num_envs if isinstance(each, Mapping) else each
-        self._options_by_flock(each)
+        self._requests(each)
         super().set_options(list(each))
 
-    def _options_by_flock(self, options: Any) -> dict[str, list[Any]]:
+    def _drawn_seed(self) -> int:
+        return drawn_seed(self.np_random)
+
+    def _requests(self, options: Any) -> list[dict[str, Any]]:
+        """Return what each flock's reset is asked for, of one dictionary for each slot."""
         is_each = isinstance(options, Sequence) and len(options) == self.num_envs
         if not is_each or not all(isinstance(each, Mapping) for each in options):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
-        by_flock: dict[int, Mapping[str, Any]] = {}
+        by_flock: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock, each in zip(self.flock_of_slot.tolist(), options, strict=True):
-            for name in known_reset_options(each).keys() ^ each.keys():
-                taken = ", ".join(RESET_OPTIONS)
-                raise ParameterError(f"set_options: {name!r} is no reset option, which are {taken}")
-            if not _equal(by_flock.setdefault(flock, each), each):
+            (request,) = reset_requests(each, 1, is_each=False)
+            if by_flock[flock] is None:
+                by_flock[flock] = request
+            elif not _equal(by_flock[flock], request):
                 raise ParameterError(
                     f"set_options: the leaders of flock {flock} have different options"
                 )
-        names = by_flock[0].keys()
-        if any(each.keys() != names for each in by_flock.values()):
-            raise ParameterError("set_options: the flocks' options have to name the same things")
-        return {name: [each[name] for each in by_flock.values()] for name in names}
+        return [request for request in by_flock if request is not None]
 
     def step_async(self, actions: NDArray[Any]) -> None:
         """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
@@ -254,7 +252,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
         if not ended.any():
             return
         unseeded: list[int | None] = [None] * self.num_flocks
-        self._batch.reset(unseeded, None, lambda: drawn_seed(self._random), ended)
+        nothing: list[dict[str, Any]] = [{}] * self.num_flocks
+        self._batch.reset(unseeded, nothing, self._drawn_seed, ended)
         for slot in np.flatnonzero(ended[self.flock_of_slot]).tolist():
             self.reset_infos[slot] = self._batch.reset_info(int(self.flock_of_slot[slot]))
 
@@ -323,8 +322,8 @@ class LeaderVecEnv(ManyFlocks, VecEnv):
                     f"set_attr: {attr_name} is the same for all leaders of flock {flock}, but "
                     "indices name only some of them"
                 )
-        value = once(value)
-        value = tuple(value) if isinstance(value, list | np.ndarray) else value
+        value = listed(value)
+        value = tuple(value) if isinstance(value, list) else value
         self._batch.core.set_upcoming(flocks, {attr_name: value})
 
     def env_method(

@@ -1,14 +1,18 @@
 """`FlockMonitor`: stable-baselines3's monitor file with a row per episode of a flock."""
 
+import json
+import os
 import time
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from stable_baselines3.common.monitor import ResultsWriter
+from stable_baselines3.common.monitor import Monitor, ResultsWriter
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 
 from flockenv._io.arguments import items
+from flockenv.errors import ParameterError
 
 
 class FlockMonitor(VecEnvWrapper):
@@ -27,20 +31,41 @@ class FlockMonitor(VecEnvWrapper):
     summary_keywords
         Numbers of the ``"episode_summary"`` to write too, such as ``"signed_order"``; those that an
         episode does not have are left empty.
+    override_existing
+        Whether a file that has episodes already is replaced (True), or gets more rows (False), as
+        of a training that goes on. None refuses it.
 
     Raises
     ------
     OSError
         If the file cannot be written.
+    ParameterError
+        If the file has episodes and `override_existing` is None, and for more rows of a file with
+        other columns.
     """
 
-    def __init__(self, venv: VecEnv, filename: str, summary_keywords: Iterable[str] = ()) -> None:
+    def __init__(
+        self,
+        venv: VecEnv,
+        filename: str,
+        summary_keywords: Iterable[str] = (),
+        override_existing: bool | None = None,
+    ) -> None:
         super().__init__(venv)
-        self._start = time.time()
         self._keywords = summary_keywords = tuple(items(summary_keywords, "summary_keywords"))
+        path = _path(str(filename))
+        columns = ["r", "l", "t", *summary_keywords]
+        started = None if override_existing is True else _start_of(path, columns)
+        if started is not None and override_existing is None:
+            raise ParameterError(
+                f"{path} has episodes already: override_existing=True replaces them, False adds "
+                "to them"
+            )
+        self._start = time.time() if started is None else started
         spec = venv.get_attr("spec")[0]
         header: dict[str, float | str] = {"t_start": self._start, "env_id": str(spec and spec.id)}
-        self._writer = ResultsWriter(str(filename), header, extra_keys=summary_keywords)
+        # The writer starts a file without a header if it is told to add to none.
+        self._writer = ResultsWriter(str(path), header, summary_keywords, started is None)
 
     def reset(self) -> Any:
         """Start episodes in all flocks."""
@@ -62,3 +87,34 @@ class FlockMonitor(VecEnvWrapper):
         """Close the file and the environment."""
         self._writer.close()
         self.venv.close()
+
+
+def _path(filename: str) -> Path:
+    """Return the file that stable-baselines3's writer makes of a name."""
+    if filename.endswith(Monitor.EXT):
+        return Path(filename)
+    return (
+        Path(filename, Monitor.EXT)
+        if os.path.isdir(filename)
+        else Path(f"{filename}.{Monitor.EXT}")
+    )
+
+
+def _start_of(path: Path, columns: list[str]) -> float | None:
+    """Return when the training of a monitor file started, None if no file has episodes."""
+    if not path.is_file():
+        return None
+    with path.open(encoding="utf-8", newline="") as file:
+        header, found, rows = file.readline(), file.readline().strip().split(","), file.readline()
+    if not rows:
+        return None
+    try:
+        started = float(json.loads(header.removeprefix("#"))["t_start"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise ParameterError(f"{path} is no monitor file: give another name") from error
+    if found != columns:
+        raise ParameterError(
+            f"{path} has the columns {', '.join(found)}, and not {', '.join(columns)}: give "
+            "another name, or override_existing=True"
+        )
+    return started

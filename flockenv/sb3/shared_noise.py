@@ -68,7 +68,7 @@ class HeldNoise:
     def next(self, slots: int, device: torch.device) -> torch.Tensor:
         """Return the rows of the next decision, shape (slots, size).
 
-        If the number of slots is not the training's, rows are independent.
+        If the number of slots is not the training's, as in a prediction, rows are independent.
         """
         if slots != len(self._flock_of_slot):
             return torch.randn(slots, self._noise.shape[1], device=device)
@@ -167,7 +167,8 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Raises
     ------
     ParameterError
-        For discrete actions, and for a hold of less than one decision.
+        For discrete actions, for a hold of less than one decision, and from a training in flocks
+        with another number of leaders than the policy was made for.
     """
 
     def __init__(
@@ -204,6 +205,19 @@ class SharedNoisePolicy(ActorCriticPolicy):
                 f"{kind.__name__} is not accepted with a shared noise: continuous actions"
             )
         super()._build(lr_schedule)
+
+    def forward(
+        self, obs: torch.Tensor, deterministic: bool = False
+    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """Return actions, values and log probabilities of a step of the training."""
+        slots = len(self._shared["flock_of_slot"])
+        if len(obs) != slots:
+            raise ParameterError(
+                f"{len(obs)} leaders are not accepted: this policy shares its noise among "
+                f"{slots}. Load it with custom_objects={{'policy_kwargs': {{**model.policy_kwargs, "
+                "**shared_noise(venv, hold_s)}} to train in other flocks"
+            )
+        return super().forward(obs, deterministic)
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
         return {**super()._get_constructor_parameters(), **self._shared}

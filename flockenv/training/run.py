@@ -172,7 +172,9 @@ def _advance(
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:
-            monitor = FlockMonitor(venv, str(folder / str(done)), ("signed_order",))
+            monitor = FlockMonitor(
+                venv, str(folder / str(done)), ("signed_order",), override_existing=True
+            )
             stack.callback(monitor.close)
             model.set_env(monitor)
             model.set_random_seed((settings.seed + rollouts) % (1 << 32))

@@ -17,6 +17,7 @@ use std::collections::VecDeque;
 pub struct Sampling {
     sample_hz: f64,
     count: u64,
+    end: Ticks,
 }
 
 impl Sampling {
@@ -41,9 +42,10 @@ impl Sampling {
         let mut sampling = Self {
             sample_hz,
             count: periods + 1,
+            end: ticks(duration_s),
         };
         // 0.29 s at 100 Hz has 29 periods, but 0.29·100 < 29 in floating point.
-        if sampling.time(sampling.count) <= ticks(duration_s) {
+        if sampling.time(sampling.count) <= sampling.end {
             sampling.count += 1;
         }
         Ok(sampling)
@@ -235,17 +237,23 @@ impl<T: Real> Recorder<T> {
         self
     }
 
-    /// The same run with changes at times from its start on, after the sample at that time.
+    /// The same run with changes at times from its start on, after the sample at that time. A ramp may end with the
+    /// run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for a change that no sample would show.
+    /// [`FlockError::Parameter`] for a change after the end, and for changes of which no sample would show any.
     pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Result<Self> {
         changes.sort_by_key(|&(time, _)| time);
-        if let Some(&(last, _)) = changes.last() {
-            let (last_s, end) = (seconds(last), self.sampling.time(self.sampling.count() - 1));
-            let accepted = format!("changes before the last sample, at {} s", seconds(end));
-            let found = format!("a change at {last_s} s");
-            FlockError::unless(last < end, "schedule", found, accepted)?;
+        if let (Some(&(first, _)), Some(&(last, _))) = (changes.first(), changes.last()) {
+            let last_sample = self.sampling.time(self.sampling.count() - 1);
+            let refused = if first < last_sample { last } else { first };
+            let accepted = format!(
+                "changes before the last sample, at {} s",
+                seconds(last_sample)
+            );
+            let found = format!("a change at {} s", seconds(refused));
+            let is_shown = first < last_sample && last <= self.sampling.end;
+            FlockError::unless(is_shown, "schedule", found, accepted)?;
         }
         self.changes = changes.into();
         Ok(self)

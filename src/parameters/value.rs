@@ -184,6 +184,10 @@ impl Setting for usize {
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         match value {
             Value::Count(count) => Ok(*count),
+            // Arithmetic and tables give whole numbers as 8.0. The cast is exact: the bound rounds to 2^64.
+            Value::Real(real) if real.fract() == 0.0 && (0.0..Self::MAX as f64).contains(real) => {
+                Ok(*real as Self)
+            }
             Value::Real(real) => {
                 let accepted = "a whole number of at least 0, below 2^64";
                 Err(FlockError::parameter(name, real, accepted))

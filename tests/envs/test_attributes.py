@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.envs.options import _NAMES, OPTIONS, RESET_OPTIONS
+from flockenv.envs.options import NAMES, OPTIONS
+from flockenv.envs.reset_options import RESET_OPTIONS
 
 from .conftest import EVERY
 
@@ -29,9 +30,9 @@ def env(request):
 def test_names_of_options_are_no_attributes(env):
     """Also of such as the environment keeps under that name: parameters, modes and counts."""
     before = vars(env).copy()
-    names = {*OPTIONS, *_NAMES, *RESET_OPTIONS, *ARGUMENTS, "parameters", "num_leaders"}
+    names = {*OPTIONS, *NAMES, *RESET_OPTIONS, *ARGUMENTS, "parameters", "num_leaders"}
     for name in sorted(names):
-        for written in (name, name.upper(), name.title(), name.replace("_", "")):
+        for written in (name, name.upper(), name.title(), name.replace("_", "-")):
             with pytest.raises(AttributeError, match=f"^'{written}' cannot be set as an attribute"):
                 setattr(env, written, 7)
     assert vars(env) == before

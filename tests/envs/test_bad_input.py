@@ -5,7 +5,8 @@ import pytest
 
 import flockenv
 from flockenv import EpisodeError, FlockError, ParameterError
-from flockenv.envs.options import _NAMES, RESET_OPTIONS
+from flockenv.envs.options import NAMES
+from flockenv.envs.reset_options import RESET_OPTIONS
 
 from .conftest import EVERY, INTERFACES, torchrl_env, zeros
 
@@ -184,7 +185,7 @@ def test_what_is_no_action_is_refused_in_its_agents_turn(action):
 @pytest.mark.parametrize(
     "options",
     [
-        {"targt": "cw"},
+        {"Target": "cw"},
         {"target": "up"},
         {"bw_s": -1.0},
         {"state": {"pose": np.zeros((9, 3))}},
@@ -208,7 +209,7 @@ def test_reset_options(interface, options):
 
 
 ENVIRONMENT = [
-    *(name for name in _NAMES if name not in RESET_OPTIONS),
+    *(name for name in NAMES if name not in RESET_OPTIONS),
     *("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks"),
 ]
 
@@ -257,15 +258,20 @@ OF_EACH = {"target": "ccw", "bw_s": 0.5}
     "name",
     [
         *("bw", "BW", "Bw_S", "bws", "bw-s", "bw_sec", "BW_S", "bw_cm", " bw_s"),
-        *("Target", "TARGET", "targets", "targt", "trget", "State", "STATE", "staet", "states"),
-        *("Snapshot", "snapshots", "snap_shot", "SNAPSHOT", "snapsot"),
-        *("nboats", "n_boat", "num_boats", "N_BOATS", "dt", "DT_S", "C4", "speed", "episode"),
-        *("n_leader", "leaders_revers", "obervation", "rewards", "Pool", "reset_masks", "Seed"),
+        *("Target", "TARGET", "State", "STATE", "Snapshot", "snap_shot", "SNAPSHOT", "noise-seed"),
+        *("nboats", "N_BOATS", "DT_S", "C4", "Pool", "Seed", "Reward", "physics"),
+        *("pose", "velocity", "time_s", "allow_overlap", "Pose", "VELOCITY", "allow-overlap"),
     ],
 )
-def test_slips_in_the_options_of_a_reset_are_named(every, name):
+def test_what_would_do_nothing_in_a_reset_is_refused(every, name):
     with pytest.raises(ParameterError, match="no reset option"):
         every({name: 0.5})
+
+
+@pytest.mark.parametrize("name", ["pose", "velocity", "time_s", "allow_overlap"])
+def test_keys_of_a_state_belong_into_it(every, name):
+    with pytest.raises(ParameterError, match=f"{name!r} is a key of 'state'"):
+        every({name: np.zeros((9, 3))})
 
 
 @pytest.mark.parametrize("options", [{"stage_of": 3}, {"record_video": True}, {"goal": 1, 7: 8}])

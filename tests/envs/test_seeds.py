@@ -43,7 +43,12 @@ INTERFACES = [
 
 @pytest.mark.parametrize("place", INTERFACES)
 @pytest.mark.parametrize(
-    "seed", [0, 7, 2**63, 2**64 - 1, np.int64(7), np.uint64(2**64 - 1), np.array(7)], ids=repr
+    "seed",
+    [
+        *(0, 7, 2**63, 2**64 - 1, np.int64(7), np.uint64(2**64 - 1), np.array(7)),
+        *(3.0, 2.0**53, np.float64(1.0), np.float32(5.0), np.array(7.0)),
+    ],
+    ids=repr,
 )
 def test_seeds_that_are_taken(place, seed):
     np.testing.assert_array_equal(place(seed), flockenv.Flock(PARAMETERS, int(seed)).pose)
@@ -55,15 +60,16 @@ def test_seeds_that_are_taken(place, seed):
     [
         (-1, ParameterError),
         (2**64, ParameterError),
-        (1.0, ParameterError),
         (1.5, ParameterError),
-        (np.float64(1.0), ParameterError),
+        (2.0**64, ParameterError),
+        (-1.0, ParameterError),
+        (np.float64(1.5), ParameterError),
         (float("nan"), ParameterError),
         (True, TypeError),
         (np.True_, TypeError),
         ("1", TypeError),
         (b"1", TypeError),
-        (np.float32(1.0), (ParameterError, TypeError)),
+        (np.float32(1.5), (ParameterError, TypeError)),
         (1 + 0j, TypeError),
         (np.array([[1]]), (ParameterError, TypeError)),
         ({}, TypeError),

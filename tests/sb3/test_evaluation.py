@@ -194,7 +194,7 @@ def test_the_callback_prints_what_evaluate_flocks_does(capsys):
     printed = capsys.readouterr().out.splitlines()
     assert len(printed) == 1 + (96 // 12 // 8 - 1)
     assert printed[0].startswith("96 steps: signed order ")
-    assert printed[-1].removesuffix(", the best return so far").endswith("in 6 episodes")
+    assert printed[-1].removesuffix(", the best so far").endswith("in 6 episodes")
     assert callback.verbose == 1
     # The policy has learned since the evaluation.
     assert callback.evaluation.signed_order.shape == found.signed_order.shape

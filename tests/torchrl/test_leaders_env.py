@@ -140,7 +140,7 @@ def test_reset_options_reach_the_flocks():
     assert env._batch.core.episode(0)["target"] == "ccw"
     assert len(starts) == 2
     with pytest.raises(ParameterError, match="did you mean 'target'"):
-        env.reset(options={"targt": "cw"})
+        env.reset(options={"Target": "cw"})
 
 
 @pytest.mark.parametrize("state", ["boats", "set", "features"])

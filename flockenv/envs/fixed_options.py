@@ -1,0 +1,68 @@
+"""Options as attributes: setting one from outside would do nothing, and is refused."""
+
+import inspect
+import sys
+from typing import Any, ClassVar
+
+from flockenv.envs.options import ARGUMENTS, NAMES
+from flockenv.envs.reset_options import RESET_OPTIONS, Spellings
+
+
+class FixedOptions:
+    """An environment whose options cannot be set as attributes from outside.
+
+    Names in other case or without their unit are refused too. A subclass may keep attributes of any
+    name but those in `_kept`, which its methods set on ``self``; from then on they are its own.
+    """
+
+    #: Attributes of this class that are named like an argument.
+    _kept: ClassVar[tuple[str, ...]] = ()
+    #: The call that sets options of an episode.
+    _next_episode: ClassVar[str] = "reset(options={...})"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute; an AttributeError says what sets an option instead."""
+        if (words := _refusal(name, self._next_episode)) is not None:
+            caller = sys._getframe(1)
+            if caller.f_locals.get("self") is not self:
+                self._refuse_from_outside(name)
+            elif name in self._kept:
+                if not _is_same(vars(self).get(name, value), value):
+                    raise AttributeError(words)
+            elif not caller.f_globals.get("__name__", "").startswith("flockenv."):
+                own = vars(self).get("_names_of_subclass", frozenset())
+                vars(self)["_names_of_subclass"] = own | {name}
+        super().__setattr__(name, value)
+
+    def _refuse_from_outside(self, name: str) -> None:
+        """Refuse to set an option, unless a subclass keeps an attribute of that name."""
+        words = _refusal(name, self._next_episode)
+        is_own = name in vars(self).get("_names_of_subclass", ())
+        is_own = is_own or inspect.isdatadescriptor(inspect.getattr_static(type(self), name, None))
+        if words is not None and not is_own:
+            raise AttributeError(words)
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    return one is other or (type(one) is type(other) and bool(one == other))
+
+
+_OF_RESET = (*RESET_OPTIONS, "seed", "reset_mask")
+_FIXED = (*NAMES, *ARGUMENTS, "parameters", "num_leaders", *_OF_RESET)
+_SPELLINGS = Spellings(_FIXED, _FIXED)
+
+
+def _refusal(name: str, next_episode: str) -> str | None:
+    """Return why an attribute cannot be set; None if it is not named like an option."""
+    if name.startswith("_"):
+        return None
+    meant = _SPELLINGS.meant(name)
+    if meant is None:
+        return None
+    if meant == "seed":
+        words = "it is given to a reset"
+    elif meant in _OF_RESET:
+        words = f"{next_episode} sets {meant!r} for an episode"
+    else:
+        words = "it is fixed when an environment is made: make another one to change it"
+    return f"{name!r} cannot be set as an attribute: {words}"

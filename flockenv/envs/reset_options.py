@@ -1,0 +1,133 @@
+"""Options of a reset: which there are, what is refused, and what each flock gets of them."""
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from flockenv._io.arguments import blob, once
+from flockenv.envs.options import ARGUMENTS, NAMES
+from flockenv.errors import ParameterError
+
+#: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
+RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")
+
+#: What may hold for all episodes that are to come.
+UPCOMING_OPTIONS = ("bw_s", "target")
+
+_KEYS_OF_STATE = ("pose", "velocity", "time_s", "allow_overlap")
+_UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
+
+
+class Spellings:
+    """Names that are known also in other case, with other separators and without any.
+
+    A plural is no spelling of a name that ends in the unit of seconds: episodes and episode_s.
+
+    Parameters
+    ----------
+    names
+        The names.
+    without_unit
+        Those of them that are known without their unit, too.
+    """
+
+    def __init__(self, names: Iterable[str], without_unit: Iterable[str] = ()) -> None:
+        self._bare = {"".join(_parts_without_unit(name)): name for name in without_unit}
+        self._names: dict[str, str] = {}
+        for name in names:
+            joined, bare = "".join(_parts(name)), "".join(_parts_without_unit(name))
+            if joined != f"{bare}s" or len(bare) <= 2:
+                self._names[joined] = name
+            self._names["_".join(_parts(name))] = name
+
+    def meant(self, name: object) -> str | None:
+        """Return the name that another one is a spelling of, None if it may be anything else."""
+        parts = _parts(name)
+        known = self._names.get("_".join(parts)) or self._names.get("".join(parts))
+        return known or self._bare.get("".join(_parts_without_unit(name)))
+
+
+def _parts(name: object) -> list[str]:
+    return re.findall(r"[a-z0-9]+", str(name).casefold())
+
+
+def _parts_without_unit(name: object) -> list[str]:
+    return [part for part in _parts(name) if part not in _UNITS]
+
+
+def reset_requests(
+    options: Any,
+    flocks: int,
+    *,
+    is_each: bool = True,
+    takes: tuple[str, ...] = RESET_OPTIONS,
+) -> list[dict[str, Any]]:
+    """Return what each flock's reset is asked for.
+
+    Other keys are for somebody's wrapper: Gymnasium hands one dictionary through all of them. What
+    would do nothing but looks as if it did is a ParameterError: other spellings of the options,
+    arguments of the constructor, and keys of ``state``.
+
+    Parameters
+    ----------
+    options
+        As a user gives them; None for none.
+    flocks
+        Number of flocks.
+    is_each
+        Whether a list has an entry for each flock; otherwise it is a value.
+    takes
+        Names of the options that there are.
+    """
+    if options is None:
+        return [{} for _ in range(flocks)]
+    if not isinstance(options, Mapping):
+        raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
+    for name in options:
+        if name not in takes:
+            _refuse_misplaced(name, takes)
+    requests: list[dict[str, Any]] = [{} for _ in range(flocks)]
+    for name in (each for each in RESET_OPTIONS if each in options):
+        for request, value in zip(
+            requests, _values(name, options[name], flocks, is_each), strict=True
+        ):
+            request[name] = blob(value, name) if name == "snapshot" else value
+    return requests
+
+
+def _values(name: str, value: Any, flocks: int, is_each: bool) -> Any:
+    """Return the value of an option for each flock."""
+    held = once(value)
+    is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    if not is_each:
+        # Of one flock a list is a range of noises, or a target for each leader.
+        return [tuple(held) if is_list else held]
+    if held is value and not is_list:
+        return [value] * flocks
+    if len(held) != flocks:
+        raise ParameterError(f"reset option {name!r} lists {len(held)} values, expected {flocks}")
+    return held
+
+
+def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:
+    if (meant := _OF_RESET.meant(name)) in takes:
+        raise ParameterError(f"{name!r} is no reset option: did you mean {meant!r}?")
+    meant = meant or _MISPLACED.meant(name)
+    if meant is None:
+        return
+    if meant in _KEYS_OF_STATE:
+        words = f"{meant!r} is a key of 'state': options={{'state': {{'pose': ..., ...}}}}"
+    elif meant == "seed":
+        words = "the seed is an argument of its own"
+    elif meant == "reset_mask":
+        words = "only a vector environment of Gymnasium takes 'reset_mask'"
+    else:
+        words = f"{meant!r} is fixed when an environment is made: make another one to change it"
+    options = f"{', '.join(takes[:-1])} and {takes[-1]}"
+    raise ParameterError(f"{name!r} is no reset option (these are {options}): {words}")
+
+
+_OF_RESET = Spellings((*RESET_OPTIONS, "reset_mask"), RESET_OPTIONS)
+_MISPLACED = Spellings((*NAMES, *ARGUMENTS, *_KEYS_OF_STATE))

@@ -1,0 +1,86 @@
+"""Seeds of the environments: given to a reset, or drawn from the environment's own generator."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium.utils.seeding
+import numpy as np
+
+from flockenv._io.arguments import once, whole
+from flockenv.errors import ParameterError, shown
+
+_SEEDS = 2**64
+
+
+class Seed(int):
+    """A seed in infos: JSON takes it, and Gymnasium's arrays too, which end at 2^63 for an int."""
+
+
+class OwnGenerator:
+    """Gymnasium's `np_random`, for environments of other libraries.
+
+    The generator is made when it is first asked for. Copies of an environment that was never reset
+    therefore have different flocks, copies made later go on alike.
+    """
+
+    _np_random: np.random.Generator | None = None
+    _np_random_seed: int | None = None
+
+    @property
+    def np_random(self) -> np.random.Generator:
+        """The generator that draws a seed if a reset is given none."""
+        if self._np_random is None:
+            self._seed_generator(None)
+        assert self._np_random is not None
+        return self._np_random
+
+    @np_random.setter
+    def np_random(self, generator: np.random.Generator) -> None:
+        self._np_random, self._np_random_seed = generator, -1
+
+    @property
+    def np_random_seed(self) -> int:
+        """The seed of `np_random`; -1 for a generator that was set."""
+        if self._np_random_seed is None:
+            self._seed_generator(None)
+        assert self._np_random_seed is not None
+        return self._np_random_seed
+
+    def _seed_generator(self, seed: int | None) -> None:
+        self._np_random, self._np_random_seed = gymnasium.utils.seeding.np_random(seed)
+
+
+def drawn_seed(random: np.random.Generator) -> int:
+    """Draw a seed for an environment that was given none."""
+    return int(random.integers(_SEEDS // 2))
+
+
+def seed_of(seed: Any) -> int:
+    """Return the seed of one flock as an int; errors name what is none."""
+    return seeds_from(seed, 1)[0]
+
+
+def seeds_from(first: Any, flocks: int) -> list[int]:
+    """Return the seeds of flocks of which the first has this one, and each other the next."""
+    number = whole(first, "seed")
+    if not 0 <= number <= _SEEDS - flocks:
+        raise ParameterError(
+            f"seed = {shown(number)} is not accepted: at least 0, and below 2^64 for the last of "
+            f"{flocks} flocks"
+        )
+    return [number + flock for flock in range(flocks)]
+
+
+def seeds_of_flocks(seed: Any, flocks: int) -> Sequence[int | None]:
+    """Return a seed for each flock, of one for the first or of a list with one for each.
+
+    None continues with the next episode.
+    """
+    if seed is None:
+        return [None] * flocks
+    seeds = seed.tolist() if isinstance(seed, np.ndarray) else once(seed)
+    if not isinstance(seeds, Sequence) or isinstance(seeds, str | bytes):
+        return seeds_from(seeds, flocks)
+    if len(seeds) != flocks:
+        raise ParameterError(f"seed lists {len(seeds)} seeds, expected {flocks}")
+    return [None if each is None else seed_of(each) for each in seeds]

@@ -1,0 +1,366 @@
+"""Law: what honest users write is accepted: names of their own, and values as arithmetic has them.
+
+The names are those of the tutorials of Gymnasium, HighwayEnv, PettingZoo, SuperSuit,
+stable-baselines3, TorchRL and RLlib, of wrappers of their users, and of this field's papers.
+"""
+
+import copy
+
+import gymnasium
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv import FlockParameters
+
+OPTIONS = {"n_boats": 6, "n_leaders": 2, "episode_s": 0.5}
+
+
+def words(text):
+    return text.split()
+
+
+#: Attributes that a subclass keeps.
+ATTRIBUTES = words(
+    """
+achieved_goal action action_history action_mode action_repeat action_type actions agent
+agent_location allow_overlap alpha angle arena autoreset_mode base_env batch_size beta boats
+bounds buffer bw bw_s c0 c1 c2 c3 c4 callbacks canvas cfg clock coefficients config control_hz
+controlled_vehicles counter critic cumulative_reward curriculum dataset delay_frames desired_goal
+device difficulty discount discs done dones dropout_rate dt dt_control dt_s dtype elapsed_steps
+engine episode episode_count episode_id episode_length episode_reward episode_s episodes epsilon
+expert failed frame frame_stack frames frequency fw_s gamma generator goal goals grid heading
+headings high history horizon hyperparams info infos inner is_success isopen label lanes
+last_action last_info last_obs last_reward last_state leaders level log logger low map mask
+max_episode_steps max_steps memory metrics mirror_to_target model n_agents n_boats n_steps name
+noise noise_scale noise_seed noise_std np_rng num_agents num_envs num_flocks obs obs_buffer
+observation observation_type observations obstacles parameter_range params path phase physics
+pix_square_size policy policy_frequency pool pose position positions preset previous_action
+previous_state radius random_state render_fps render_size reset_mask return_ reward reward_fn
+reward_range reward_scale reward_weights rewards rng road rudder rudder_lag_s rudder_levels scheme
+score scores screen screen_size seed seeds settings sim simulation_frequency simulator snapshot
+snapshots solver space speed speed_limit speeds stack stage state state_size states stats
+step_count steps success surface t target target_heading target_location target_speed targets task
+task_id tau teacher terminated theta threshold time time_limit time_s timestep tolerance
+total_reward trajectory truncated vehicle velocities velocity viewer walls weights window
+window_size world x y
+"""
+)
+
+#: Keys of the dictionary that Gymnasium hands through all wrappers.
+KEYS = words(
+    """
+action_mask agent agent_id agents alpha angle batch batch_size belief beta boat boats bonus buffer
+camera camera_id cfg checkpoint checkpoint_path color colors config context context_id counter
+curriculum curriculum_stage dataset debug demo demonstration desired_goal device difficulty
+distribution domain_randomization dt dtype env_id env_ids env_seed episode episode_id
+episode_length episodes epsilon eval evaluate evaluation expert fault faults fps frame frame_skip
+frame_stack frames friction full_reset gamma goal goal_pos goal_state goals gravity hard_reset
+heading high history horizon host hyperparameters id ids idx index info infos init init_state
+initial_state is_training kwargs label layout layout_id layout_seed leader leaders length lesson
+level level_id levels log log_dir logging low map map_id map_name mask masks mass
+max_episode_steps max_speed max_steps maze memory mode model modes n_agents n_leader name names
+noise noise_level noise_scale noise_std num_agents num_boats obs obs_noise observation_noise
+observations obstacle obstacles offset opponent opponents option options palette param parameter
+parameters penalty phase phases player policies policy pos pose_noise poses position positions
+prior radius random random_state randomize rank rank_id record record_video render render_fps
+rendering replay replay_id reset reset_kwargs reset_state reset_to reset_type resets restore
+restore_from return_info reward_fn reward_scale reward_type reward_weights rewards rng rollout
+rollout_id run run_id sample sampler samples save save_path scale scenario scenario_id scene
+scene_id schedule schedules score scores seeds sensor sensors settings shaping snapshots
+soft_reset speed speed_limit speeds split stage stages start start_pos start_state stat state_id
+states statistic stats status step step_count steps subtask success t t0 tag tags target_heading
+target_id target_location target_pos target_speed target_velocity targets task task_id task_name
+tasks teacher team teams temperature test theta threshold time time_limit timestep tolerance train
+training trajectories trajectory trial trial_id vel velocity_limit verbose video video_path view
+viewpoint wall weight weights wind worker worker_id world world_seed x x_init y y_init
+"""
+)
+
+
+@pytest.fixture(params=["single", "vector", "sb3"])
+def base(request):
+    if request.param == "sb3":
+        pytest.importorskip("stable_baselines3")
+        return flockenv.sb3.LeaderVecEnv
+    return {"single": flockenv.LeadersEnv, "vector": flockenv.LeadersVectorEnv}[request.param]
+
+
+def keeping(base, name):
+    """Make an environment whose subclass keeps an attribute of this name."""
+
+    class Mine(base):
+        def __init__(self, **options):
+            setattr(self, name, 0)
+            super().__init__(**options)
+            setattr(self, name, [1])
+
+        def reset(self, **options):
+            started = super().reset(**options)
+            setattr(self, name, [2])
+            return started
+
+    return Mine(**OPTIONS)
+
+
+def test_a_subclass_keeps_attributes_of_any_name(base):
+    plain = base(**OPTIONS)
+    nothing = np.zeros((plain.num_envs, 1) if hasattr(plain, "slots") else plain.action_space.shape)
+    for name in (each for each in ATTRIBUTES if each not in plain._kept):
+        env = keeping(base, name)
+        env.reset()
+        other = copy.deepcopy(env)
+        for _ in range(2):
+            env.step(nothing)
+            other.step(nothing)
+        assert other.get_state() == env.get_state()
+        assert getattr(env, name) == getattr(other, name) == [2]
+        # It is the subclass's own from now on.
+        setattr(env, name, 3)
+        assert getattr(env, name) == 3
+
+
+def test_a_tutorials_first_lines():
+    """As HighwayEnv and Gymnasium's tutorials write them, with a property and a class attribute."""
+
+    class Mine(flockenv.LeadersEnv):
+        reward = 0.0
+        noise = None
+
+        def __init__(self, render_mode=None, **options):
+            self.render_mode = render_mode
+            self.state = None
+            self.target, self.speed = "goal", 0.0
+            super().__init__(render_mode=render_mode, **options)
+            self.observation = self.params = None
+            self.render_mode = render_mode
+
+        @property
+        def bw_s(self):
+            return self.noise
+
+        @bw_s.setter
+        def bw_s(self, value):
+            self.noise = value
+
+        def step(self, action):
+            self.observation, self.reward, *ends = super().step(action)
+            return self.observation, self.reward, *ends
+
+    env = Mine(**OPTIONS, render_mode="rgb_array")
+    env.reset(seed=0)
+    _, reward, *_ = env.step(np.zeros(2))
+    assert env.reward == reward
+    env.bw_s = 0.7
+    assert (env.noise, env.flock.parameters.bw_s) == (0.7, 0.3)
+    wrapped = gymnasium.wrappers.FlattenObservation(env)
+    wrapped.set_wrapper_attr("target", "other")
+    assert env.target == "other"
+
+
+INTERFACES = {
+    "single": lambda: flockenv.LeadersEnv(**OPTIONS),
+    "parallel": lambda: flockenv.parallel_env(**OPTIONS),
+    "aec": lambda: flockenv.env(**OPTIONS),
+    "vector": lambda: flockenv.LeadersVectorEnv(2, **OPTIONS),
+    "wrapped": lambda: gymnasium.wrappers.RecordEpisodeStatistics(
+        gymnasium.make("flockenv/Leaders-v0", **OPTIONS)
+    ),
+    "torchrl": lambda: pytest.importorskip("torchrl") and flockenv.torchrl.LeadersEnv(2, **OPTIONS),
+    "sb3": lambda: (
+        pytest.importorskip("stable_baselines3") and flockenv.sb3.LeaderVecEnv(2, **OPTIONS)
+    ),
+}
+
+
+@pytest.mark.parametrize("make", INTERFACES.values(), ids=INTERFACES.keys())
+def test_keys_of_a_wrapper_pass_a_reset(make):
+    env = make()
+    for number, key in enumerate(KEYS):
+        options = {key: number, "bw_s": 0.25}
+        if hasattr(env, "set_options"):
+            env.set_options(options)
+            env.reset()
+        else:
+            env.reset(options=options)
+        core = (env if hasattr(env, "_batch") else env.unwrapped)._batch.core
+        assert core.episode(0)["bw_s"] == 0.25
+
+
+def parameters(**fields):
+    return lambda: FlockParameters(**fields)
+
+
+def single(**options):
+    return lambda: flockenv.LeadersEnv(**{**OPTIONS, **options}).reset(seed=1)
+
+
+def vector(num_envs=2, seed=1, reset=None, **options):
+    return lambda: flockenv.LeadersVectorEnv(num_envs, **{**OPTIONS, **options}).reset(
+        seed=seed, options=reset
+    )
+
+
+def parallel(seed=1, reset=None, **options):
+    return lambda: flockenv.parallel_env(**{**OPTIONS, **options}).reset(seed=seed, options=reset)
+
+
+def run(seed=1, duration_s=1.0, **options):
+    few = FlockParameters(n_boats=4, pool="narrow", n_leaders=1)
+    return lambda: flockenv.simulate(few, seed, duration_s, **options)
+
+
+def ramp(times):
+    return [(time_s, {"bw_s": 0.1 + 0.1 * place}) for place, time_s in enumerate(times)]
+
+
+POOL = (100.0, 40.0)
+NUMBERS = [np.float64, np.float32, np.int64, lambda value: np.array(value), float]
+SERIES = [list, tuple, np.array, pd.Series, iter, lambda each: np.array(each, np.float32)]
+DIRECTIONS = [list, tuple, np.array, pd.Series, iter, lambda each: (word for word in each)]
+VALUES = {
+    **{
+        f"FlockParameters({name}={value!r})": parameters(**{name: value})
+        for name, number in [("n_boats", 8), ("n_leaders", 2), ("relinearizations", 2)]
+        for value in (kind(number) for kind in NUMBERS)
+    },
+    **{
+        f"FlockParameters({name}={value!r})": parameters(**{name: value})
+        for name, number in [("bw_s", 1), ("dt_s", 0.02), ("speed_cm_s", 22), ("fw_s", 2)]
+        for value in (number, np.float32(number), np.float64(number), np.array(number))
+    },
+    **{
+        f"FlockParameters(pool={kind} {place})": parameters(pool=kind(POOL))
+        for place, kind in enumerate(SERIES)
+    },
+    **{
+        f"FlockParameters(discs={place})": parameters(n_boats=4, discs=discs)
+        for place, discs in enumerate(
+            [
+                [(130, 0, 5)],
+                np.array([[130.0, 0.0, 5.0]]),
+                pd.DataFrame([[130.0, 0, 5]]).to_numpy(),
+                ((130, 0, 5) for _ in range(1)),
+                np.array([[130, 0, 5]]),
+                (),
+            ]
+        )
+    },
+    **{
+        f"LeadersEnv({name}={value!r})": single(**{name: value})
+        for name, number in [
+            ("n_boats", 8),
+            ("n_leaders", 2),
+            ("rudder_levels", 5),
+            ("delay_frames", 1),
+        ]
+        for value in (kind(number) for kind in NUMBERS)
+    },
+    **{
+        f"LeadersEnv({name}={value!r})": single(**{name: value})
+        for name, number in [
+            ("control_hz", 5),
+            ("episode_s", 1),
+            ("dropout_rate", 0),
+            ("rudder_lag_s", 0),
+            ("decision_period_s", 1),
+            ("reward_horizon_s", 10),
+            ("bw_s", 1),
+        ]
+        for value in (number, float(number), np.float32(number), np.int64(number), np.array(number))
+    },
+    **{
+        f"LeadersEnv(bw_s={kind} {place})": single(bw_s=kind([0.1, 0.5]))
+        for place, kind in enumerate(SERIES)
+    },
+    **{
+        f"LeadersEnv(target={kind} {place})": single(target=kind(["cw", "ccw"]))
+        for place, kind in enumerate(DIRECTIONS)
+    },
+    **{
+        f"LeadersEnv(render_size={size!r})": single(render_size=size)
+        for size in [(80, 80), [80, 90], np.array([80, 90])]
+    },
+    **{
+        f"LeadersEnv(observation={blocks!r})": single(observation=blocks)
+        for blocks in [
+            {"neighbors": 3.0},
+            {"neighbors": np.int64(3)},
+            {"order": np.False_},
+            {},
+            {"neighbors": np.float32(2)},
+            {"target": False, "order": False},
+        ]
+    },
+    **{
+        f"LeadersEnv(reward={weights!r})": single(reward=weights)
+        for weights in [
+            {"signed_order": 1},
+            {"jam": np.float32(0.5)},
+            {"jam": np.array(0.5)},
+            [{"jam": 1.0}, {"signed_order": 1.0}],
+            ({"jam": 1}, {"jam": 2}),
+        ]
+    },
+    **{
+        f"seed={seed!r} in a vector": vector(seed=seed)
+        for seed in [
+            3.0,
+            np.float64(3),
+            np.array([1, 2]),
+            [1.0, 2.0],
+            (1, None),
+            range(2),
+            np.array([1.0, 2.0]),
+            np.uint64(2**63),
+            iter([5, 6]),
+            np.array(4),
+        ]
+    },
+    **{
+        f"seed={seed!r} of one flock": parallel(seed=seed)
+        for seed in [3.0, np.float32(3), np.int32(7), np.array(7), 2**64 - 1]
+    },
+    **{f"num_envs={count!r}": vector(num_envs=count) for count in [2.0, np.int64(2), np.array(2)]},
+    **{
+        f"reset bw_s {place}": parallel(reset={"bw_s": bw_s})
+        for place, bw_s in enumerate(
+            [
+                1,
+                0.5,
+                np.float32(0.5),
+                np.array(0.5),
+                [0.1, 0.5],
+                np.array([0.1, 0.5]),
+                (0.1, 0.5),
+                iter([0.1, 0.5]),
+            ]
+        )
+    },
+    **{f"simulate(seed={seed!r})": run(seed=seed) for seed in [3.0, np.int64(3), np.float64(3)]},
+    **{
+        f"simulate(duration_s={duration!r})": run(duration_s=duration)
+        for duration in [1, np.float32(1), np.int64(1), np.array(1.0)]
+    },
+    **{
+        f"simulate(schedule {place})": run(schedule=schedule)
+        for place, schedule in enumerate(
+            [
+                ramp(np.linspace(0, 1.0, 6)),
+                ramp(np.linspace(0, 1.0, 2)),
+                ramp(np.arange(0, 1, 0.25)),
+                ramp([0, 0.5, 1]),
+                iter(ramp([0.0, 0.7])),
+                tuple(ramp([0.5])),
+                zip([0.25, 0.5], [{"bw_s": 0.2}, {"target": "ccw"}], strict=True),
+                {0.25: {"bw_s": 0.2}}.items(),
+            ]
+        )
+    },
+}
+
+
+@pytest.mark.parametrize("accepted", VALUES.values(), ids=VALUES.keys())
+def test_values_are_accepted_as_people_write_them(accepted):
+    accepted()

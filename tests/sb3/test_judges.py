@@ -1,0 +1,272 @@
+"""Law: a model is judged on the task of its training, and a training goes on as it began."""
+
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import StopTrainingOnNoModelImprovement
+from stable_baselines3.common.monitor import load_results
+from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize
+
+from flockenv import ParameterError
+from flockenv.policies import DampedLaw, ModelPolicy, SteeringLaw
+from flockenv.sb3 import (
+    FlockEvalCallback,
+    FlockMonitor,
+    LeaderVecEnv,
+    PerFlock,
+    SharedNoisePolicy,
+    evaluate_flocks,
+    shared_noise,
+)
+
+OPTIONS = {"n_boats": 9, "pool": "narrow", "n_leaders": 3, "episode_s": 2.0}
+#: Options that leave the shapes as they are.
+OTHERS = {
+    "mirror": {"mirror_to_target": True},
+    "rate": {"control_hz": 5.0},
+    "heading": {"action_mode": "heading"},
+    "period": {"decision_period_s": 0.5},
+}
+LOOKS = {
+    "plain": lambda venv: venv,
+    "per flock": PerFlock,
+    "normalized": lambda venv: VecNormalize(PerFlock(venv), training=False),
+}
+
+
+def make(num_flocks=4, **options):
+    return LeaderVecEnv(num_flocks, **{**OPTIONS, **options})
+
+
+def ppo(venv, policy="MlpPolicy", **options):
+    return PPO(policy, venv, n_steps=8, batch_size=24, n_epochs=1, seed=0, device="cpu", **options)
+
+
+def evaluation(venv, folder=None, **options):
+    given = {"n_eval_episodes": 4, "eval_freq": 8, "verbose": 0, "seed": 11, **options}
+    return FlockEvalCallback(venv, log_path=folder, best_model_save_path=folder, **given)
+
+
+@pytest.mark.parametrize("options", OTHERS.values(), ids=OTHERS.keys())
+def test_flocks_of_another_meaning_judge_no_model(options, tmp_path):
+    model = ppo(make())
+    for judged in (model, model.policy, ModelPolicy(model)):
+        with pytest.raises(ParameterError, match=f"made for {next(iter(options))} = "):
+            evaluate_flocks(judged, make(**options), 4)
+    callback = evaluation(make(**options), str(tmp_path / "best"))
+    with pytest.raises(ParameterError, match=f"made for {next(iter(options))} = "):
+        model.learn(96, callback)
+    assert model.num_timesteps == 0
+    assert not list(tmp_path.rglob("*.zip"))
+
+
+def test_levels_judge_no_model_of_rudders():
+    with pytest.raises(ParameterError, match=r"its action space is Box.*not Discrete"):
+        evaluate_flocks(ppo(make()), make(rudder_levels=5), 4)
+
+
+def test_stacked_frames_are_judged_in_stacked_frames():
+    model = ppo(VecFrameStack(make(), 2))
+    with pytest.raises(ParameterError, match="its observation space is"):
+        evaluate_flocks(model, make(), 4)
+    found = evaluate_flocks(model, VecFrameStack(make(), 2), 4)
+    assert len(found.returns) == 4
+
+
+def test_policies_are_judged_in_what_they_say_and_no_more():
+    evaluate_flocks(SteeringLaw(), make(control_hz=5.0), 4)
+    evaluate_flocks(SteeringLaw(mirror_to_target=True), make(mirror_to_target=True), 4)
+    for law, options in (
+        (SteeringLaw(), {"mirror_to_target": True}),
+        (SteeringLaw(observation={"neighbors": 2}), {}),
+        (DampedLaw(), {"observation": {"order": False}}),
+    ):
+        with pytest.raises(ParameterError, match="made for"):
+            evaluate_flocks(law, make(**options), 4)
+
+
+#: It tells policies apart at once.
+EFFORT = {"reward": {"rudder_effort": 1.0}}
+
+
+def normalized_model():
+    training = VecNormalize(make(**EFFORT), gamma=0.9)
+    return ppo(training).learn(96 * 3)
+
+
+def returns_by_hand(model, seed):
+    """Each flock's return in its first episode, on observations normalized as in the training."""
+    venv, normalizing = make(**EFFORT), model.get_vec_normalize_env()
+    venv.seed(seed)
+    rows, total = venv.reset(), np.zeros(4)
+    for _ in range(20):
+        actions, _ = model.predict(normalizing.normalize_obs(rows), deterministic=True)
+        rows, rewards, *_ = venv.step(actions)
+        total += rewards.reshape(4, 3).mean(axis=1)
+    return total
+
+
+@pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS.keys())
+def test_a_model_that_saw_normalized_observations_sees_them_when_it_is_judged(look):
+    model = normalized_model()
+    expected = returns_by_hand(model, 7)
+    for judged in (model, ModelPolicy(model)):
+        found = evaluate_flocks(judged, look(make(**EFFORT)), 4, seed=7)
+        np.testing.assert_allclose(found.returns, expected, rtol=1e-5)
+    raw = evaluate_flocks(model.policy, make(**EFFORT), 4, seed=7)
+    assert not np.allclose(raw.returns, expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize("look", LOOKS.values(), ids=LOOKS.keys())
+def test_a_callback_judges_on_normalized_observations(look):
+    model = ppo(VecNormalize(make(**EFFORT), gamma=0.9))
+    callback = evaluation(look(make(**EFFORT)), seed=7)
+    judged = []
+    store = callback._store
+    callback._store = lambda found: judged.append(returns_by_hand(model, 7)) or store(found)
+    model.learn(96, callback)
+    np.testing.assert_allclose(callback.evaluation.returns, judged[-1], rtol=1e-5)
+
+
+def test_normalized_flocks_judge_no_model_that_saw_plain_ones():
+    with pytest.raises(ParameterError, match="evaluate it without VecNormalize"):
+        evaluate_flocks(ppo(make()), VecNormalize(PerFlock(make())), 4)
+
+
+class Remembering:
+    """A recurrent policy: it counts, for each leader, the steps of its episode."""
+
+    def __init__(self):
+        self.counts = []
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        assert episode_start.shape == (len(observation),)
+        before = np.zeros(len(observation)) if state is None else state
+        state = np.where(episode_start, 0, before) + 1
+        self.counts.append(state)
+        return np.zeros((len(observation), 1)), state
+
+
+def test_recurrent_models_are_judged_with_the_starts_of_their_leaders_episodes():
+    policy = Remembering()
+    found = evaluate_flocks(policy, make(2, n_leaders=[1, 3]), 4)
+    assert found.lengths.tolist() == [20] * 4
+    steps = [*range(1, 21)] * 2
+    np.testing.assert_array_equal(policy.counts, np.repeat(steps, 4).reshape(40, 4))
+
+
+def test_the_best_model_is_the_one_of_the_highest_order(tmp_path):
+    """Not of the highest return: rewards may say something else."""
+    options = {"episode_s": 30.0, "reward": {"signed_order": -1.0}}
+    callback = evaluation(make(**options), str(tmp_path), n_eval_episodes=4)
+    ppo(make(**options), learning_rate=0.05).learn(96 * 4, callback)
+    stored = np.load(tmp_path / "evaluations.npz")
+    assert stored["signed_order"].shape == stored["results"].shape == (4, 4)
+    orders = stored["signed_order"].mean(axis=1)
+    np.testing.assert_array_equal(stored["signed_order"][-1], callback.evaluation.signed_order)
+    assert callback.best_signed_order == orders.max()
+    best = evaluate_flocks(
+        PPO.load(tmp_path / "best_model", device="cpu"), make(**options), 4, seed=11
+    )
+    assert best.mean == pytest.approx(orders.max(), abs=1e-6)
+    assert orders.argmax() != stored["results"].mean(axis=1).argmax()
+    assert callback.best_mean_reward == stored["results"].mean(axis=1)[orders.argmax()]
+
+
+def test_a_training_that_goes_on_goes_on_with_its_evaluations_and_its_best(tmp_path):
+    options = {"episode_s": 30.0}
+    model = ppo(make(**options))
+    first = evaluation(make(**options), str(tmp_path))
+    model.learn(96 * 2, first)
+    before = dict(np.load(tmp_path / "evaluations.npz"))
+    model.save(tmp_path / "model")
+    model = PPO.load(tmp_path / "model", env=make(**options), device="cpu")
+    second = evaluation(make(**options), str(tmp_path))
+    stored = (tmp_path / "best_model.zip").stat().st_mtime_ns
+    model.learn(96 * 2, second, reset_num_timesteps=False)
+    after = np.load(tmp_path / "evaluations.npz")
+    assert after["timesteps"].tolist() == [96, 192, 288, 384]
+    for name, rows in before.items():
+        np.testing.assert_array_equal(after[name][:2], rows)
+    orders = after["signed_order"].mean(axis=1)
+    assert second.best_signed_order == orders.max()
+    is_better = orders[2:].max() > orders[:2].max()
+    assert ((tmp_path / "best_model.zip").stat().st_mtime_ns != stored) == is_better
+    with pytest.raises(ParameterError, match="has 4 episodes in each evaluation"):
+        model.learn(
+            96,
+            evaluation(make(**options), str(tmp_path), n_eval_episodes=8),
+            reset_num_timesteps=False,
+        )
+    # One that starts again starts its file again.
+    ppo(make(**options)).learn(96, evaluation(make(**options), str(tmp_path)))
+    assert np.load(tmp_path / "evaluations.npz")["timesteps"].tolist() == [96]
+
+
+def test_callbacks_of_an_evaluation_are_called():
+    stop = StopTrainingOnNoModelImprovement(max_no_improvement_evals=1, min_evals=0)
+    model = ppo(make(), learning_rate=0.0)
+    model.learn(96 * 9, evaluation(make(), callback_after_eval=stop))
+    assert model.num_timesteps < 96 * 9
+
+
+def test_a_monitor_file_that_has_episodes_is_neither_lost_nor_mixed_up(tmp_path):
+    def trained(**options):
+        venv = FlockMonitor(make(), str(tmp_path / "run"), ("signed_order",), **options)
+        ppo(venv).learn(12 * 24)
+        venv.close()
+        return load_results(str(tmp_path))
+
+    first = trained()
+    assert len(first) == 4
+    with pytest.raises(ParameterError, match="override_existing=True replaces them, False adds"):
+        trained()
+    both = trained(override_existing=False)
+    assert len(both) == 8
+    np.testing.assert_array_equal(both[["r", "l"]][:4], first[["r", "l"]])
+    # One clock for both: the curve goes on.
+    assert both["t"].is_monotonic_increasing
+    assert both["t"][4] > both["t"][3]
+    with pytest.raises(ParameterError, match="has the columns r, l, t, signed_order, and not"):
+        FlockMonitor(make(), str(tmp_path / "run"), ("psi_o",), override_existing=False)
+    assert len(trained(override_existing=True)) == 4
+    with open(tmp_path / "run.monitor.csv", encoding="utf-8") as file:
+        assert json.loads(file.readline()[1:])["env_id"] == "None"
+    (tmp_path / "other.monitor.csv").write_text("a,b\n1,2\n3,4\n")
+    with pytest.raises(ParameterError, match="is no monitor file"):
+        FlockMonitor(make(), str(tmp_path / "other"), override_existing=False)
+
+
+@pytest.mark.parametrize("override_existing", [None, False])
+def test_a_monitor_file_without_episodes_is_started(tmp_path, override_existing):
+    for _ in range(2):
+        venv = FlockMonitor(make(), str(tmp_path), (), override_existing)
+        venv.close()
+    assert (tmp_path / "monitor.csv").read_text().count("t_start") == 1
+    venv = FlockMonitor(make(), str(tmp_path), (), override_existing)
+    ppo(venv).learn(12 * 24)
+    venv.close()
+    assert len(load_results(str(tmp_path))) == 4
+
+
+def test_a_shared_noise_is_for_the_flocks_that_it_was_made_for(tmp_path):
+    model = ppo(make(), SharedNoisePolicy, policy_kwargs=shared_noise(make(), 0.5))
+    model.save(tmp_path / "model")
+    more = make(6)
+    other = PPO.load(tmp_path / "model", env=more, device="cpu")
+    # It may be judged there, but not go on to learn.
+    evaluate_flocks(other, make(6), 6)
+    other.predict(more.reset(), deterministic=False)
+    with pytest.raises(ParameterError, match=r"18 leaders are not accepted.*shared_noise"):
+        other.learn(18 * 8)
+    shared = {**other.policy_kwargs, **shared_noise(more, 0.5)}
+    other = PPO.load(
+        tmp_path / "model", env=more, device="cpu", custom_objects={"policy_kwargs": shared}
+    )
+    other.learn(18 * 8)
+    assert other.policy.action_dist.held._flock_of_slot.tolist() == more.flock_of_slot.tolist()
