@@ -1,13 +1,11 @@
-"""Law: a page names what there is: files, commands, options, make targets, functions and fields."""
+"""Law: commands, files and dotted names that a page names exist."""
 
 import dataclasses
 import importlib
 import importlib.util
 import inspect
-import io
 import re
 import shlex
-import tokenize
 from functools import cache
 from pathlib import Path
 
@@ -24,42 +22,26 @@ REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
 FENCE = re.compile(r"^( *)(`{3,})(?:\{?(\w*).*?)$(.*?)^\1\2$", re.MULTILINE | re.DOTALL)
 NAME = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
-WORD = re.compile(r"[^\W\d]\w*")
-CODE = ("*.py", "*.pyi", "*.rs", "*.mjs", "*.js", "*.html", "*.css", "*.toml", "*.yml", "*.slurm")
-#: What readers of a page make themselves, and names in files of other programs.
+FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "src", "studies", "tests", "web")
+CODE = ("*.py", "*.rs", "*.mjs", "*.js", "*.html", "*.toml", "*.yml", "*.slurm", "*.sh")
+SCRIPTS = ("baselines", "benches", "docs", "examples", "studies")
+FILE = re.compile(r"[\w./-]+\.(?:py|rs|md|mjs|csv|toml|json|yml|npz|png|html|sh|slurm)")
+MADE = (
+    "results/",
+    "mine/",
+    "my_",
+    "docs/_build/",
+    "benches/target/",
+    "docs/environments/tables.md",
+)
+"""What builds, commands and readers write."""
 OTHERS = {
-    "CONTRIBUTING.md": {"llvm-tools", "x86_64-unknown-linux-musl"},
-    "benches/README.md": {"callgrind_annotate"},
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
     "docs/extend/task.md": {"carousel.monitor.csv"},
-    "docs/other_learners.md": {"TanhNormal"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
-    "docs/speed_vs_error.md": {"boids"},
-    "docs/runs.md": {"run_sweep(sweep, folder, engine=lambda workers: client.get_executor())"},
-    "docs/tracks.md": {
-        "individuals",
-        "mouse1.nose_x",
-        "movement",
-        "nose_x",
-        "nose_y",
-        "model.toml",
-    },
+    "docs/tracks.md": {"model.toml"},
 }
-FOLDERS = ("baselines", "benches", "docs", "examples", "flockenv", "src", "studies", "tests", "web")
-FOREIGN = (
-    "gymnasium",
-    "gymnasium.utils.performance",
-    "gymnasium.wrappers",
-    "pettingzoo",
-    "stable_baselines3.common.evaluation",
-    "stable_baselines3.common.callbacks",
-    "stable_baselines3.common.vec_env",
-    "stable_baselines3.common.monitor",
-    "torch",
-    "pandas",
-    "concurrent.futures",
-    "xarray",
-)
+"""What readers of a page make themselves, and names of other programs."""
 
 
 def _pages() -> dict[str, str]:
@@ -74,13 +56,13 @@ def _pages() -> dict[str, str]:
 
 
 def _files(folder: str, pattern: str) -> list[Path]:
-    skipped = {"target", "_build", "node_modules", ".venv", "results"}
+    skipped = {"target", "_build", "node_modules", ".venv", "__pycache__"}
     names = {path: path.relative_to(REPOSITORY) for path in (REPOSITORY / folder).rglob(pattern)}
-    copied = DOCS / "studies"  # by the build of the pages
+    copied = (DOCS / "studies", DOCS / "examples")  # by the build of the pages
     return [
         path
         for path, name in names.items()
-        if not skipped & {*name.parts[:-1]} and copied not in path.parents
+        if not skipped & {*name.parts[:-1]} and not {*copied} & {*path.parents}
     ]
 
 
@@ -88,44 +70,13 @@ PAGES = _pages()
 
 
 @cache
-def _files_of_code() -> list[Path]:
-    """All code of the repository, this folder of tests aside, which has lists of names."""
+def _code() -> str:
+    """All code of the repository, this folder of tests aside: it names the files that it writes."""
     files = [path for each in FOLDERS for kind in CODE for path in _files(each, kind)]
     files += [REPOSITORY / name for name in ("Makefile", "Cargo.toml", "pyproject.toml")]
-    files += (*REPOSITORY.glob("*/*.sh"), *REPOSITORY.glob("benches/Makefile"))
-    files += (REPOSITORY / ".github").rglob("*.yml")
-    return [path for path in files if path.parent != Path(__file__).parent]
-
-
-@cache
-def _code() -> str:
-    return "\n".join(path.read_text("utf-8", errors="ignore") for path in _files_of_code())
-
-
-@cache
-def _words() -> set[str]:
-    """The words of the code. Comments and docstrings may speak of what there was."""
-    texts = (
-        _without_comments(path.suffix, path.read_text("utf-8", errors="ignore"))
-        for path in _files_of_code()
-    )
-    return {word for text in texts for word in WORD.findall(text)}
-
-
-def _without_comments(kind: str, text: str) -> str:
-    if kind in (".rs", ".mjs", ".js"):
-        return re.sub(r"(?<!:)//[^\n]*", "", text)
-    if kind not in (".py", ".pyi"):
-        return re.sub(r"(?m)(?:^|\s)#[^\n]*", "", text)
-    kept, starts = [], True
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        # A string that starts a statement is a docstring.
-        if token.type != tokenize.COMMENT and not (starts and token.type == tokenize.STRING):
-            kept.append(token.string)
-        if token.type not in (tokenize.COMMENT, tokenize.NL):
-            between = (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT)
-            starts = token.type in between
-    return "\n".join(kept)
+    files += (*REPOSITORY.glob("benches/Makefile"), *(REPOSITORY / ".github").rglob("*.yml"))
+    kept = (path for path in files if path.parent != Path(__file__).parent)
+    return "\n".join(path.read_text("utf-8", errors="ignore") for path in kept)
 
 
 @cache
@@ -172,12 +123,22 @@ def _resolves(path: str) -> bool:
                 continue
             found: object = importlib.import_module(module)
         except MissingExtraError:
-            return {*parts[split:]} <= _words()
+            return _in_source(parts)
         except ModuleNotFoundError as error:
             if not module.startswith(str(error.name)):
-                return {*parts[split:]} <= _words()
+                return _in_source(parts)
             continue
         return _has(found, parts[split:])
+    return False
+
+
+def _in_source(parts: list[str]) -> bool:
+    """Whether a module whose library is missing defines the first name behind it."""
+    for split in range(len(parts), 0, -1):
+        file = REPOSITORY.joinpath(*parts[:split]).with_suffix(".py")
+        if file.exists():
+            text, names = file.read_text("utf-8"), parts[split : split + 1]
+            return all(re.search(rf"^(?:class |def )?{name}\b", text, re.M) for name in names)
     return False
 
 
@@ -209,47 +170,62 @@ def wrong_command(line: str) -> str | None:
     """Say what a line for a shell names that does not exist."""
     line = line.split(" && ")[0]
     try:
-        program, *words = shlex.split(line, comments=True)
+        words = shlex.split(line, comments=True)
     except ValueError:
         return None
-    program = program.removeprefix(".venv/bin/")
-    options = {re.split("[=, ]", word)[0] for word in words if re.match(r"--?[a-z]", word)}
+    while words and re.fullmatch(r"\w+=\S*", words[0]):
+        words = words[1:]
+    if not words:
+        return None
+    program, *words = words
+    program = re.sub(r"^\.venv[\w-]*/bin/", "", program)
     if program == "make":
         targets, variables = _targets()
         values = {word.split("=")[0] for word in words if "=" in word}
-        unknown = {word for word in words if "=" not in word} - targets | (values - variables)
+        wrong = {word for word in words if "=" not in word} - targets | (values - variables)
     elif program == "flockenv" and words:
-        if words[0].startswith("-"):
-            return None if words[0] in ("--version", "--help") else f"flockenv {words[0]}"
-        if words[0].isupper():
-            return None
-        if words[0] not in _commands():
-            return f"flockenv {words[0]}"
-        unknown = options - _commands()[words[0]]
+        wrong = _wrong_flockenv(words)
     elif program.startswith("python") and (script := _script(words)):
-        path = REPOSITORY / script
-        if script.split("/")[0] in ("baselines", "benches", "docs", "examples", "studies"):
-            if not path.exists():
-                return script
-            text = path.read_text("utf-8")
-            unknown = {
-                option
-                for option in options
-                if option not in text and option[2:].replace("-", "_") not in text
-            }
-            unknown = {each for each in unknown if each[2:].replace("-", "_") not in _words()}
-        else:
-            unknown = set()
+        wrong = _wrong_script(script, _options(words))
     else:
-        unknown = set()
-    return ", ".join(sorted(unknown)) or None
+        wrong = set()
+    return ", ".join(sorted(wrong)) or None
+
+
+def _options(words: list[str]) -> set[str]:
+    return {re.split("[=, ]", word)[0] for word in words if re.match(r"--?[a-z]", word)}
+
+
+def _wrong_flockenv(words: list[str]) -> set[str]:
+    command = words[0]
+    if command in ("--version", "--help") or command.isupper():
+        return set()
+    if command not in _commands():
+        return {f"flockenv {command}"}
+    return _options(words) - _commands()[command]
 
 
 def _script(words: list[str]) -> str | None:
-    """Return the file that the words behind `python` run; None for other modules."""
-    if words[:1] == ["-m"] and words[1].startswith("studies."):
+    """Return the file of the repository that the words behind `python` run."""
+    if words[:1] == ["-m"] and words[1].split(".")[0] in SCRIPTS:
         return f"{words[1].replace('.', '/')}.py"
-    return words[0] if words and words[0].endswith(".py") else None
+    is_ours = bool(words) and words[0].endswith(".py") and words[0].split("/")[0] in SCRIPTS
+    return words[0] if is_ours else None
+
+
+def _wrong_script(script: str, options: set[str]) -> set[str]:
+    path = REPOSITORY / script
+    if not path.exists():
+        return {script}
+    text = path.read_text("utf-8")
+    if script.startswith("studies/"):
+        text += (REPOSITORY / "studies" / "study.py").read_text("utf-8")
+    fields = {option: option[2:].replace("-", "_") for option in options - {"-m"}}
+    return {
+        option
+        for option, name in fields.items()
+        if not re.search(rf"(?:{re.escape(option)}|\b{name})(?![\w-])", text)
+    }
 
 
 def wrong_name(name: str) -> str | None:
@@ -258,27 +234,19 @@ def wrong_name(name: str) -> str | None:
     if first in ("make", "flockenv", "python") and " " in name:
         return wrong_command(name)
     if name.startswith("--"):
-        every = {option for options in _commands().values() for option in options}
-        given = re.findall(r"(?<!\S)--[\w-]+", name)
-        known = every | {*re.findall(r"--[a-z][\w-]+", _code())}
-        unknown = [each for each in given if each not in known and _field(each) not in _words()]
-        return ", ".join(unknown) or None
-    if name.startswith(("results/", "mine/", "my_")):
-        # What commands and readers write.
-        return None
-    if name.startswith("flockenv/") and name in gymnasium.registry:
+        return None if _is_option(re.split("[=, ]", name)[0]) else name
+    if name.startswith(MADE) or name in gymnasium.registry:
         return None
     if re.fullmatch(rf"(?:{'|'.join(FOLDERS)})/[\w./-]+", name):
-        made = (
-            "flockenv/replay/live.html",
-            "docs/_build/",
-            "benches/target/",
-            "docs/environments/tables.md",
-        )
-        return None if (REPOSITORY / name).exists() or name.startswith(made) else name
-    if re.fullmatch(r"[\w./-]+\.(?:py|rs|md|mjs|csv|toml|json|yml|npz|png|html|sh|slurm)", name):
+        is_live = name == "flockenv/replay/live.html"
+        return None if (REPOSITORY / name).exists() or is_live else name
+    if FILE.fullmatch(name):
         there = (REPOSITORY / name).exists() or f"/{name}" in _listing() or name in _code()
         return None if there else name
+    return _wrong_dotted(name)
+
+
+def _wrong_dotted(name: str) -> str | None:
     dotted = re.match(r"([A-Za-z_]\w*(?:\.\w+)+)", name)
     if dotted and dotted[1].startswith("flockenv."):
         return None if _resolves(dotted[1]) else dotted[1]
@@ -286,15 +254,13 @@ def wrong_name(name: str) -> str | None:
         owner, *attributes = dotted[1].split(".")
         return None if _has(_public()[owner], attributes) else dotted[1]
     rust = re.match(r"(\w+)::(\w+)", name)
-    if rust:
-        return None if _in_rust(*rust.groups()) else name
-    words = WORD.findall(re.sub(r"\"[^\"]*\"|'[^']*'", "", name))
-    unknown = [word for word in words if word not in _words() and not _foreign(word)]
-    return ", ".join(unknown) or None
+    return name if rust and not _in_rust(*rust.groups()) else None
 
 
-def _field(option: str) -> str:
-    return option[2:].replace("-", "_")
+def _is_option(option: str) -> bool:
+    """Whether a command takes an option, or code writes it down."""
+    every = {each for options in _commands().values() for each in options}
+    return option in every or re.search(rf"{re.escape(option)}(?![\w-])", _code()) is not None
 
 
 @cache
@@ -302,18 +268,13 @@ def _listing() -> str:
     return "\n".join(f"/{path.relative_to(REPOSITORY)}" for path in _files(".", "*"))
 
 
-@cache
-def _foreign(word: str) -> bool:
-    return any(hasattr(importlib.import_module(module), word) for module in FOREIGN)
-
-
 @pytest.mark.parametrize("page", sorted(PAGES))
 def test_names_exist(page):
     prose = FENCE.sub("", PAGES[page])
     shown = " ".join(match[4] for match in FENCE.finditer(PAGES[page]))
     made = re.findall(r"<!-- new file: (\S+) -->", PAGES[page])
-    known = {*made, *OTHERS.get(page, ()), *WORD.findall(shown)}
-    wrong = {name: wrong_name(name) for name in sorted({*NAME.findall(prose)} - known)}
+    names = {*NAME.findall(prose)} - {*made, *OTHERS.get(page, ())}
+    wrong = {name: wrong_name(name) for name in sorted(names)}
     folder = (REPOSITORY / page).parent
     assert {
         name: why
@@ -332,35 +293,29 @@ def test_commands_and_imports_exist(page):
         if language == "python":
             used = {*re.findall(r"(?<![\w./\"'-])(?<!from )flockenv(?:\.\w+)+", block)}
             for module, names in re.findall(r"from (flockenv[\w.]*) import (\([^)]*|.*)", block):
-                used |= {f"{module}.{name}" for name in WORD.findall(names)}
+                used |= {f"{module}.{name}" for name in re.findall(r"[^\W\d]\w*", names)}
             assert [name for name in sorted(used) if not _resolves(name)] == []
 
 
 @pytest.mark.parametrize(
     "name",
     [
-        "compute_rewards",
         "flockenv judge",
         "flockenv run --leader-count 3",
         "make everything",
         "make test THREADS=2",
         "--no-such-option",
         "docs/nothing.md",
+        "nothing.csv",
         "flockenv.policies.SteerLaw",
+        "flockenv.rllib.LeaderModule",
         "FlockParameters.bw_seconds",
         "Flock::advance_backwards",
         "python -m studies.section4.fig99",
+        "python -m studies.section4.fig08 --no-run",
+        "python baselines/learn_easy.py --sample 3",
+        "OMP_NUM_THREADS=1 python baselines/learn_hard.py",
     ],
 )
 def test_what_does_not_exist_is_found(name):
-    assert wrong_name(name)
-
-
-def test_comments_and_docstrings_name_nothing():
-    code = '"""One."""\ndef two():\n    """Three."""\n    return "four"  # five\n'
-    assert WORD.findall(_without_comments(".py", code)) == ["def", "two", "return", "four"]
-    assert WORD.findall(_without_comments(".rs", "//! One\nlet two = 3; // Four\n")) == [
-        "let",
-        "two",
-    ]
-    assert WORD.findall(_without_comments(".toml", "# One\ntwo = 3\n")) == ["two"]
+    assert wrong_command(name) or wrong_name(name)

@@ -2,7 +2,6 @@
 
 import inspect
 import re
-from pathlib import Path
 
 import gymnasium
 import pytest
@@ -21,7 +20,6 @@ pytest.importorskip("stable_baselines3")
 
 from flockenv.sb3 import LeaderVecEnv
 
-DOCS = Path(__file__).parents[2] / "docs"
 KINDS = (
     flockenv.LeadersEnv,
     flockenv.LeadersParallelEnv,

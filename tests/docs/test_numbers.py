@@ -1,0 +1,377 @@
+"""Law: a number that a sentence takes from committed data is the number in the data.
+
+A row below names the sentence and the cell. If one of them changes, somebody edits the other.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from flockenv.statistics import student_interval
+
+pd = pytest.importorskip("pandas")
+
+REPOSITORY = Path(__file__).parents[2]
+DIGITS = r"[+\-−]?\d[\d ]*(?:\.\d+)?(?:e-?\d+)?"
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a page.
+
+    Attributes
+    ----------
+    page
+        File of the page.
+    words
+        What stands around it: ``{}`` is the number, ``#`` another one.
+    file
+        Table that it is from.
+    row
+        Values by which its row is found.
+    column
+        Column of the number, or a function of the rows that gives it.
+    form
+        How it is written.
+    """
+
+    page: str
+    words: str
+    file: str
+    row: dict[str, Any] = field(default_factory=dict)
+    column: str | Callable[[Any], float] = "measured"
+    form: str = ".2f"
+
+    def shown(self, text: str) -> list[str]:
+        """Every number of a page that stands between the words."""
+        pattern = re.escape(self.words).replace(r"\{\}", f"({DIGITS})").replace(r"\#", DIGITS)
+        return re.findall(pattern, " ".join(text.split()))
+
+    def expected(self) -> str:
+        """The number of the data, as it is written."""
+        table = pd.read_csv(REPOSITORY / self.file)
+        for name, value in self.row.items():
+            table = table[table[name] == value]
+        assert len(table), f"{self.file} has no row with {self.row}"
+        if callable(self.column):
+            value = self.column(table)
+        else:
+            (value,) = table[self.column]
+        return format(value, self.form).replace("-", "−")
+
+
+def mean(column: str) -> Callable[[Any], float]:
+    return lambda rows: rows[column].mean()
+
+
+def count(verdict: str) -> Callable[[Any], float]:
+    return lambda rows: (rows["verdict"] == verdict).sum()
+
+
+def readings_with_rise(rows: Any) -> int:
+    """In how many readings noise raises mean |m| by at least 0.3 from that at bw = 0."""
+    reading = ["dt_s", "scheme", "noise_scheme", "overlap_tolerance_cm"]
+    means = rows.groupby([*reading, "bw_s"])["abs_m"].mean().unstack()
+    means = means[means.notna().sum(axis=1) > 4]
+    return int((means.max(axis=1) - means[0.0] >= 0.3).sum())
+
+
+def gain_of_plan(rows: Any, place: int = 0) -> float:
+    gain, low, high = student_interval(rows["planned"] - rows["learned"])
+    return (gain, (high - low) / 2)[place]
+
+
+SPEED = "docs/speed_vs_error/"
+OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / r0", "dt_s": 0.01}
+MOREAU = OURS | {"setting": "moreau / block-pivoting / r0"}
+RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
+JAM = {"scene": "jam", "n": 27, **OURS}
+
+FREE = {"preset": "experiment", "n_leaders": 0, "minutes": 8.0}
+SECTION4 = "studies/section4/results/section4.csv"
+SECTION5 = "studies/section5/results/section5.csv"
+WIDE = {"pool": "wide", "n_leaders": 0}
+LOST = {"quantity": "critical bw (s), k = 0"}
+CURRENT = {"reading": "preset constants, narrow, n = 27"}
+
+
+def lost(current: str, leaders: int) -> dict[str, str]:
+    return CURRENT | {"quantity": f"critical bw (s), {current} current, k = {leaders}"}
+
+
+LEADERS = "studies/leaders/results/"
+CLOSE = {"case": "wide-bw-0.31", "policy": "learned", "leaders": 3}
+SINGLE = CLOSE | {"leaders": 1}
+TUNED = CLOSE | {"policy": "tuned law"}
+PAPERS = CLOSE | {"policy": "paper's law"}
+NARROW = {"case": "narrow-bw-0.45", "leaders": 3}
+TRAININGS = "studies/trainings/results/pretrained/algorithms.csv"
+EARLY = "studies/trainings/results/pretrained/algorithms-500.csv"
+PLANNING = "studies/planning/results/plan_"
+
+
+def readme() -> list[Number]:
+    """Numbers of the front page."""
+    page = "README.md"
+    return [
+        Number(page, "takes {} µs on one core", f"{SPEED}speed.csv", JAM, "us_per_step", ".1f"),
+        Number(page, "needs {} times as long", f"{SPEED}speed.csv", JAM, "faster", ".1f"),
+        *(
+            Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", ".2g")
+            for words, row in (
+                ("off by {} cm with the default scheme", OURS),
+                ("by {} cm with the first-order `moreau`", MOREAU),
+                ("by {} cm in rapier", RAPIER),
+            )
+        ),
+        *(
+            Number(page, words, f"{SPEED}impact.csv", {"scheme": scheme}, "dt = 0.01 s", ".2g")
+            for words, scheme in (
+                ("the default is off by {} cm", "leapfrog / r0"),
+                ("`moreau` by {} cm ([speed", "moreau / r0"),
+            )
+        ),
+        Number(
+            page,
+            "50 boats by # or more in {} of",
+            SECTION5,
+            WIDE | {"n_boats": 50},
+            readings_with_rise,
+            "d",
+        ),
+        Number(
+            page, "20 boats in {} of", SECTION5, WIDE | {"n_boats": 20}, readings_with_rise, "d"
+        ),
+        *(
+            Number(page, words, SECTION4, FREE | {"bw_s": bw_s}, mean("abs_m"))
+            for words, bw_s in (
+                ("in `narrow` reach {} without noise", 0.0),
+                ("{} at bw = 1.0 s", 1.0),
+                ("{} at 2.8 s", 2.8),
+            )
+        ),
+        *(
+            Number(
+                page, words, "studies/section5/claims.csv", LOST | {"reading": f"{reading}, n = 20"}
+            )
+            for words, reading in (
+                ("lose it at bw = {} s with white noise", "simulation"),
+                ("it is {} to # s: the less", "paper, 0.1 cm"),
+                ("it is # to {} s: the less", "paper, 0.001 cm"),
+            )
+        ),
+        *(
+            Number(page, words, "studies/current/claims.csv", row)
+            for words, row in (
+                ("in `narrow` lose it at {} s, and with", lost("preset's", 0)),
+                ("with the measured current at {} s", lost("measured", 0)),
+                ("With three leaders it is {} and", lost("preset's", 3)),
+                ("With three leaders it is # and {} s", lost("measured", 3)),
+            )
+        ),
+    ]
+
+
+def leaders(page: str) -> list[Number]:
+    """What the front page and the page of leaders say of them."""
+    difference, means = f"{LEADERS}close_differences.csv", f"{LEADERS}close_means.csv"
+    words = "leads better than the tuned law, by {}" + (" (" if page == "README.md" else ", and")
+    return [
+        Number(page, "{} trainings gain", TRAININGS, column="seeds", form="d"),
+        Number(page, "trainings gain {} on the tuned law", TRAININGS, column="gain"),
+        Number(page, "in the mean ({} to #)", TRAININGS, column="gain_low"),
+        Number(page, "in the mean (# to {})", TRAININGS, column="gain_high"),
+        Number(page, words, difference, CLOSE, "mean"),
+        *(
+            [
+                Number(page, "({} against #, # episodes)", means, CLOSE, "signed_order"),
+                Number(page, "(# against {}, # episodes)", means, TUNED, "signed_order"),
+                Number(page, "(# against #, {} episodes)", difference, CLOSE, "n", "d"),
+            ]
+            if page == "README.md"
+            else [
+                Number(
+                    page,
+                    "in other flocks, reaches a signed order of {}",
+                    means,
+                    CLOSE,
+                    "signed_order",
+                ),
+                Number(
+                    page,
+                    "single leader better than the tuned law, by {}",
+                    difference,
+                    SINGLE,
+                    "mean",
+                ),
+                Number(page, "eq. (10), reaches {}", f"{LEADERS}means.csv", PAPERS, "signed_order"),
+                Number(
+                    page,
+                    "tuned law: it reaches {}",
+                    f"{LEADERS}means.csv",
+                    NARROW | {"policy": "tuned law"},
+                    "signed_order",
+                ),
+                Number(
+                    page,
+                    "and the paper's law {}",
+                    f"{LEADERS}means.csv",
+                    NARROW | {"policy": "paper's law"},
+                    "signed_order",
+                ),
+            ]
+        ),
+    ]
+
+
+def plans(page: str) -> list[Number]:
+    """What planning ahead adds."""
+    known, fresh = f"{PLANNING}known.csv", f"{PLANNING}fresh.csv"
+    return [
+        Number(
+            page, "reaches a signed order of {}, and the learned", known, column=mean("planned")
+        ),
+        Number(page, "and the learned leaders {}", known, column=mean("learned")),
+        Number(page, "does not know it reaches {}", fresh, column=mean("planned")),
+        Number(page, "a difference of {} ±", fresh, column=gain_of_plan),
+        Number(page, "a difference of # ± {}", fresh, column=lambda rows: gain_of_plan(rows, 1)),
+    ]
+
+
+def trainings() -> list[Number]:
+    """What the trainings of `make pretrained` reached."""
+    return [
+        Number("docs/train.md", words, file, column=column, form=".3f")
+        for file, words_of in (
+            (
+                TRAININGS,
+                (
+                    "seeds reach {} in",
+                    "seeds reach # in the mean ({} to",
+                    "seeds reach # in the mean (# to {})",
+                    "(# to #): {} (# to #) more than the",
+                    ": # ({} to #) more than the",
+                    ": # (# to {}) more than the",
+                ),
+            ),
+            (
+                EARLY,
+                (
+                    "they reach {} in",
+                    "they reach # in the mean ({} to",
+                    "they reach # in the mean (# to {})",
+                    "(# to #): {} (# to #) more.",
+                    ": # ({} to #) more.",
+                    ": # (# to {}) more.",
+                ),
+            ),
+        )
+        for words, column in zip(
+            words_of,
+            ("signed_order", "lowest", "highest", "gain", "gain_low", "gain_high"),
+            strict=True,
+        )
+    ]
+
+
+FIGURES = {
+    "[4 to 6, Table 2](section4/pictures/table2.png)": ("section4", "states"),
+    "[7](section4/pictures/fig07.png)": ("section4", "fig07"),
+    "[8](section4/pictures/fig08.png)": ("section4", "fig08"),
+    "[9](section4/pictures/fig09.png)": ("section4", "fig09"),
+    "[10](section4/pictures/fig10.png)": ("section4", "fig10"),
+    "[11](section4/pictures/fig11.png)": ("section4", "fig11"),
+    "[12](section4/pictures/fig12.png)": ("section4", "fig12"),
+    "[summary](density/pictures/noise_makes_motion.png)": ("density", "noise_makes_motion"),
+    "[14](section5/pictures/fig14_paper.png)": ("section5", "fig14"),
+    "[15](section5/pictures/fig15.png)": ("section5", "fig15"),
+    "[16](section5/pictures/fig16.png)": ("section5", "fig16"),
+    "[17](section5/pictures/fig17.png)": ("section5", "fig17"),
+}
+"""Rows of the table of figures: study and name of the statements."""
+
+
+def statements() -> list[Number]:
+    """How many statements hold, fail and are open."""
+    page, places = "studies/README.md", ("{} | # | # |", "# | {} | # |", "# | # | {} |")
+    found = [
+        Number(
+            page,
+            f"| {name} | {place}",
+            f"studies/{study}/claims.csv",
+            {"figure": figure},
+            count(verdict),
+            "d",
+        )
+        for name, (study, figure) in FIGURES.items()
+        for place, verdict in zip(places, ("holds", "fails", "open"), strict=True)
+    ]
+    claims, row = "studies/headlines/claims.csv", {"figure": "headlines"}
+    for each in (page, "studies/headlines/README.md"):
+        found += [
+            Number(each, "Mostly: {} of #", claims, row, count("holds"), "d"),
+            Number(each, "Mostly: # of {} answers", claims, row, len, "d"),
+            Number(each, "answers hold, {} are open", claims, row, count("open"), "d"),
+        ]
+    return found
+
+
+def lessons() -> list[Number]:
+    """What the lessons of the live page say."""
+    page, means = "web/lessons.mjs", f"{LEADERS}means.csv"
+    law = PAPERS | {"leaders": 4}
+    return [
+        Number(
+            page,
+            "the learned leaders reach {}, the law",
+            means,
+            CLOSE | {"leaders": 4},
+            "signed_order",
+        ),
+        Number(page, "the learned leaders reach #, the law {}.", means, law, "signed_order"),
+        Number(page, "is {} with one leader and", means, PAPERS | {"leaders": 1}, "signed_order"),
+        Number(page, "with one leader and {} with four", means, law, "signed_order"),
+    ]
+
+
+NUMBERS = [
+    *readme(),
+    *leaders("README.md"),
+    *leaders("docs/leaders.md"),
+    *plans("docs/leaders.md"),
+    *plans("studies/planning/README.md"),
+    *trainings(),
+    *statements(),
+    *lessons(),
+]
+
+
+@pytest.mark.parametrize("number", NUMBERS, ids=lambda number: f"{number.page}: {number.words}")
+def test_pages_quote_the_data(number):
+    found = number.shown((REPOSITORY / number.page).read_text(encoding="utf-8"))
+    assert found == [number.expected()], f"{number.file} {number.row}"
+
+
+def test_the_total_is_that_of_the_figures():
+    text = (REPOSITORY / "studies/README.md").read_text(encoding="utf-8")
+    body = re.findall(r"^\| \[.*\.png\) \| (\d+) \| (\d+) \| (\d+) \|$", text, re.MULTILINE)
+    total = re.search(r"^\| all \| (\d+) \| (\d+) \| (\d+) \|$", text, re.MULTILINE)
+    assert [int(each) for each in total.groups()] == np.array(body, int).sum(axis=0).tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("It is 0.5 cm, and no more.", ["0.5"]),
+        ("It is\n−0.5 cm", ["−0.5"]),
+        ("It is 0.5 mm.", []),
+        ("It is 0.5 cm. It is 0.6 cm.", ["0.5", "0.6"]),
+    ],
+)
+def test_a_number_is_found_by_its_words(text, found):
+    assert Number("", "is {} cm", "").shown(text) == found
