@@ -42,12 +42,7 @@ def main() -> None:
     try:
         # Words to be completed are in the environment.
         named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
-        commands = _app(named)
-        if named:
-            unknown = importlib.import_module("flockenv.cli.unknown")
-            known = getattr(typer.main.get_command(commands), "commands", {})
-            unknown.refuse_unknown_options(known, words)
-        commands()
+        _app(named)()
     except (FlockError, OSError) as error:
         text = str(error)
         if isinstance(error, OSError) and error.filename is not None:
@@ -68,10 +63,11 @@ def _app(named: Collection[str]) -> typer.Typer:
     app.callback(invoke_without_command=True)(_root)
     for name, line in COMMANDS.items():
         if name in named:
+            from flockenv.cli.command import Command
             from flockenv.cli.progress import ends_on_interrupt
 
             command = getattr(importlib.import_module(f"flockenv.cli.{name}"), name)
-            app.command()(ends_on_interrupt(command))
+            app.command(cls=Command)(ends_on_interrupt(command))
         else:
             app.command(name, help=line)(_not_imported)
     return app
