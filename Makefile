@@ -10,8 +10,8 @@ FUZZ_EXAMPLES ?= 2000
 
 BIN := .venv/bin
 STAMPS := .venv/.stamps
-# Modules are compiled here, where Python itself may not be allowed to: imports take half the time.
-UV := VIRTUAL_ENV="$(CURDIR)/.venv" UV_COMPILE_BYTECODE=1 $(BIN)/uv pip install
+# The versions of `requirements.lock`, which `make lock` renews.
+UV := VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/uv pip install --constraint requirements.lock
 # One thread for each worker's linear algebra, or the workers fight over the cores.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
@@ -50,6 +50,10 @@ test: $(STAMPS)/venv ## set up, then check style and types and run all tests
 	$(MAKE) --no-print-directory test-python
 
 setup: $(STAMPS)/test
+# One set of versions for all platforms and interpreters; no addresses, so that it holds for any registry.
+lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
+	$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --no-annotate --custom-compile-command "make lock" \
+		$(NEEDS_compare) $(NEEDS_test) $(NEEDS_browser) $(NEEDS_docs) pyproject.toml --output-file requirements.lock
 build: $(STAMPS)/compare $(CORE) ## build the simulator and install the package, editable, into .venv
 
 lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling
@@ -181,8 +185,9 @@ $(STAMPS)/venv:
 	$(UV) --quiet "maturin>=1.16,<2"
 	@mkdir -p $(@D) && touch $@
 
-$(STAMPS)/compare $(STAMPS)/test $(STAMPS)/browser $(STAMPS)/docs: pyproject.toml | $(STAMPS)/venv
-	$(UV) -r pyproject.toml $(NEEDS_$(@F))
+# Tests run many processes, and Python may not be allowed to keep compiled modules: imports take half the time then.
+$(STAMPS)/compare $(STAMPS)/test $(STAMPS)/browser $(STAMPS)/docs: pyproject.toml requirements.lock | $(STAMPS)/venv
+	$(if $(filter test,$(@F)),UV_COMPILE_BYTECODE=1) $(UV) -r pyproject.toml $(NEEDS_$(@F))
 	@touch $@ $(if $(filter test,$(@F)),$(STAMPS)/compare)
 
 $(JS_TESTS)/node_modules: $(JS_TESTS)/package.json
