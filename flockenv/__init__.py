@@ -63,6 +63,16 @@ _NAMES = {
     "simulation": ("simulate",),
 }
 
+_MAKE = 'gymnasium.make("flockenv/Leaders-v0")'
+_MADE = {
+    **dict.fromkeys(("make", "make_env", "Env", "FlockEnv", "LeaderEnv"), _MAKE),
+    "make_vec": 'gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64)',
+    "LeaderVecEnv": "flockenv.sb3.LeaderVecEnv",
+    "run": "flockenv.simulate",
+    "load": "flockenv.Recording.load, or flockenv.policies.load",
+}
+"""What names of other packages are here."""
+
 _avx2.choose()  # Before anything uses the core.
 register()
 
@@ -75,10 +85,19 @@ def __getattr__(name: str) -> Any:
             break
     else:
         if name.startswith("_") or importlib.util.find_spec(f"flockenv.{name}") is None:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_hint(name)}")
         value = importlib.import_module(f"flockenv.{name}")
     globals()[name] = value
     return value
+
+
+def _hint(name: str) -> str:
+    """Return what an unknown name may have meant."""
+    from flockenv.errors import nearest
+
+    # hasattr of a dunder name, say, needs no words.
+    near = None if name.startswith("_") else _MADE.get(name) or nearest(name, __all__)
+    return f": did you mean {near}?" if near else ""
 
 
 def __dir__() -> list[str]:

@@ -1,13 +1,15 @@
 """What can go wrong: the exceptions that users meet, and parts of their messages."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from flockenv._core import EpisodeError, FlockError, InUseError, ParameterError, SolverError
 
 __all__ = [
     "EpisodeError",
     "FlockError",
+    "HintsAtNames",
     "InUseError",
     "ParameterError",
     "SolverError",
@@ -56,3 +58,23 @@ def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> 
     for name in names:
         if name not in known:
             raise ParameterError(f"{name!r} is no {what}: {hint(name, known)}")
+
+
+class HintsAtNames:
+    """An object whose error for an attribute that it does not have names the one that is meant."""
+
+    __slots__ = ()
+    #: What other words stand for, as an error says it.
+    _meanings: ClassVar[Mapping[str, str]] = {}
+
+    # Type checkers would take any name for an attribute.
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            words = f"{type(self).__name__!r} object has no attribute {name!r}"
+            # Libraries look for private names, which have no other word.
+            if not name.startswith("_"):
+                near = nearest(name, (each for each in dir(type(self)) if each[0] != "_"))
+                if meant := self._meanings.get(name, near and repr(near)):
+                    words += f": did you mean {meant}?"
+            raise AttributeError(words)

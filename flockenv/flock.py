@@ -3,13 +3,14 @@
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import blob, once, truth
+from flockenv.errors import HintsAtNames
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
@@ -153,7 +154,7 @@ class Statistics:
     displaced_angular_momentum_cm2_s: float
 
 
-class Flock:
+class Flock(HintsAtNames):
     """A flock of boats in a pool.
 
     Boats are placed at random without overlap, at rest; leaders are boats 0 to k - 1. The same
@@ -176,6 +177,16 @@ class Flock:
     """
 
     __slots__ = ("_in_core",)
+    _meanings: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("position", "positions", "poses", "headings"), "'pose'"),
+        **dict.fromkeys(("velocities", "speed", "speeds"), "'velocity'"),
+        **dict.fromkeys(("time", "t"), "'time_s'"),
+        **dict.fromkeys(("step", "run", "simulate"), "'advance'"),
+        **dict.fromkeys(("order", "psi_o", "psi_v", "polarization"), "'order_parameters()'"),
+        **dict.fromkeys(
+            ("boats", "n_boats", "leaders", "bw_s", "pool"), "an entry of 'parameters'"
+        ),
+    }
 
     def __init__(self, parameters: FlockParameters, seed: int) -> None:
         self._in_core = _core.Flock(parameters, seed)

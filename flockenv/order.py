@@ -4,9 +4,9 @@ The core computes them in the LAP frame; its table of quantities names them.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, make_dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.arguments import with_gaps
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import HintsAtNames, ParameterError, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,6 +62,14 @@ RECORDED = tuple(each for each in QUANTITIES if each.kind == "recorded")
 ORDER = tuple(each.name for each in RECORDED)
 """Their names."""
 
+_MEANINGS = {
+    "psi": "'psi_o', of headings, or 'psi_v', of velocities",
+    "psi_0": "'psi_o'",
+    "phi": "'phi_o', of headings, or 'phi_v', of velocities",
+    "polarization": "'psi_o', of headings in the frame of the pool",
+    **dict.fromkeys(("order", "signed_order"), "'psi_o', or 'signed_order()' of a series"),
+}
+
 _T = TypeVar("_T")
 _NAN: Any = math.nan
 
@@ -88,12 +96,14 @@ else:
     )
 
 
-class OrderParameters(_Recorded[float]):
+class OrderParameters(_Recorded[float], HintsAtNames):
     """Alignment of a set of boats at one time: a float for each recorded quantity of the table.
 
     LAP angles count clockwise from the outward radial: 0 is jammed outward, +π/2 clockwise. Values
     that are not given are NaN, and NaN equals NaN here.
     """
+
+    _meanings: ClassVar[Mapping[str, str]] = _MEANINGS
 
     def _values(self) -> tuple[float | None, ...]:
         values = (getattr(self, name) for name in ORDER)
@@ -109,7 +119,7 @@ class OrderParameters(_Recorded[float]):
 
 
 @dataclass(frozen=True, eq=False)
-class OrderSeries(_Recorded[NDArray[np.float64]]):
+class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     """Order parameters one after another: the fields of `OrderParameters` as float64 arrays (t,).
 
     All are NaN if there is no boat; ``c_o`` and ``c_v`` are NaN for a single boat. Columns that are
@@ -120,6 +130,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]]):
     time_s : float64 array, shape (t,), or None
         Times in s, if a recording has the series.
     """
+
+    _meanings: ClassVar[Mapping[str, str]] = _MEANINGS
 
     time_s: NDArray[np.float64] | None = field(default=None, repr=False, kw_only=True)
 

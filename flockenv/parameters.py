@@ -1,6 +1,5 @@
 """Every constant that defines a flock. Values and range checks live in the Rust core."""
 
-import textwrap
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Self
@@ -30,6 +29,9 @@ class FlockParameters:
     Fields that are not given have the values of the preset ``"simulation"``. They are stored as
     plain Python numbers and strings, a list of targets as a tuple, and a pool that equals a named
     one as its name.
+
+    docs/environments/tables.md (`make docs` writes it) lists the fields with meaning, unit, range
+    and their values in the presets; ``dataclasses.fields`` has the same as metadata.
 
     Raises
     ------
@@ -204,6 +206,12 @@ _NAMES = tuple(each.name for each in fields(FlockParameters))
 def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.Parameters:
     """Return parameters, or a preset by name, with some of their fields changed."""
     refuse_unknown(changes, _NAMES, "field of FlockParameters")
+    bw_s = changes.get("bw_s")
+    if isinstance(bw_s, tuple | list) and len(bw_s) == 2:
+        raise TypeError(
+            f"bw_s must be a number, not {shown(bw_s)}: environments take a range, of which each "
+            'episode draws its own, as in gymnasium.make("flockenv/Leaders-v0", bw_s=(0.1, 0.4))'
+        )
     return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
 
 
@@ -211,19 +219,3 @@ def _stored(value: Any) -> Any:
     """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
     held = once(value)
     return held if held is value else tuple(once(each) for each in held)
-
-
-def _attributes() -> str:
-    """Return what the core declares of the fields as a numpydoc section."""
-    lines = ["    Attributes", "    ----------"]
-    indented = textwrap.TextWrapper(96, initial_indent=" " * 8, subsequent_indent=" " * 8)
-    for each in fields(FlockParameters):
-        field = each.metadata
-        unit = f" Unit: {field['unit']}." if field["unit"] else ""
-        accepted = f" Accepted: {field['accepted']}." if field["accepted"] else ""
-        lines += [f"    {each.name} : {field['kind']}"]
-        lines += indented.wrap(f"{field['doc']}{unit}{accepted}")
-    return "\n".join(lines)
-
-
-FlockParameters.__doc__ = f"{(FlockParameters.__doc__ or '').rstrip()}\n\n{_attributes()}\n    "

@@ -147,6 +147,10 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
             shape=flocks,
         )
 
+    def set_next_episodes(self, **options: Any) -> None:
+        """Set ``bw_s`` or ``target`` for the next episodes, as `LeadersVectorEnv` does."""
+        self._batch.set_upcoming(range(self.num_flocks), options)
+
     def _set_seed(self, seed: int | None) -> None:
         flocks = self.num_flocks
         self._seeds = [None] * flocks if seed is None else list(seeds_from(seed, flocks))

@@ -41,6 +41,15 @@ class Resumable(OwnFlocks):
         """Continue from `get_state` of an environment with the same options, bit for bit."""
         self._batch.core.restore(blob(state, "state"))
 
+    def set_next_episodes(self, **options: Any) -> None:
+        """Set ``bw_s`` or ``target`` for all episodes that are to come, until they are set again.
+
+        Values are as for `reset`: a range (low, high) of bw_s is drawn from. A ParameterError
+        refuses other names, and values that are not accepted. In a vector environment they hold for
+        all flocks.
+        """
+        self._batch.set_upcoming(range(self._batch.num_flocks), options)
+
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits.
 

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import real_numbers, whole
+from flockenv._io.arguments import listed, real_numbers, whole
 from flockenv.envs.options import TERMS, EnvOptions
+from flockenv.envs.reset_options import UPCOMING_OPTIONS
 from flockenv.envs.seeds import Seed
 from flockenv.envs.spaces import flock_feature_space, state_space
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
@@ -61,6 +62,14 @@ class LeaderBatch:
                 seed = new_seed()
             asked[flock] = {**requests[flock], "seed": seed}
         self.core.reset(asked)
+
+    def set_upcoming(self, flocks: Sequence[int], options: Mapping[str, Any]) -> None:
+        """Let a target or a bw_s hold for all episodes of flocks that are to come."""
+        refuse_unknown(options, UPCOMING_OPTIONS, "option of the next episodes")
+        values = {name: listed(value) for name, value in options.items()}
+        for name, value in values.items():
+            values[name] = tuple(value) if isinstance(value, list) else value
+        self.core.set_upcoming(list(flocks), values)
 
     def step(
         self, env: Any, actions: NDArray[np.float64], precision: DTypeLike = np.float64

@@ -5,7 +5,7 @@ import sys
 from typing import Any, ClassVar
 
 from flockenv.envs.options import ARGUMENTS, NAMES
-from flockenv.envs.reset_options import RESET_OPTIONS, Spellings
+from flockenv.envs.reset_options import RESET_OPTIONS, UPCOMING_OPTIONS, Spellings
 
 
 class FixedOptions:
@@ -63,6 +63,8 @@ def _refusal(name: str, next_episode: str) -> str | None:
         words = "it is given to a reset"
     elif meant in _OF_RESET:
         words = f"{next_episode} sets {meant!r} for an episode"
+        if meant in UPCOMING_OPTIONS:
+            words += f", set_next_episodes({meant}=...) for all that are to come"
     else:
         words = "it is fixed when an environment is made: make another one to change it"
     return f"{name!r} cannot be set as an attribute: {words}"

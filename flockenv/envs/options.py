@@ -130,6 +130,8 @@ class EnvOptions:
 
 def _instead(name: str, counts: str | None) -> str:
     """Return what an unknown option may have meant."""
+    if name in ("max_cycles", "max_steps", "max_episode_steps", "horizon", "time_limit"):
+        return "an episode lasts 'episode_s' seconds, with 'control_hz' steps in each"
     if name not in ("num_envs", "num_flocks", "n_envs", "num_workers"):
         return hint(name, NAMES)
     if counts is None:

@@ -6,14 +6,14 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.arguments import number, truth
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import HintsAtNames, ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import FlockParameters
@@ -42,7 +42,7 @@ DISCARDED_SHARE = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Recording:
+class Recording(HintsAtNames):
     """A run sampled t times, of n boats; checked on construction.
 
     Attributes
@@ -91,6 +91,15 @@ class Recording:
     ParameterError
         For arrays of a wrong shape or dtype, numbers out of their range, unknown phases.
     """
+
+    _meanings: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("position", "positions", "poses", "headings"), "'pose'"),
+        **dict.fromkeys(("velocities", "speed", "speeds"), "'velocity'"),
+        **dict.fromkeys(("time", "times", "t"), "'time_s'"),
+        **dict.fromkeys(("actions", "rudders"), "'rudder'"),
+        **dict.fromkeys(("psi_o", "psi_v", "phi_o", "phi_v", "psi"), "an entry of 'order'"),
+        **dict.fromkeys(("bw_s", "n_boats", "n_leaders", "pool"), "an entry of 'parameters'"),
+    }
 
     time_s: NDArray[np.float64]
     phase: NDArray[np.str_]

@@ -62,6 +62,10 @@ class LeaderSlot:
         """Parameters of the slot's flock; an episode may have its own target and bw_s."""
         return self._env._batch.parameters(self.flock_index)
 
+    def set_next_episodes(self, **options: Any) -> None:
+        """Set ``bw_s`` or ``target`` of the flock's next episodes, as `LeaderVecEnv.set_attr`."""
+        self._env._batch.set_upcoming([self.flock_index], options)
+
     def episode(self) -> dict[str, Any]:
         """Return target, backward duration, seed and step of the slot's flock."""
         return self._env._batch.core.episode(self.flock_index)

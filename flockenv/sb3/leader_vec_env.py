@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv._io.arguments import items, listed, once, whole
+from flockenv._io.arguments import items, once, whole
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one
 from flockenv.envs.options import EnvOptions
@@ -322,9 +322,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
                     f"set_attr: {attr_name} is the same for all leaders of flock {flock}, but "
                     "indices name only some of them"
                 )
-        value = listed(value)
-        value = tuple(value) if isinstance(value, list) else value
-        self._batch.core.set_upcoming(flocks, {attr_name: value})
+        self._batch.set_upcoming(flocks, {attr_name: value})
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any

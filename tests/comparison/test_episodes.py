@@ -198,7 +198,6 @@ def test_what_is_compared_may_be_gone_through_once(parameters: flockenv.FlockPar
         ({"leaders": {1, 2}}, "leaders must be a sequence"),
         ({"leaders": 2}, "leaders must be a sequence"),
         ({"leaders": "12"}, "leaders must be a sequence"),
-        ({"leaders": [1.5]}, "leaders must be an integer"),
         ({"leaders": [True]}, "leaders must be an integer"),
         ({"seeds": 3}, "seeds must be a sequence"),
         ({"seeds": {1: 2}}, "seeds must be a sequence"),
@@ -212,6 +211,13 @@ def test_what_is_no_sequence_is_named(parameters, arguments, words) -> None:
     given = {"leaders": [1], "policies": {"law": "paper's law"}, "seeds": [1]}
     with pytest.raises(TypeError, match=words):
         compare_leaders(**{"parameters": parameters, "duration_s": 1.0, **given, **arguments})
+
+
+def test_half_a_leader_is_refused(parameters) -> None:
+    with pytest.raises(
+        flockenv.ParameterError, match=r"leaders = 1\.5 is not accepted: a whole number"
+    ):
+        compare_leaders(parameters, [1.5], {"law": "paper's law"}, [1], 1.0)
 
 
 def test_leaders_of_another_pool_are_refused(parameters, tmp_path) -> None:

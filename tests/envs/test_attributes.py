@@ -87,3 +87,39 @@ def test_what_is_made_by_id_is_the_environment_itself():
         env.step(np.zeros(4))
     again = gymnasium.make(pickle.loads(pickle.dumps(env.spec)))
     assert again.unwrapped.parameters == env.parameters
+
+
+@pytest.mark.parametrize("make", EVERY.values(), ids=EVERY.keys())
+def test_what_holds_for_the_next_episodes_is_set_by_a_method(make):
+    env = make(**SMALL)
+    bare = env if hasattr(env, "_batch") else env.unwrapped
+    env.reset()
+    bare.set_next_episodes(bw_s=0.6, target="ccw")
+    env.reset()
+    env.reset()
+    episodes = [bare._batch.core.episode(flock) for flock in range(bare._batch.num_flocks)]
+    assert {(each["bw_s"], each["target"]) for each in episodes} == {(0.6, "ccw")}
+    bare.set_next_episodes(bw_s=np.array([0.1, 0.2]))
+    env.reset()
+    assert 0.1 < bare._batch.core.episode(0)["bw_s"] < 0.2
+    before = bare._batch.core.to_bytes()
+    for refused in ({"n_boats": 5}, {"bw_s": -1.0}, {"bw": 0.3}, {"target": "up"}):
+        with pytest.raises(flockenv.ParameterError):
+            bare.set_next_episodes(**refused)
+    assert bare._batch.core.to_bytes() == before
+
+
+def test_a_curriculum_reaches_flocks_in_stable_baselines3s_monitor():
+    """`set_attr` reaches the monitor alone, whatever the flocks do: the recipe is another."""
+    pytest.importorskip("stable_baselines3")
+    from stable_baselines3.common.env_util import make_vec_env
+
+    for venv in (
+        make_vec_env("flockenv/Leaders-v0", 2, env_kwargs=SMALL),
+        flockenv.sb3.LeaderVecEnv(2, **SMALL),
+    ):
+        venv.env_method("set_next_episodes", bw_s=0.6)
+        venv.reset()
+        for _ in range(12):
+            venv.step(np.zeros((venv.num_envs, *venv.action_space.shape)))
+        assert {each["bw_s"] for each in venv.env_method("episode")} == {0.6}

@@ -1,10 +1,11 @@
-"""Law: environments are made by their ids, with and without an import of the package."""
+"""Law: environments are made by their ids, of Gymnasium and of PettingZoo."""
 
 import subprocess
 import sys
 
 import gymnasium
 import numpy as np
+import pettingzoo
 import pytest
 
 import flockenv
@@ -36,15 +37,35 @@ def test_ids_import_the_package(env_id):
     "imports",
     [
         "import flockenv, gymnasium",
-        "import gymnasium, flockenv",
-        # To look for Gymnasium is not to import it.
-        "import flockenv, importlib.util; importlib.util.find_spec('gymnasium'); import gymnasium",
+        "import gymnasium, flockenv; gymnasium.register_envs(flockenv)",
+        "import gymnasium, flockenv, importlib; importlib.reload(flockenv)",
     ],
 )
 def test_ids_are_known_whichever_is_imported_first(imports):
-    code = f"{imports}; print(sorted(gymnasium.registry))"
-    listed = subprocess.check_output([sys.executable, "-c", code], text=True)
+    code = f"import sys; finders = [*sys.meta_path]; {imports}; print(sorted(gymnasium.registry))"
+    code = f"{code}; assert sys.meta_path == finders"
+    listed = subprocess.check_output([sys.executable, "-W", "error", "-c", code], text=True)
     assert all(repr(env_id) in listed for env_id in ENVIRONMENTS)
+
+
+@pytest.mark.skipif(not hasattr(pettingzoo, "register"), reason="PettingZoo has no ids")
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
+def test_pettingzoo_makes_the_same_environments(env_id):
+    single = gymnasium.make(env_id)
+    single.reset(seed=3)
+    parallel = pettingzoo.make("parallel", env_id)
+    assert isinstance(parallel, flockenv.LeadersParallelEnv)
+    in_turn = pettingzoo.make("aec", env_id)
+    for env in (parallel, in_turn):
+        env.reset(seed=3)
+        assert env.unwrapped.parameters == single.parameters
+        assert env.unwrapped._batch.settings == single._batch.settings
+        np.testing.assert_array_equal(env.unwrapped.flock.pose, single.flock.pose)
+        env.unwrapped.step(
+            {agent: env.action_space(agent).sample() for agent in env.possible_agents}
+        )
+    few = pettingzoo.make("parallel", env_id, n_boats=5)
+    assert few.parameters == single.parameters.replace(n_boats=5)
 
 
 def test_the_easy_environment_tells_good_leaders_from_bad():
