@@ -231,7 +231,7 @@ VALUES = {
         for value in (number, np.float32(number), np.float64(number), np.array(number))
     },
     **{
-        f"FlockParameters(pool={kind} {place})": parameters(pool=kind(POOL))
+        f"FlockParameters(pool={kind.__name__} {place})": parameters(pool=kind(POOL))
         for place, kind in enumerate(SERIES)
     },
     **{
@@ -271,11 +271,11 @@ VALUES = {
         for value in (number, float(number), np.float32(number), np.int64(number), np.array(number))
     },
     **{
-        f"LeadersEnv(bw_s={kind} {place})": single(bw_s=kind([0.1, 0.5]))
+        f"LeadersEnv(bw_s={kind.__name__} {place})": single(bw_s=kind([0.1, 0.5]))
         for place, kind in enumerate(SERIES)
     },
     **{
-        f"LeadersEnv(target={kind} {place})": single(target=kind(["cw", "ccw"]))
+        f"LeadersEnv(target={kind.__name__} {place})": single(target=kind(["cw", "ccw"]))
         for place, kind in enumerate(DIRECTIONS)
     },
     **{
