@@ -304,19 +304,21 @@ VALUES = {
         ]
     },
     **{
-        f"seed={seed!r} in a vector": vector(seed=seed)
-        for seed in [
-            3.0,
-            np.float64(3),
-            np.array([1, 2]),
-            [1.0, 2.0],
-            (1, None),
-            range(2),
-            np.array([1.0, 2.0]),
-            np.uint64(2**63),
-            iter([5, 6]),
-            np.array(4),
-        ]
+        f"seed {place} = {type(seed).__name__} in a vector": vector(seed=seed)
+        for place, seed in enumerate(
+            [
+                3.0,
+                np.float64(3),
+                np.array([1, 2]),
+                [1.0, 2.0],
+                (1, None),
+                range(2),
+                np.array([1.0, 2.0]),
+                np.uint64(2**63),
+                iter([5, 6]),
+                np.array(4),
+            ]
+        )
     },
     **{
         f"seed={seed!r} of one flock": parallel(seed=seed)
