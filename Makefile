@@ -23,9 +23,11 @@ JS_TESTS := tests/replay/js
 
 # What each front door needs, out of pyproject.toml: extras of users and groups of developers.
 NEEDS_compare := --extra plot
-NEEDS_test := --extra train --extra plot --extra search --extra render --extra sweep --extra tracks --group test --group dev
+NEEDS_test := --extra train --extra plot --extra render --extra sweep --extra tracks --group test --group dev
 NEEDS_browser := --group browser
 NEEDS_docs := --group docs
+# What studies/pyproject.toml adds.
+NEEDS_studies := --extra plots --extra search --extra train --extra data --extra test
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -53,7 +55,8 @@ setup: $(STAMPS)/test
 # One set of versions for all platforms and interpreters; no addresses, so that it holds for any registry.
 lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
 	$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --no-annotate --custom-compile-command "make lock" \
-		$(NEEDS_compare) $(NEEDS_test) $(NEEDS_browser) $(NEEDS_docs) pyproject.toml --output-file requirements.lock
+		$(NEEDS_compare) $(NEEDS_test) $(NEEDS_browser) $(NEEDS_docs) $(NEEDS_studies) pyproject.toml studies/pyproject.toml \
+		--output-file requirements.lock
 build: $(STAMPS)/compare $(CORE) ## build the simulator and install the package, editable, into .venv
 
 lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling
@@ -139,11 +142,11 @@ extend: $(STAMPS)/venv ## follow the pages of docs/extend, or PAGE=policy alone,
 test-processors: ## the tests of the same bits on aarch64, riscv64 and i686, emulated
 	tests/processors.sh
 
-studies: build ## make what is missing of studies/, or draw it again
+studies: build $(STAMPS)/studies ## make the runs of studies/ that are missing, judge and draw them; STUDIES_ARGS=worth makes one
 	OMP_NUM_THREADS=1 $(BIN)/python -m studies.make $(STUDIES_ARGS)
 
-test-studies: $(STAMPS)/test $(CORE) ## the tests of studies/: every study's shortest form, and the committed results
-	$(PYTEST) -n $(JOBS) --dist loadfile --max-worker-restart 0 studies $(PYTEST_ARGS)
+studies-trial: build $(STAMPS)/studies ## run every study in its shortest form, and judge the committed results (minutes)
+	$(PYTEST) -c studies/pyproject.toml -n $(JOBS) --max-worker-restart 0 studies $(PYTEST_ARGS)
 
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
@@ -158,7 +161,7 @@ audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what thi
 # The notices of the crates that are compiled in; the crate as it would be published, its API against the last release.
 licenses publish-check:
 	.github/release.sh $@
-release-check: audit publish-check test-processors docs test-oldest test-wheel extend ## all of a release that can run here, and what is left for the owner
+release-check: audit publish-check test-processors docs test-oldest test-wheel extend studies-trial ## all of a release that can run here, and what is left for the owner
 	.github/release.sh owner
 
 throughput soak speed-vs-error lint-benches: build $(STAMPS)/test ## measure, and compare with other engines (minutes; benches/Makefile)
@@ -189,6 +192,10 @@ $(STAMPS)/venv:
 $(STAMPS)/compare $(STAMPS)/test $(STAMPS)/browser $(STAMPS)/docs: pyproject.toml requirements.lock | $(STAMPS)/venv
 	$(if $(filter test,$(@F)),UV_COMPILE_BYTECODE=1) $(UV) -r pyproject.toml $(NEEDS_$(@F))
 	@touch $@ $(if $(filter test,$(@F)),$(STAMPS)/compare)
+
+$(STAMPS)/studies: studies/pyproject.toml requirements.lock | $(STAMPS)/venv
+	$(UV) -r $< $(NEEDS_studies)
+	@touch $@
 
 $(JS_TESTS)/node_modules: $(JS_TESTS)/package.json
 	@node --version > /dev/null && npm --version > /dev/null || { echo "Node 20 or newer and npm are needed for the scripts' tests." >&2; exit 1; }

@@ -26,7 +26,6 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -55,14 +54,14 @@ class Settings:
     learning_rate: float = 0.01
 
 
-class Branches:
-    """Groups of flocks that branch from one state: flocks i, i + groups, i + 2 groups and so on."""
+class Pairs:
+    """Pairs of flocks that branch from one state: flocks i and i + pairs."""
 
-    def __init__(self, settings: Any, groups: int, seed: int, size: int = 2) -> None:
-        self.settings, self.groups, self.size = settings, groups, size
+    def __init__(self, settings: Settings, seed: int) -> None:
+        self.settings, self.pairs = settings, settings.pairs
         others = dict.fromkeys(("own", "phase", "target", "order"), False)
         self.env = flockenv.LeadersVectorEnv(
-            size * groups,
+            2 * self.pairs,
             autoreset_mode="disabled",
             pool=settings.pool,
             n_boats=27,
@@ -79,57 +78,51 @@ class Branches:
         self._coins = np.random.default_rng([seed, 1])
         self._seeds = iter(POLICY_SEEDS["paired branches"].seeds(1 << 20, run=seed))
         self._branches = settings.episode_s // settings.branch_s
-        #: How many branches of its episode each group has had: at first all numbers alike.
-        self._had = np.arange(groups) % self._branches
+        #: How many branches of its episode each pair has had: at first all numbers alike.
+        self._had = np.arange(self.pairs) % self._branches
         self._snapshots: list[bytes] = []
-        self._targets = np.full(groups, "ccw")
-        self._rest(np.ones(groups, bool))
+        self._targets = np.full(self.pairs, "ccw")
+        self._rest(np.ones(self.pairs, bool))
 
-    def _rest(self, groups: np.ndarray) -> None:
-        """Start the episodes of these groups at rest, all flocks of one with one seed."""
-        seeds = [next(self._seeds) if each else None for each in groups]
-        self._targets[groups] = self._coins.choice(["cw", "ccw"], groups.sum())
-        options = {"target": self._each(), "reset_mask": np.tile(groups, self.size)}
-        self.env.reset(seed=self.size * seeds, options=options)
-
-    def _each(self) -> list[str]:
-        return self.size * self._targets.tolist()
+    def _rest(self, pairs: np.ndarray) -> None:
+        """Start the episodes of these pairs at rest, both flocks of one with one seed."""
+        seeds = [next(self._seeds) if each else None for each in pairs]
+        self._targets[pairs] = self._coins.choice(["cw", "ccw"], pairs.sum())
+        options = {"target": 2 * self._targets.tolist(), "reset_mask": np.tile(pairs, 2)}
+        self.env.reset(seed=2 * seeds, options=options)
 
     def _start(self) -> np.ndarray:
-        """Start the next branch of each group, and return what leaders see."""
+        """Start the next branch of each pair, and return what leaders see."""
         if self._snapshots:
             branching = self._had < self._branches
-            options = {"snapshot": self.size * self._snapshots, "target": self._each()}
-            self.env.reset(options={**options, "reset_mask": np.tile(branching, self.size)})
+            options = {"snapshot": 2 * self._snapshots, "target": 2 * self._targets.tolist()}
+            self.env.reset(options={**options, "reset_mask": np.tile(branching, 2)})
             if not branching.all():
                 self._rest(~branching)
                 self._had[~branching] = 0
         return self.env.observe()
 
-    def branch(self, candidates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean order of each flock, led by its own weights, at the end of a branch.
-
-        And what its leaders saw, shape (seconds, flocks, leaders, features).
-        """
-        seen, every = self._start(), []
+    def branch(self, candidates: np.ndarray) -> np.ndarray:
+        """Return the mean order of each flock, led by its own weights, at the end of a branch."""
+        seen = self._start()
         weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
         orders = np.zeros(len(candidates))
         for second in range(self.settings.branch_s):
-            every.append(seen.reshape(len(candidates), -1, weights.shape[1]))
-            leans = np.einsum("fls,fs->fl", every[-1], weights) + bias
+            rows = seen.reshape(len(candidates), -1, weights.shape[1])
+            leans = np.einsum("fls,fs->fl", rows, weights) + bias
             seen, rewards, *_ = self.env.step(np.clip(leans, -1.0, 1.0))
             if second >= self.settings.branch_s - self.settings.judged_s:
                 orders += rewards / self.settings.judged_s
-        continued = (self._coins.random(self.groups) * self.size).astype(int)
+        continued = (self._coins.random(self.pairs) * 2).astype(int)
         ends = self.env.snapshots()
-        self._snapshots = [ends[group + self.groups * b] for group, b in enumerate(continued)]
+        self._snapshots = [ends[pair + self.pairs * b] for pair, b in enumerate(continued)]
         self._had += 1
-        return orders, np.array(every)
+        return orders
 
 
 def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the weights, and the mean order of each generation."""
-    pairs = Branches(settings, settings.pairs, seed)
+    pairs = Pairs(settings, seed)
     random = np.random.default_rng([seed, 0])
     hours = 2 * settings.pairs * settings.branch_s / 3600.0
     generations = max(1, round(flock_hours / hours))
@@ -139,7 +132,7 @@ def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarra
     for number in range(generations):
         changes = random.standard_normal((settings.pairs, len(weights)))
         candidates = weights + settings.sigma * np.concatenate([changes, -changes])
-        orders, _ = pairs.branch(candidates)
+        orders = pairs.branch(candidates)
         differences = orders[: settings.pairs] - orders[settings.pairs :]
         gradient = differences @ changes / (settings.pairs * differences.std() + 1e-12)
         moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient

@@ -19,7 +19,7 @@ from PIL import Image
 
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.comparison.figure import OWN_COLORS, policy_colors
-from studies.study import Options
+from studies.study import Options, StudyError
 
 Row = dict[str, str]
 
@@ -42,7 +42,9 @@ _STYLE = {
 
 
 def rows(file: Path, **wanted: str) -> list[Row]:
-    """Return the rows of a CSV file that have these values."""
+    """Return the rows of a CSV file that have these values; StudyError if there are none."""
+    if not file.exists():
+        raise StudyError(f"{file} is missing: its folder's README.md has the command that makes it")
     with file.open(encoding="utf-8", newline="") as lines:
         found = [
             row
@@ -50,7 +52,7 @@ def rows(file: Path, **wanted: str) -> list[Row]:
             if all(row[name] == value for name, value in wanted.items())
         ]
     if not found:
-        raise LookupError(f"{file} holds no row with {wanted}")
+        raise StudyError(f"{file} holds no row with {wanted}")
     return found
 
 

@@ -1,27 +1,30 @@
 """Studies: designs as tables of runs, results that resume, pictures, scripts.
 
 A design is a list of rows; a row says all that a run depends on, its seed included. The result is
-``results/<name>.csv`` in the study's folder, with one line per run: the row, what was measured, and
-the results version of the code that made it. A run that has a line is not made again, so that work
-resumes where it ended; a file never holds runs of two versions. `flockenv.runs.store.RunStore`
-keeps whole recordings, which for these studies would be gigabytes. Every claim of the paper that a
-study judges is a line of its ``claims.csv``, with the number of its runs.
+``results/<name>.csv`` in the study's folder, compressed if it is long, with one line per run: the
+row, what was measured, and the results version of the code that made it. A run that has a line is
+not made again, so that work resumes where it ended; a file never holds runs of two versions.
+`flockenv.runs.store.RunStore` keeps whole recordings, which for these studies would be gigabytes.
+Every claim of the paper that a study judges is a line of its ``claims.csv``, with the number of its
+runs.
 """
 
 import argparse
 import csv
+import gzip
 import io
 import math
 import os
 import sys
 import tempfile
 import time
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import matplotlib as mpl
 import numpy as np
@@ -44,6 +47,10 @@ SEEDS = 24  # Runs at each point of a design, unless it says otherwise.
 
 VERSION = "results_version"
 """The last column of every file of results: `RESULTS_VERSION` of the code that made a run."""
+MADE = "made.toml"
+"""Names, in a folder of results, the version of tables without that column."""
+MOST_PLAIN = 1000
+"""Rows from which on a table is compressed."""
 
 Row = dict[str, Any]
 
@@ -110,14 +117,17 @@ class Study:
     in_trial: Callable[[Row], bool] = lambda row: True
     adaptive: bool = False
 
-    def results(self, options: Options) -> pd.DataFrame:
+    def results(self, options: Options, optional: bool = False) -> pd.DataFrame:
         """Return one line per run of the design that has been made, in the design's order.
+
+        None may have been made if `optional`.
 
         Raises
         ------
         StudyError
-            For a file of another design, or of another results version with runs missing, for a run
-            that cannot be made and a file that cannot be written. What was finished before is in
+            For a file of another design, or of another results version with runs missing, for one
+            without any run that is not to be made, for a run that cannot be made and a file that
+            cannot be written. What was finished before is in
             the file.
         """
         rows = list(self.design())
@@ -128,7 +138,7 @@ class Study:
             ]
         columns = list(rows[0])
         folder, _, name = self.name.partition("/")
-        store = _Store(options.out / folder / "results" / f"{name}.csv", columns)
+        store = _Store(existing(options.out / folder / "results" / f"{name}.csv"), columns)
         keys = {store.key(row): row for row in rows}
         if not self.adaptive and (others := store.lines.keys() - keys.keys()):
             raise StudyError(
@@ -138,6 +148,8 @@ class Study:
         if options.runs:
             missing = {key: row for key, row in keys.items() if key not in store.lines}
             store.fill(missing, self.measure, options.workers)
+        elif not store.lines and not optional:
+            raise StudyError(f"{store.path} is missing or empty; without --no-runs it is made")
         return store.table(keys)
 
 
@@ -152,11 +164,11 @@ class _Store:
         if not path.exists():
             return
         try:
-            with path.open(newline="") as file:
+            with _opened(path) as file:
                 reader = csv.DictReader(file, strict=True)
                 names = list(reader.fieldnames or [])
                 lines = list(reader)
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
+        except (OSError, EOFError, UnicodeDecodeError, csv.Error) as error:
             raise StudyError(f"{path} cannot be read: {error}") from error
         if names[: len(columns)] != self.columns or any(None in line.values() for line in lines):
             raise StudyError(
@@ -183,13 +195,13 @@ class _Store:
                 f"are missing that this code would make as version {RESULTS_VERSION}; --no-runs "
                 "judges those that are there, and without the file all are made again"
             )
+        order = [*self.lines, *missing]
         pool = ThreadPoolExecutor(workers)
+        name = self.path.name.partition(".")[0]
         futures = {pool.submit(measure, row): key for key, row in missing.items()}
         written = time.monotonic()
         try:
-            for future in track(
-                as_completed(futures), self.path.stem, len(futures), disable=not futures
-            ):
+            for future in track(as_completed(futures), name, len(futures), disable=not futures):
                 if isinstance(error := future.exception(), flockenv.FlockError):
                     row = missing[futures[future]]
                     raise StudyError(f"the run {row} cannot be made: {error}") from error
@@ -203,6 +215,7 @@ class _Store:
                 if not future.cancelled() and future.exception() is None:
                     self._keep(key, future.result())
             if missing:
+                self.lines = {key: self.lines[key] for key in order if key in self.lines}
                 self._write()
 
     def _keep(self, key: tuple[str, ...], measured: Row) -> None:
@@ -216,7 +229,7 @@ class _Store:
         writer = csv.DictWriter(file, names, lineterminator="\n")
         writer.writeheader()
         writer.writerows(self.lines.values())
-        write(self.path, file.getvalue().encode())
+        self.path = write_rows(self.path, file.getvalue(), len(self.lines))
 
     def table(self, keys: Iterable[tuple[str, ...]]) -> pd.DataFrame:
         found = [self.lines[key] for key in keys if key in self.lines]
@@ -225,6 +238,82 @@ class _Store:
             with suppress(ValueError):
                 table[name] = [float(text) for text in table[name]]
         return table
+
+
+def existing(path: Path) -> Path:
+    """Return the file of a table: the plain or the compressed one, whichever there is."""
+    packed = path.with_name(f"{path.name.removesuffix('.gz')}.gz")
+    return packed if packed.exists() else path
+
+
+def _opened(path: Path) -> TextIO:
+    if path.suffix == ".gz":
+        return gzip.open(path, "rt", newline="", encoding="utf-8")
+    return path.open(newline="", encoding="utf-8")
+
+
+def write_rows(path: Path, text: str, rows: int) -> Path:
+    """Write a table whole or not at all, compressed if it is long, and return its file."""
+    plain = path.with_name(path.name.removesuffix(".gz"))
+    packed = plain.with_name(f"{plain.name}.gz")
+    if rows > MOST_PLAIN:
+        # Without the time, so that the same rows are the same bytes.
+        write(packed, gzip.compress(text.encode(), mtime=0))
+        plain.unlink(missing_ok=True)
+        return packed
+    write(plain, text.encode())
+    packed.unlink(missing_ok=True)
+    return plain
+
+
+def write_table(path: Path, table: pd.DataFrame, form: str = "%.5g") -> None:
+    """Write a table of results, with the results version of this code as its last column."""
+    versioned = table.assign(**{VERSION: RESULTS_VERSION})
+    text = versioned.to_csv(index=False, float_format=form, lineterminator="\n")
+    write_rows(path, text, len(table))
+
+
+def resumed(path: Path, **how: Any) -> pd.DataFrame:
+    """Return the rows that an interrupted command wrote, without their version; none at first.
+
+    Raises
+    ------
+    StudyError
+        For a file that cannot be read, and for rows of another results version than this code's.
+    """
+    path = existing(path)
+    if not path.exists():
+        return pd.DataFrame()
+    try:
+        table = pd.read_csv(path, **how)
+    except (OSError, EOFError, ValueError) as error:
+        raise StudyError(f"{path} cannot be read: {error}") from error
+    if (version := version_of(path)) != RESULTS_VERSION:
+        raise StudyError(
+            f"{path} has rows of results version {version}, and this code would add rows of "
+            f"version {RESULTS_VERSION}; --out names another file"
+        )
+    return table.drop(columns=VERSION, errors="ignore")
+
+
+def version_of(path: Path) -> int:
+    """Return the results version that made a table, by its column or by `MADE` beside it.
+
+    Raises
+    ------
+    StudyError
+        If neither names one version.
+    """
+    names = pd.read_csv(path, nrows=0).columns
+    if VERSION in names:
+        found = set(pd.read_csv(path, usecols=[VERSION])[VERSION])
+    else:
+        made = path.with_name(MADE)
+        versions = tomllib.loads(made.read_text("utf-8"))[VERSION] if made.exists() else {}
+        found = {versions[path.name]} if path.name in versions else set()
+    if len(found) != 1:
+        raise StudyError(f"{path} does not say which results version made it")
+    return int(found.pop())
 
 
 def _text(value: object) -> str:
@@ -392,8 +481,13 @@ def main(script: Callable[[Options], None], arguments: Sequence[str] | None = No
     out = given.out or (HERE.parent / "results" / "studies-trial" if given.trial else HERE)
     study = Path(str(sys.modules[script.__module__].__file__)).parent.name
     options = Options(given.trial, given.workers, out, not given.no_runs, study)
+    run(lambda: script(options))
+
+
+def run(command: Callable[[], None]) -> None:
+    """Run a command, and say in a line why it ended early."""
     try:
-        script(options)
+        command()
     except KeyboardInterrupt:
         sys.exit("Interrupted: the same command makes the runs that are missing")
     except (StudyError, flockenv.FlockError) as error:

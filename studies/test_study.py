@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies import claim, make, study
+from studies import claim, make, plots, study
 from studies.transition import transition, transition_runs
 
 
@@ -95,6 +95,59 @@ def test_a_store_of_two_versions(tmp_path: Path) -> None:
         with pytest.raises(study.StudyError, match="does not say which results version"):
             _counted([]).results(study.Options(out=tmp_path))
         assert store.read_text() == text
+
+
+def test_a_tree_without_results(tmp_path: Path) -> None:
+    script = importlib.import_module("studies.section4.fig08").script
+    with pytest.raises(SystemExit, match=r"section4.results.section4\.csv is missing or empty"):
+        study.main(script, ["--no-runs", "--out", str(tmp_path)])
+    with pytest.raises(study.StudyError, match=r"means\.csv is missing: its folder's README"):
+        plots.rows(tmp_path / "means.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_long_tables_are_compressed_and_read_again(tmp_path: Path) -> None:
+    many = study.Study(
+        "few/many",
+        lambda: [{"minutes": 1.0, "seed": seed} for seed in range(study.MOST_PLAIN + 1)],
+        lambda row: {"twice": 2.0 * row["seed"]},
+    )
+    options = study.Options(out=tmp_path)
+    made = many.results(options)
+    (file,) = (tmp_path / "few" / "results").iterdir()
+    assert file.name == "many.csv.gz"
+    before = file.read_bytes()
+    again = study.Study(many.name, many.design, lambda row: pytest.fail("it is there"))
+    pd.testing.assert_frame_equal(again.results(options), made)
+    assert study.version_of(file) == study.RESULTS_VERSION
+    file.unlink()
+    many.results(options)
+    assert file.read_bytes() == before
+    file.write_bytes(before[:100])
+    with pytest.raises(study.StudyError, match="cannot be read"):
+        many.results(options)
+
+
+def test_a_command_goes_on_with_rows_of_its_version_alone(tmp_path: Path) -> None:
+    path = tmp_path / "rows.csv"
+    assert len(study.resumed(path)) == 0
+    study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
+    assert study.resumed(path)["seed"].tolist() == [1, 2]
+    later = study.RESULTS_VERSION + 1
+    for text, why in (
+        (f"seed,results_version\n1,{later}\n", f"has rows of results version {later}, and this"),
+        ("seed\n1\n", "does not say which results version"),
+        ("", "cannot be read"),
+    ):
+        path.write_text(text)
+        with pytest.raises(study.StudyError, match=why):
+            study.resumed(path)
+        assert path.read_text() == text
+    path.write_text("seed\n1\n")
+    (tmp_path / "made.toml").write_text(
+        f'[results_version]\n"rows.csv" = {study.RESULTS_VERSION}\n'
+    )
+    assert study.resumed(path)["seed"].tolist() == [1]
 
 
 def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -62,9 +62,8 @@ export class Core {
     this.exports.close(flock);
   }
 
-  /** Keeps the heading that the visitor asks for. */
-  steer(flock, heading) {
-    this.#done(this.exports.steer(flock, heading));
+  steer(flock, rudder) {
+    this.#done(this.exports.steer(flock, rudder));
   }
 
   /** Takes up to so many samples within so much work; returns how many. */

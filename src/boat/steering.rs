@@ -59,10 +59,9 @@ impl Default for DampedLaw {
 impl DampedLaw {
     /// The tuned law: the damped law with the gains tuned in a pool, by the pool's name.
     ///
-    /// Source: CMA-ES (seed 0) for three leaders among 27 boats at each pool's critical noise, on training seeds. In
-    /// studies/tuned_laws (results), gains.toml names its command and commit, and damped-law-POOL.csv has its
-    /// candidates and their scores, from which a test finds these gains again. Today's tune_laws.py there searches for
-    /// longer, and found no better ones.
+    /// Source: `studies/tuned_laws`, results version 1. CMA-ES (seed 0) searched for three leaders among 27 boats at
+    /// each pool's critical noise, on training seeds. The study has its candidates and their scores, from which a test
+    /// finds these gains again. A longer search (results version 4) found no better ones.
     pub const TUNED: [(&str, Self); 2] = [
         (
             "wide",

@@ -52,9 +52,8 @@ impl Preset {
     /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
     /// disordered level. `None` for a pool in which it has not been measured.
     ///
-    /// Source: `studies/critical_noise` (8 seeds of 30 minutes every 0.05 s; runs in
-    /// `results/critical_noise.csv` there; of the experiment every 0.2 s, in
-    /// `results/critical_noise_experiment.csv`), rounded to 0.01 s.
+    /// Source: `studies/critical_noise`, results version 1, and 2 of the experiment (8 seeds of 30 minutes every
+    /// 0.05 s, of the experiment every 0.2 s), rounded to 0.01 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
             (Self::Simulation, "wide") => Some(0.31),

@@ -119,6 +119,7 @@ mod by_feature {
 }
 
 /// The pretrained leaders, by the name of their pool: those that the rule of `baselines/pretrained.py` lets ship.
+/// Source: `studies/trainings`, results version 5.
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {

@@ -23,6 +23,7 @@ from rich.progress import track
 
 import flockenv
 from flockenv.runs.executors import finished
+from studies.study import run, write_table
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
@@ -80,8 +81,7 @@ def main(arguments: list[str] | None = None) -> None:
     found = dict(track(finished(run, cells), "simulating", total=len(cells)))
     rows = [found[place] for place in range(len(cells))]
     runs = pd.DataFrame(rows)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    runs.round(4).to_csv(options.out, index=False)
+    write_table(options.out, runs.round(4))
     for (preset, pool), group in runs.groupby(["preset", "pool"], sort=False):
         means = group.groupby("bw_s")[["psi_o", "rotation"]].mean().reset_index()
         rng = np.random.default_rng(0)
@@ -101,4 +101,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -79,7 +79,11 @@ def constants(candidate: int) -> Row:
 
 
 def runs_of(
-    options: Options, candidates: Iterable[int], levels_s: Iterable[float], seeds: range
+    options: Options,
+    candidates: Iterable[int],
+    levels_s: Iterable[float],
+    seeds: range,
+    optional: bool = False,
 ) -> pd.DataFrame:
     """Return runs of 8 minutes of candidates, without leaders and with three clockwise ones."""
     rows = [
@@ -90,7 +94,7 @@ def runs_of(
         for leaders in LOST_S
         for bw_s in levels_s
     ]
-    return Study("current/fit", lambda: rows, _measure, adaptive=True).results(options)
+    return Study("current/fit", lambda: rows, _measure, adaptive=True).results(options, optional)
 
 
 def _measure(row: Row) -> Row:

@@ -12,10 +12,10 @@ import pandas as pd
 
 from studies.claim import Claims, Interval, bca, mean, write_claims
 from studies.current.fit import CANDIDATE, HELD_OUT, LEVELS_S, constants, runs_of
+from studies.flocks import RADII_CM
 from studies.section4.section4 import FREE, READING, STUDY, VERY_LOW_S, over, setup, words
 from studies.section5.section5 import STUDY as SECTION5
 from studies.section5.section5 import Evidence
-from studies.starts import RADII_CM
 from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, order_row, picture
 from studies.study import simulated as run_of
 
@@ -80,10 +80,11 @@ def cells(options: Options) -> dict[tuple[str, str, int], pd.DataFrame]:
     Of each cell those of the seeds that have been run at all of its noises.
     """
     tables = {("experiment", "narrow", 27): setup(STUDY.results(options), FREE)}
-    fitted = runs_of(replace(options, runs=False), (CANDIDATE,), LEVELS_S, HELD_OUT)
+    there = replace(options, runs=False)
+    fitted = runs_of(there, (CANDIDATE,), LEVELS_S, HELD_OUT, optional=True)
     if len(fitted):
         tables["measured current", "narrow", 27] = fitted[fitted["n_leaders"] == 0]
-    others = SECTION5.results(replace(options, runs=options.trial))
+    others = SECTION5.results(replace(options, runs=options.trial), optional=True)
     for name in ("simulation", "paper"):
         for n, pool in itertools.product((20, 50), RADII_CM):
             reading = name if pool == "wide" else f"{name}, narrow"

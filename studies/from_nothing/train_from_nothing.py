@@ -46,6 +46,7 @@ from flockenv.envs.observation import observation_entries
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 from flockenv.statistics import mean_interval
+from studies.study import write_table
 
 FLOCKS, LEADERS, DECISIONS_HZ = 128, 3, 2.5
 #: Flock-hours of the two stages; flocks that judge during and after the training, and for how long.
@@ -160,7 +161,7 @@ def write(pool: str, policy: dict[str, Any], rows: list[dict[str, Any]], folder:
     policies = {**dict(zip(LAWS, LAWS, strict=True)), **policy}
     last = judged(pool, policies, release_seeds("from_nothing", JUDGES[1]), end)
     table = pd.DataFrame(rows + last)[list(COLUMNS)]
-    table.to_csv(folder / "curve.csv", index=False, float_format="%.4f")
+    write_table(folder / "curve.csv", table, "%.4f")
     print(f"written to {folder}")
 
 

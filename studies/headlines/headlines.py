@@ -17,7 +17,7 @@ import flockenv
 from flockenv.policies.registry import named_policy
 from studies.claim import Claims, Interval, bca, fall, judging, mean, unknown
 from studies.density.noise_makes_motion import SETS, order_row
-from studies.starts import one_jam, rotating
+from studies.flocks import one_jam, rotating
 from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, seed_of
 
 FIRST = 200

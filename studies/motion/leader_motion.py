@@ -15,6 +15,7 @@ import flockenv
 from flockenv import FlockParameters
 from flockenv.policies.registry import named_policy
 from flockenv.statistics import mean_interval
+from studies.study import run, write_table
 
 FOLDER = Path(__file__).parent
 POOLS = ("wide", "narrow")
@@ -83,9 +84,9 @@ def main() -> None:
                 ends = (str(name), f"{name}_low", f"{name}_high")
                 row |= zip(ends, mean_interval(values), strict=True)
             rows.append(row)
-    pd.DataFrame(rows).to_csv(FOLDER / "results" / "motion.csv", index=False, float_format="%.5g")
+    write_table(FOLDER / "results" / "motion.csv", pd.DataFrame(rows))
     draw()
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

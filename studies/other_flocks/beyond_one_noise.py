@@ -28,6 +28,7 @@ from flockenv.comparison import run_episodes
 from flockenv.policies import DampedLaw, LeaningLaw, load
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import mean_interval, paired_difference
+from studies.study import resumed, run, write_table
 
 POOL = "wide"
 
@@ -87,17 +88,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/beyond.csv"))
     options = parser.parse_args(arguments)
     policy = load(options.policy) if options.policy else LeaningLaw.learned(POOL)
-    table = pd.read_csv(options.out, dtype={"value": str}) if options.out.exists() else None
-    done = set() if table is None else set(zip(table["what"], table["value"], strict=True))
-    options.out.parent.mkdir(parents=True, exist_ok=True)
+    table = resumed(options.out, dtype={"value": str})
+    done = set(zip(table["what"], table["value"], strict=True)) if len(table) else set()
     for cell in CELLS:
         if (cell.what, cell.value) in done:
             continue
         row = pd.DataFrame([measured(cell, policy, options.flocks, options.minutes * 60.0)])
-        table = row if table is None else pd.concat([table, row])
-        table.to_csv(options.out, index=False, float_format="%.4f")
+        table = pd.concat([table, row]) if len(table) else row
+        write_table(options.out, table, "%.4f")
         print(row.round(3).to_string(index=False, header=False), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -21,6 +21,7 @@ import pandas as pd
 
 from flockenv.runs.seeds import release_seeds
 from studies.planning.plan_ahead import flocks, learned
+from studies.study import run, write_table
 
 HORIZONS_S = (8, 16, 24, 32, 48, 64, 96, 128, 192, 240)
 LONGEST_S, WINDOW_S = 240, 8
@@ -71,9 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
             low, high = np.percentile(again, [2.5, 97.5]) / spend
             row = {"horizon_s": horizon, "paired": paired, "difference": mean, "scatter": scatter}
             rows.append({**row, "z": z / spend, "z_low": low, "z_high": high})
-    options.out.mkdir(parents=True, exist_ok=True)
-    pd.DataFrame(rows).to_csv(options.out / "signal.csv", index=False, float_format="%.5g")
+    write_table(options.out / "signal.csv", pd.DataFrame(rows))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

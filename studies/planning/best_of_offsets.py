@@ -25,9 +25,9 @@ import pandas as pd
 
 from flockenv.policies.laws import LARGEST_LEAN
 from flockenv.runs.seeds import release_seeds
-from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics import mean_interval
 from studies.planning.plan_ahead import flocks, learned
+from studies.study import resumed, run, write_table
 
 STATES, OFFSETS, NOISES, BLOCK = 128, 16, 64, 4
 SIZES_RAD, HORIZONS_S, BEFORE_S, HELD_S, SKIPPED_S = (0.3, 0.6), (64, 96), 240, 16, 8
@@ -91,7 +91,7 @@ def block(
         for place, gain in enumerate(gains(scores)):
             row = {"state": number * BLOCK + place, "offset_rad": size_rad, "horizon_s": horizon}
             row |= {"order": scores[place, 0].mean(), "gain": gain}
-            rows.append(row | {"results_version": RESULTS_VERSION})
+            rows.append(row)
     return rows
 
 
@@ -104,7 +104,7 @@ def main(arguments: list[str] | None = None) -> None:
     )
     options = parser.parse_args(arguments)
     snapshots, targets = states(options.states)
-    rows = pd.read_csv(options.out).to_dict("records") if options.out.exists() else []
+    rows = resumed(options.out).to_dict("records")
     done = {(row["state"], row["offset_rad"]) for row in rows}
     for size_rad in SIZES_RAD:
         for first in range(0, options.states, BLOCK):
@@ -112,7 +112,7 @@ def main(arguments: list[str] | None = None) -> None:
                 continue
             own = slice(first, first + BLOCK)
             rows += block(first // BLOCK, size_rad, snapshots[own], targets[own], options.noises)
-            pd.DataFrame(rows).to_csv(options.out, index=False, float_format="%.5g")
+            write_table(options.out, pd.DataFrame(rows))
         table = pd.DataFrame(rows)
         for horizon, found in table[table["offset_rad"] == size_rad].groupby("horizon_s"):
             mean, low, high = mean_interval(found["gain"])
@@ -120,4 +120,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -28,10 +28,11 @@ import numpy as np
 import pandas as pd
 
 import flockenv
-from baselines.evolution_strategy import lean
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
+from studies.flocks import lean
+from studies.study import resumed, run, write_table
 
 EPISODE_S, EVERY_S, HELD_S, HORIZON_S, JUDGED_S = 480, 8, 16, 32, 8
 CANDIDATES, OFFSET_RAD = 16, 0.3
@@ -114,19 +115,18 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--episodes", type=int, choices=range(2, 65), default=64, metavar="2-64")
     parser.add_argument("--out", type=Path, default=Path("results/plan_ahead"))
     options = parser.parse_args(arguments)
-    options.out.mkdir(parents=True, exist_ok=True)
     if options.continuations < 1:
         parser.error("--continuations is at least 1")
     fresh = options.continuations if options.noise == "fresh" else 0
     path = options.out / (f"fresh_{fresh}.csv" if fresh else "known.csv")
-    rows = pd.read_csv(path).to_dict("records") if path.exists() else []
+    rows = resumed(path).to_dict("records")
     seeds = release_seeds("plan ahead", 64)[: options.episodes]
     for first in range(len(rows), len(seeds), BLOCK):
         block = list(seeds[first : first + BLOCK])
         plain, planned = episodes(block, None), episodes(block, fresh)
         for seed, learned_order, order in zip(block, plain, planned, strict=True):
             rows.append({"seed": seed, "learned": learned_order, "planned": order})
-        pd.DataFrame(rows).to_csv(path, index=False)
+        write_table(path, pd.DataFrame(rows), "%.17g")
         table = pd.DataFrame(rows)
         gain = table["planned"] - table["learned"]
         means = f"learned {table['learned'].mean():.3f}, planned {table['planned'].mean():.3f}"
@@ -135,4 +135,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

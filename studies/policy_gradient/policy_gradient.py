@@ -34,11 +34,11 @@ import numpy as np
 import pandas as pd
 
 import flockenv
-from baselines.evolution_strategy import lean
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
-from flockenv.runs.store import RESULTS_VERSION
+from studies.flocks import lean
+from studies.study import run, write_table
 
 FLOCKS, ROUNDS, BEFORE_S, BRANCH_S, HELD_S, HOLDS, SKIPPED_S = 256, 20, 240, 64, 16, 2, 8
 OFFSET_RAD, FLIPS = 0.4, 2000
@@ -155,10 +155,10 @@ def main(arguments: list[str] | None = None) -> None:
         value, scatter, p = squared_gradient(offsets, used, y, even)
         row = {"pool": pool, "policy": policy, "features": named, "pairs": len(y)}
         row |= {"squared_gradient": value, "scatter": scatter, "p": p}
-        rows.append(row | {"results_version": RESULTS_VERSION})
+        rows.append(row)
         print(f"{pool}, {policy}, {named}: {value:+.4f} ± {scatter:.4f}, p = {p:.2g}", flush=True)
-        pd.DataFrame(rows).to_csv(options.out, index=False, float_format="%.4g")
+        write_table(options.out, pd.DataFrame(rows), "%.4g")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

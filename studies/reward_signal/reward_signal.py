@@ -22,19 +22,20 @@ found, by
 """
 
 import argparse
-import csv
 import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 import flockenv
 from flockenv.policies import LeaningLaw, StraightAhead
 from flockenv.policies.registry import named_policy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
+from studies.study import run, write_table
 
 REWARDS = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
 #: Rows that a baseline is fitted to, about.
@@ -172,11 +173,7 @@ def main(arguments: list[str] | None = None) -> None:
     options.start = options.start or ("0" if leans else "straight ahead")
     options.to = options.to or ("1" if leans else "tuned law")
     rows = measured(options)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    with options.out.open("w", encoding="utf-8", newline="") as file:
-        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+    write_table(options.out, pd.DataFrame(rows))
     for row in rows:
         z = f"{row['z_per_million']:+.1f} ± {row['error']:.1f}"
         print(f"{row['reward']}, horizon {row['horizon_s']:g} s: z per million samples {z}")
@@ -184,4 +181,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -28,6 +28,7 @@ from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.statistics import mean_interval
 from studies.roles.misinformed_pair import TASK, Signed
+from studies.study import run, write_table
 from studies.tuned_laws.tune_laws import RANGES, law
 
 LEADERS, NUMBERS = 2, 1 + len(RANGES)
@@ -122,8 +123,8 @@ def main(arguments: list[str] | None = None) -> None:
         last = curve.iloc[-1]
         numbers = last[[f"number_{k}" for k in range(LEADERS * NUMBERS)]].to_numpy(float)
         judge(seed, last["flock_hours"], Pair.of(numbers))
-    pd.DataFrame(rows).to_csv(options.out / "reached.csv", index=False, float_format="%.5g")
+    write_table(options.out / "reached.csv", pd.DataFrame(rows))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -29,7 +29,7 @@ def write_table(options: Options, found: dict[str, Claims]) -> None:
             rows.setdefault(key, {})[name] = claim.verdict
     lines = [{"statement": key} | row for key, row in sorted(rows.items())]
     text = pd.DataFrame(lines, columns=["statement", *found]).to_csv(index=False)
-    write(options.folder / "results" / "readings.csv", text.encode())
+    write(options.folder / "readings.csv", text.encode())
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:

@@ -25,6 +25,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from studies.study import run, write_table
+
 PERMUTATIONS = 9999
 
 
@@ -101,9 +103,9 @@ def main(arguments: list[str] | None = None) -> None:
     print(f"one-way F = {f:.1f}, p = {p:.4f}, {len(trainings)} trainings")
     for name, table in (("algorithms", means(trainings)), ("pairs", pairs(trainings))):
         path = options.grid.with_name(f"{options.grid.stem}-{name}.csv")
-        table.to_csv(path, index=False, float_format="%.4g")
+        write_table(path, table, "%.4g")
         print(table.round(4).to_string(index=False))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

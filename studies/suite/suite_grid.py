@@ -69,7 +69,9 @@ import torch
 from flockenv.comparison.suite import REFERENCE, tasks_named
 from flockenv.policies import NetworkPolicy
 from flockenv.policies.provenance import commit
+from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics import interquartile_mean
+from studies.study import StudyError, run, write_table
 from studies.suite.suite_learners import INPUTS, Training, learn
 
 #: Of each algorithm, as `Training.setting`.
@@ -116,6 +118,12 @@ def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> No
     """Train and judge a policy, unless it is there."""
     folder = out / algorithm / named / f"{budget.flock_hours:g}" / str(seed)
     if (folder / "orders.csv").exists():
+        made = json.loads((folder / "made.json").read_text())
+        if (version := made.get("results_version")) != RESULTS_VERSION:
+            raise StudyError(
+                f"{folder} has results version {version}, and this code would add trainings of "
+                f"version {RESULTS_VERSION}; --out names another folder"
+            )
         return
     setting, hours = SETTINGS[algorithm], budget.flock_hours
     given = Training(algorithm, named, setting, seed, hours, *budget.together)
@@ -123,6 +131,7 @@ def make(algorithm: str, named: str, seed: int, budget: Budget, out: Path) -> No
     folder.mkdir(parents=True, exist_ok=True)
     policy.save(folder / ("policy.npz" if isinstance(policy, NetworkPolicy) else "model.zip"))
     made = {"setting": setting, "flock_hours": hours, "cpu_s": cpu_s, "commit": commit()}
+    made["results_version"] = RESULTS_VERSION
     (folder / "made.json").write_text(json.dumps(made))
     judge(policy, budget, folder / "orders.csv")
     print(f"{folder}: {cpu_s:.0f} s", flush=True)
@@ -190,11 +199,9 @@ def main(arguments: list[str] | None = None) -> None:
         for cell in cells:
             make(*cell, seed, budget, options.out)
         found = table(cells, budget.flock_hours, options.out)
-        found.to_csv(
-            options.out / f"grid-{budget.flock_hours:g}.csv", index=False, float_format="%.4g"
-        )
+        write_table(options.out / f"grid-{budget.flock_hours:g}.csv", found, "%.4g")
     print(found.to_string(index=False))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -16,9 +16,10 @@ import torch
 from torch import nn
 
 import flockenv
-from baselines.evolution_strategy import lean, next_generation
+from baselines.evolution_strategy import next_generation
 from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
+from studies.flocks import lean
 
 TASK: dict[str, Any] = {
     **lean("wide", 480.0),

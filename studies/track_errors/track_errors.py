@@ -22,6 +22,7 @@ import pandas as pd
 import flockenv
 from flockenv.statistics.structure import structure_series
 from flockenv.tracks import TrackLayout, read_tracks
+from studies.study import run, write_table
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
 LAYOUT = TrackLayout(pool="wide", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
@@ -104,11 +105,10 @@ def main() -> None:
             }
             rows.append({"camera": name, **errors})
     means = pd.DataFrame(rows).groupby("camera", sort=False).mean().reset_index()
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    means.to_csv(options.out, index=False, float_format="%.2g", lineterminator="\n")
+    write_table(options.out, means, "%.2g")
     print(means.to_string(index=False))
     print(f"written to {options.out}")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -52,8 +52,8 @@ import pandas as pd
 from flockenv import FlockParameters
 from flockenv.comparison import compare_leaders
 from flockenv.runs.seeds import release_seeds
-from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics import mean_interval, paired_difference, two_way_interval
+from studies.study import run, write_table
 
 LAWS = ("paper's law", "tuned law")
 
@@ -84,7 +84,7 @@ def judged(found: pd.DataFrame) -> pd.DataFrame:
         if name != "tuned law":
             gain = paired_difference(own, found["tuned law"])
             row |= {"gain": gain.mean, "gain_low": gain.low, "gain_high": gain.high}
-        rows.append(row | {"results_version": RESULTS_VERSION})
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -104,7 +104,7 @@ def algorithms(found: pd.DataFrame) -> pd.DataFrame:
         row |= {"lowest": means.min(), "highest": means.max(), "gain": own.to_numpy().mean()}
         if len(means) > 1:
             _, row["gain_low"], row["gain_high"] = two_way_interval(own.T)
-        rows.append(row | {"results_version": RESULTS_VERSION})
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
@@ -119,9 +119,9 @@ def main(arguments: list[str] | None = None) -> None:
     found = orders(options.folders, options.flocks)
     tables = {"evaluation": judged(found), "algorithms": algorithms(found)}
     for name, table in tables.items():
-        table.to_csv(options.out / f"{name}{options.suffix}.csv", index=False, float_format="%.4f")
+        write_table(options.out / f"{name}{options.suffix}.csv", table, "%.4f")
         print(table.round(3).to_string(index=False))
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -16,8 +16,8 @@ import pandas as pd
 import flockenv
 from flockenv.statistics.structure import jam_sizes
 from studies.claim import Claims, bca, judging, mean
+from studies.flocks import rotating
 from studies.section4.fig08 import slope
-from studies.starts import rotating
 from studies.study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
 from studies.transition.transition_runs import outer_radius_cm
 

@@ -262,7 +262,7 @@ def script(options: Options) -> None:
         draw_map(options, "transition_map", table, "stays {}")
         draw_map(options, "transition_map_second", second(table), "starts {},\nends so")
         lines = answers(found).to_csv(index=False)
-        write(options.folder / "results" / "transition_answers.csv", lines.encode())
+        write(options.folder / "answers.csv", lines.encode())
     if len(long):
         draw_long(options, long)
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import stats
 
 from flockenv.statistics.structure import jam_sizes
-from studies.starts import one_jam, rotating
+from studies.flocks import one_jam, rotating
 from studies.study import FIRST_SEED, Row, Study, flock
 
 RUNS, MORE_RUNS = 8, 24

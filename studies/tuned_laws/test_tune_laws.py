@@ -18,13 +18,14 @@ def test_it_keeps_every_candidate(script, tmp_path: Path, monkeypatch: pytest.Mo
         script.main([*TINY, "--generations", "2", "--out", str(tmp_path / name)])
     found, again = (pd.read_csv(tmp_path / name / "gains.csv") for name in ("one", "other"))
     pd.testing.assert_frame_equal(found, again)
-    assert list(found) == ["pool", "leaders", *script.RANGES, *judged]
+    assert list(found) == ["pool", "leaders", *script.RANGES, *judged, "results_version"]
     assert list(found["pool"]) == list(script.POOLS)
-    made = tomllib.loads((tmp_path / "one" / "made.toml").read_text())
+    made = tomllib.loads((tmp_path / "one" / "gains.toml").read_text())
     assert made["command"].startswith("python -m studies.tuned_laws.tune_laws --episodes 2")
     for pool, row in found.set_index("pool").iterrows():
         table = pd.read_csv(tmp_path / "one" / f"damped-law-{pool}-3.csv")
-        assert list(table) == ["generation", *script.RANGES, "signed_order", "search"]
+        columns = ["generation", *script.RANGES, "signed_order", "search", "results_version"]
+        assert list(table) == columns
         ends = table[table["generation"] == -1]
         candidates = table.drop(ends.index)
         assert list(ends["search"]) == [0, 1]

@@ -41,6 +41,7 @@ from flockenv.policies import DampedLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.statistics import mean_interval, paired_difference
+from studies.study import resumed, run, write_table
 
 #: Gains, each with the middle and the width (in factors of e) of the first generation.
 RANGES: dict[str, tuple[float, float]] = {
@@ -96,10 +97,9 @@ def tuned(pool: str, leaders: int, options: argparse.Namespace) -> dict[str, flo
     """Return the means of what the searches found, written with every candidate, or read again."""
     seeds = range(options.seed, options.seed + options.searches)
     path = options.out / f"damped-law-{pool}-{leaders}.csv"
-    if not path.exists():
-        found = pd.concat(search(pool, leaders, each, options) for each in seeds)
-        path.write_text(found.to_csv(index=False, lineterminator="\n"), encoding="utf-8")
-    tables = pd.read_csv(path)
+    if not len(tables := resumed(path)):
+        write_table(path, pd.concat(search(pool, leaders, s, options) for s in seeds), "%.17g")
+        tables = resumed(path)
     ends = tables.loc[tables["generation"] == -1, list(RANGES)]
     return law(np.log(ends).mean().to_numpy())
 
@@ -146,13 +146,13 @@ def main(arguments: list[str] | None = None) -> None:
             gains = tuned(pool, leaders, options)
             scores = judged(pool, leaders, gains, options.flocks)
             rows.append({"pool": pool, "leaders": leaders, **gains, **scores})
-            pd.DataFrame(rows).round(4).to_csv(options.out / "gains.csv", index=False)
+            write_table(options.out / "gains.csv", pd.DataFrame(rows).round(4), "%.6g")
     wall_s = time.perf_counter() - start
     provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
-    (options.out / "made.toml").write_text(tomli_w.dumps(provenance), encoding="utf-8")
+    (options.out / "gains.toml").write_text(tomli_w.dumps(provenance), encoding="utf-8")
     print(pd.DataFrame(rows).round(3).to_string(index=False))
     print(f"written to {options.out}")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -33,12 +33,27 @@ def test_the_gradient_is_that_of_the_clipped_objective(script):
         np.testing.assert_allclose(found, numeric, atol=1e-6)
 
 
+def test_flocks_of_a_group_differ_by_their_weights_alone(script):
+    small = {"groups": 2, "size": 3, "branch_s": 8, "judged_s": 4, "episode_s": 16}
+    branches = script.Branches(dataclasses.replace(script.Settings(), **small), seed=0)
+    weights = np.zeros((6, 30))
+    for _ in range(4):  # Two branches of an episode, a start at rest in between.
+        orders, seen = branches.branch(weights)
+        assert (orders[::2] == orders[0]).all()
+        assert (seen[:, ::2] == seen[:, :1]).all()
+        assert orders[0] != orders[1]
+    weights[4:, -1] = 1.0
+    others, _ = branches.branch(weights)
+    assert (others[4:] != others[:2]).all()
+    assert (others[2:4] == others[:2]).all()
+
+
 def test_it_learns_which_way_to_lean(script, monkeypatch: pytest.MonkeyPatch):
     class Known:
         """Branches whose order counts the lean that a bias adds."""
 
-        def __init__(self, settings, groups, seed, size) -> None:
-            self.flocks = groups * size
+        def __init__(self, settings, seed) -> None:
+            self.flocks = settings.groups * settings.size
 
         def branch(self, candidates):
             seen = np.zeros((3, self.flocks, 1, candidates.shape[1] - 1))

@@ -14,23 +14,23 @@ def small(script):
 
 
 def test_flocks_of_a_pair_differ_by_their_weights_alone(script, small):
-    pairs = script.Branches(small, 4, seed=0)
+    pairs = script.Pairs(small, seed=0)
     weights = np.zeros((8, 30))
     found = []
     for _ in range(4):  # Two branches of an episode, a start at rest in between.
-        orders, _ = pairs.branch(weights)
+        orders = pairs.branch(weights)
         assert (orders[:4] == orders[4:]).all()
         assert len(set(orders[:4])) == 4
         found.append(orders)
     weights[4:, -1] = 1.0
     assert (np.array(found)[1:] != np.array(found)[:-1]).all()
-    others, _ = pairs.branch(weights)
+    others = pairs.branch(weights)
     assert (others[:4] != others[4:]).all()
 
 
 def test_pairs_start_at_rest_in_turn(script, small):
-    pairs = script.Branches(small, 4, seed=0)
-    assert [pairs._had.tolist() for _ in range(2) if pairs.branch(np.zeros((8, 30)))[0].any()] == [
+    pairs = script.Pairs(small, seed=0)
+    assert [pairs._had.tolist() for _ in range(2) if pairs.branch(np.zeros((8, 30))).any()] == [
         [1, 2, 1, 2],
         [2, 1, 2, 1],
     ]

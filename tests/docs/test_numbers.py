@@ -93,8 +93,8 @@ RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_
 JAM = {"scene": "jam", "n": 27, **OURS}
 
 FREE = {"preset": "experiment", "n_leaders": 0, "minutes": 8.0}
-SECTION4 = "studies/section4/results/section4.csv"
-SECTION5 = "studies/section5/results/section5.csv"
+SECTION4 = "studies/section4/results/section4.csv.gz"
+SECTION5 = "studies/section5/results/section5.csv.gz"
 WIDE = {"pool": "wide", "n_leaders": 0}
 LOST = {"quantity": "critical bw (s), k = 0"}
 CURRENT = {"reading": "preset constants, narrow, n = 27"}

@@ -4,7 +4,6 @@ use flockenv::environment::observation::{Block, ObservationLayout, observe_flock
 use flockenv::parameters::FlockParameters;
 use flockenv::policies::{Law, LawName, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
-use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The paper's law at every substep, by the name that the command line has for it.
 pub(crate) const EVERY_SUBSTEP: &str = LawName::EverySubstep.name();
@@ -18,7 +17,7 @@ pub(crate) enum Leaders {
     EverySubstep,
     /// By a law, at every decision.
     Law(Pilot),
-    /// To the visitor's heading, by the damped law.
+    /// By the paper's law, but for leader 0, whose rudder is the visitor's.
     You(Pilot),
     /// Each by a law of its own, from what it observes.
     Each(Vec<Observing>),
@@ -44,12 +43,7 @@ impl Leaders {
             "you" if parameters.n_leaders == 0 => {
                 Err(refused(name, "at least one leader, whom you steer"))
             }
-            "you" => Pilot::new(
-                law(LawName::Damped.name(), parameters)?,
-                parameters,
-                CONTROL_HZ,
-            )
-            .map(Self::You),
+            "you" => Pilot::new(Law::Paper, parameters, CONTROL_HZ).map(Self::You),
             _ => Pilot::new(law(name, parameters)?, parameters, CONTROL_HZ).map(Self::Law),
         }
     }
@@ -72,8 +66,7 @@ impl Leaders {
         own.collect::<Result<_>>().map(Self::Each)
     }
 
-    /// The rudders from now on, given those until now; `None` for the law at every substep. `yours`: the heading that the
-    /// visitor asks of all leaders, clockwise from outward, over π.
+    /// The rudders from now on, given those until now; `None` for the law at every substep.
     ///
     /// # Errors
     /// As for [`Pilot::rudders`] and [`observe_flock`].
@@ -82,11 +75,9 @@ impl Leaders {
             Self::EverySubstep => Ok(None),
             Self::Law(pilot) => pilot.rudders(flock).map(Some),
             Self::You(pilot) => {
-                let targets = &flock.parameters().target;
-                let leaders = 0..flock.parameters().n_leaders;
-                // Clockwise of outward; a clockwise tangent is a quarter turn from there.
-                pilot.lean_to(leaders.map(|k| FRAC_PI_2 - targets.of(k).sign() * PI * yours));
-                pilot.rudders(flock).map(Some)
+                let mut rudders = pilot.rudders(flock)?;
+                rudders[0] = yours;
+                Ok(Some(rudders))
             }
             Self::Each(own) => {
                 let own = own.iter().enumerate();

@@ -1,10 +1,12 @@
-"""Flocks that start in order: all boats circulating, or all in one jam.
+"""Flocks of several studies: those that start in order, and those whose leaders lean.
 
-At a transition of first order both states last at one density, and where a run ends depends on
-where it started; a random start shows one of the two, or neither.
+Some start with all boats circulating, or with all in one jam. At a transition of first order both
+states last at one density, and where a run ends depends on where it started; a random start shows
+one of the two, or neither.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +20,25 @@ _STRETCH = 0.75
 """Largest part of the wall that the boats of one jam cover before they stand in several rows."""
 
 _ROOM = 1.001  # Distance of boats in a jam, over that at which their hulls touch.
+
+
+def lean(pool: str, episode_s: float) -> dict[str, Any]:
+    """Return the task of examples/train_leaders.py: three leaders lean about the tangent.
+
+    No lean is the tuned law. The reward is the order alone.
+    """
+    others = dict.fromkeys(("own", "phase", "target", "order"), False)
+    return {
+        "pool": pool,
+        "n_boats": 27,
+        "n_leaders": 3,
+        "bw_s": flockenv.FlockParameters.critical_bw_s("simulation", pool),
+        "observation": {**others, "neighbors": 0, "lean_features": True},
+        "action_mode": "lean",
+        "decision_period_s": 1.0,
+        "episode_s": episode_s,
+        "physics": "training",
+    }
 
 
 def rotating(parameters: flockenv.FlockParameters, seed: int) -> flockenv.Flock:
