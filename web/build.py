@@ -41,6 +41,7 @@ _OWN = (
     "core.mjs",
     "npz.mjs",
     "request.mjs",
+    "texts.mjs",
     "laws.mjs",
     "order_map.mjs",
     "lap_frame.mjs",
@@ -51,7 +52,10 @@ _OWN = (
     "controls.mjs",
     "simulator.mjs",
     "flocks.mjs",
-    "rudder.mjs",
+    "follow.mjs",
+    "helm.mjs",
+    "game.mjs",
+    "doing.mjs",
     "view.mjs",
     "playback.mjs",
     "live.mjs",
@@ -81,7 +85,8 @@ def constant(path: Path, name: str) -> str:
 def expected_orders() -> list[dict[str, object]]:
     """Return mean order against the backward duration, of the paper's leaderless flocks."""
     orders = defaultdict(list)
-    with (ROOT / "paper" / "results" / "section4.csv").open(encoding="utf-8") as file:
+    results = ROOT / "studies" / "section4" / "results" / "section4.csv"
+    with results.open(encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if row["preset"] == "experiment" and row["n_leaders"] == "0":
                 orders[float(row["bw_s"])].append(float(row["psi_o"]))
@@ -90,8 +95,9 @@ def expected_orders() -> list[dict[str, object]]:
 
 
 def bare(script: str) -> str:
-    """Return a script without the lines that are comments: a fifth of it."""
-    return re.sub(r"^[ \t]*(?://.*|/\*\*(?:.|\n)*?\*/)\n", "", script, flags=re.MULTILINE)
+    """Return a script without the lines that are comments and the indents: a quarter of it."""
+    code = re.sub(r"^[ \t]*(?://.*|/\*\*(?:.|\n)*?\*/)\n", "", script, flags=re.MULTILINE)
+    return re.sub(r"^[ \t]+", "", code, flags=re.MULTILINE)
 
 
 def page(compiled: bytes) -> str:

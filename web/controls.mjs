@@ -4,9 +4,9 @@ import { element, plain } from "../flockenv/replay/shared/words.mjs";
 import { YOU } from "./laws.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
-/** Parameter, words, least, most, step: the one that everybody needs, and more. */
+/** Parameter, words, least, most, step, and a unit to be read: the one that everybody needs, and more. */
 const SLIDERS = {
-  noise: [["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05]],
+  noise: [["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05, "seconds"]],
   sliders: [
     ["n_boats", "boats", 2, 300, 1],
     ["n_leaders", "leaders", 0, 8, 1],
@@ -44,7 +44,7 @@ export class Controls {
     Object.assign(this, { meanings, laws, change });
     const byId = (id) => document.getElementById(id);
     for (const [id, sliders] of Object.entries(SLIDERS)) {
-      byId(id).append(...sliders.map(([name, words, low, high, step]) => this.#slider(name, words, { low, high, step })));
+      byId(id).append(...sliders.map(([name, words, low, high, step, unit]) => this.#slider(name, words, { low, high, step, unit })));
     }
     const known = laws.ofAll.map((name) => [name, laws.words(name)]);
     const beside = known.filter(([name]) => name !== YOU).map(([name, words]) => [`leaders=${name}`, words]);
@@ -55,16 +55,17 @@ export class Controls {
     }
   }
 
-  #slider(name, words, { low, high, step }) {
+  #slider(name, words, { low, high, step, unit }) {
     const label = element("label");
     const [text, value, input] = [element("span", "", words), element("output"), element("input")];
     Object.assign(input, { type: "range", min: low, max: high, step, id: name, title: this.meanings[name] ?? "" });
+    input.setAttribute("aria-label", words.replace(/ \(.*/, ""));
     input.addEventListener("input", () => this.change(name, plain(Number(input.value)).replace("−", "-")));
     label.append(text, value, input);
     this.inputs.set(name, (shown) => {
       input.value = shown;
       value.textContent = plain(Number(shown));
-      input.setAttribute("aria-valuetext", value.textContent);
+      input.setAttribute("aria-valuetext", unit ? `${value.textContent} ${unit}` : value.textContent);
     });
     return label;
   }

@@ -62,8 +62,9 @@ export class Core {
     this.exports.close(flock);
   }
 
-  steer(flock, rudder) {
-    this.#done(this.exports.steer(flock, rudder));
+  /** Keeps the heading that the visitor asks for. */
+  steer(flock, heading) {
+    this.#done(this.exports.steer(flock, heading));
   }
 
   /** Takes up to so many samples within so much work; returns how many. */

@@ -1,18 +1,24 @@
-// The flocks that are shown, one or two: what is asked of the simulator, and what it answers.
+// The flocks that are shown, and those beside them: what is asked of the simulator, and what it answers.
 
 import { opposedTargets } from "./controls.mjs";
 import { GrowingRun } from "./growing_run.mjs";
 import { Laws, YOU } from "./laws.mjs";
-import { requestsOf, textOf } from "./request.mjs";
+import { differences, LATEST, requestsOf, textOf, withChange } from "./request.mjs";
 
 /** Samples per second. */
 const SAMPLING = 10;
+/** Seconds after the start that a map leaves out: boats start at random and at rest. */
+const SETTLING = 30;
+/** How many changes on the way a link holds. */
+const MOST_CHANGES = 200;
+/** The number of no boat. */
+export const NO_BOAT = 1e6;
 /** Fields whose change makes another flock of a map's. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
 /** What is wanted after a change of one field. `values`: those of the parameters now; `laws`: those that there are. */
 export function changed(base, values, laws, name, value) {
-  const wanted = { flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
+  const wanted = { ...base, flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
   if (name === "beside") {
     const [field, different] = value.split("=");
@@ -45,11 +51,12 @@ export function changed(base, values, laws, name, value) {
   return wanted;
 }
 
-/** Two flocks are called by what distinguishes them. */
-function distinguished(described) {
+/** Flocks beside each other are called by what distinguishes them. */
+function distinguished(described, copies) {
   const parts = described.map(({ name }) => name.split(", "));
-  const place = parts.length > 1 && parts[0][0] === parts[1][0] ? 1 : 0;
-  return parts.length === 1 ? described : described.map((each, k) => ({ ...each, name: parts[k][place] ?? each.name }));
+  const isPair = parts.length > copies;
+  const place = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
+  return described.map((each, k) => ({ ...each, name: isPair ? parts[k][place] ?? each.name : each.name }));
 }
 
 export class Flocks {
@@ -57,6 +64,8 @@ export class Flocks {
   /** What was last asked for, and what the runs are. */
   asked = null;
   shown = null;
+  /** What the flocks started as, from when on their means count, and what changed on the way. */
+  past = { first: null, start: 0, changes: [] };
   /** The first flock's parameters, as links have them. */
   values = {};
   /** What a map of order shows together. */
@@ -72,21 +81,46 @@ export class Flocks {
     return !this.isRecorded && this.shown?.flock.leaders === YOU;
   }
 
+  /** Those that are seen: of a visitor's flocks not the ones that the law leads beside them. */
+  get seen() {
+    return this.areYours ? this.runs.slice(0, this.shown.copies) : this.runs;
+  }
+
+  /** Where the second kind of flock starts. */
+  get besides() {
+    return this.isRecorded ? 1 : this.shown.copies;
+  }
+
+  /** What a link needs for the flocks at a time; more changes than it holds are left out. */
+  linked(time = 0) {
+    const { first, start, changes } = this.past;
+    const isWhole = changes.length <= MOST_CHANGES && changes.every((each) => each.time <= LATEST);
+    const flocks = isWhole ? { ...first, changes } : this.shown;
+    const latest = isWhole ? changes.at(-1)?.time ?? 0 : 0;
+    const other = {
+      ...(start > latest && { start: String(start) }),
+      ...(time > Math.max(start, latest) && time <= LATEST && { now: String(time) }),
+      ...(first.copies > 1 && { flocks: String(first.copies) }),
+    };
+    return { ...flocks, other, isWhole };
+  }
+
   get policy() {
     return this.shown.flock.leaders ?? this.laws.atEverySubstep;
   }
 
   /** Has the simulator open or change the flocks; returns whether they continue from where they were. */
-  async become(wanted, kind, aheadSeconds = 0) {
+  async become(wanted, kind) {
     // What is changed meanwhile is changed of this.
     this.asked = wanted;
-    const question = { requests: requestsOf(wanted, this.kinds), ahead: SAMPLING * aheadSeconds };
-    const { continues, values, taken } = await this.simulator.ask(kind, question).catch((error) => {
+    const requests = requestsOf(wanted, this.kinds);
+    const { continues, values, taken } = await this.simulator.ask(kind, { requests }).catch((error) => {
       this.asked = this.shown;
       throw error;
     });
-    const described = distinguished(values.map((each, place) => this.#describe(each, wanted, place)));
+    const described = distinguished(values.map((each, place) => this.#describe(each, wanted, place, requests[place].seed)), wanted.copies);
     const isSame = continues && described.every(({ boats }, place) => this.runs[place]?.boats === boats);
+    const before = this.shown;
     this.shown = wanted;
     this.values = described[0].parameters;
     this.signature = JSON.stringify(Object.entries(this.values).filter(([name]) => !NOT_ON_MAP.has(name)));
@@ -96,11 +130,46 @@ export class Flocks {
     } else {
       this.runs = described.map((each) => new GrowingRun(each, this.series));
     }
-    taken.forEach((each, place) => { this.runs[place].append(each); });
-    if (aheadSeconds > 0) {
-      this.runs.forEach((run) => { run.countAnew(); });
-    }
+    this.append(taken);
+    const end = Number(this.runs[0].end.toFixed(1));
+    this.past = isSame ? { ...this.past, start: end, changes: withChange(this.past.changes, end, differences(before.flock, wanted.flock)) } :
+      { first: wanted, start: 0, changes: [] };
     return isSame;
+  }
+
+  /** Lets the flocks run for up to so many samples, within some time; returns what the simulator says. */
+  async advance(question, onCycle) {
+    const { runs } = this;
+    const said = await this.simulator.ask("advance", question);
+    // The flocks may have become others meanwhile.
+    if (runs === this.runs) {
+      this.append(said.taken, onCycle);
+    }
+    return said;
+  }
+
+  append(taken, onCycle = () => {}) {
+    taken.forEach((each, place) => {
+      this.runs[place].append(each, place === 0 && this.runs[0].end > SETTLING ? (order) => onCycle(this.runs[0].bw_s, order) : undefined);
+    });
+  }
+
+  /** Lets the flocks run to a time, in s, as long as that is wanted and no others take their place. */
+  async runTo(time, isWanted) {
+    const { runs } = this;
+    for (;;) {
+      const samples = Math.round(SAMPLING * (time - runs[0].end));
+      if (samples <= 0 || runs !== this.runs || !isWanted()) {
+        return;
+      }
+      await this.advance({ samples, milliseconds: 200, boat: NO_BOAT, heading: 0 });
+    }
+  }
+
+  /** Means of the flocks count from now on. */
+  countAnew() {
+    this.past.start = Number(this.runs[0].end.toFixed(1));
+    this.runs.forEach((run) => { run.countAnew(); });
   }
 
   /** Shows a recording's run in place of them. */
@@ -110,13 +179,13 @@ export class Flocks {
     this.isRecorded = true;
   }
 
-  #describe(answer, wanted, place) {
-    const fields = place === 0 ? wanted.flock : { ...wanted.flock, ...wanted.beside };
+  #describe(answer, wanted, place, seed = "0") {
+    const fields = place < wanted.copies ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = answer.parameters.n_leaders;
     const policy = fields.leaders ?? this.laws.atEverySubstep;
     const steering = policy.includes(",") ? "each its own" : this.laws.words(policy);
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
-    return this.described(answer, { name, seed: fields.seed ?? "0", version: this.version });
+    return this.described(answer, { name, seed, version: this.version });
   }
 
   /** What runs and panels know of a flock, from the simulator's answer. */

@@ -11,15 +11,12 @@ const OPENING_WORDS = {
 
 const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=16&start=180&speed=8";
 const OPPOSED = "#lesson=opposed&n_boats=27&n_leaders=4&bw_s=0.3&seed=2&speed=16";
-/** How long the flock of the lesson that is a game is steered, in s. */
-export const GAME_SECONDS = 120;
-
 export const LESSONS = [
   {
     name: "steer",
-    title: "Steer one yourself",
-    link: "#lesson=steer&preset=experiment&n_boats=9&n_leaders=1&bw_s=1&seed=3&leaders=you&beside.leaders=paper's law at every substep&speed=4",
-    before: "You steer the ringed boat with ← and →. Goal: turn the others blue, and in two minutes beat the law that knows the paper.",
+    title: "Lead them yourself",
+    link: "#lesson=steer&pool=narrow&n_boats=12&n_leaders=4&bw_s=0.2&seed=1&flocks=3&leaders=you&beside.leaders=paper's law at every substep&speed=8",
+    before: "You turn the ringed boats of three flocks. Goal: more blue boats in five minutes than the paper's law gets. Start: ← or →, or the slider.",
     after: "A leader has no power but its bumps: it leads by being in the way.",
   },
   {
@@ -40,15 +37,15 @@ export const LESSONS = [
     name: "learned",
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=14&beside.leaders=learned&speed=16",
-    before: "Left, four leaders follow the paper's law. Right, they learned by trial and error where to head.",
+    before: "Four leaders by the paper's law, and beside them four that learned by trial and error where to head.",
     after: "Over 256 flocks at 0.31 s the learned leaders reach 0.60, the law 0.38.",
   },
   {
     name: "forces",
     title: "Contacts",
-    link: "#lesson=forces&preset=experiment&n_boats=27&n_leaders=3&bw_s=0.4&seed=1&start=89&speed=1&forces=1",
-    before: "Each bar is a push, where a boat touches another or a wall. Nothing else aligns the flock.",
-    after: "Touch a boat for its numbers, and a ringed one for all that a leader observes.",
+    link: "#lesson=forces&preset=experiment&n_boats=27&n_leaders=3&bw_s=0.4&seed=1&start=89&paused=1&speed=1&forces=1",
+    before: "Motors drive forward, and each bar is a push by a boat or a wall. Nothing else aligns the flock. Play to go on.",
+    after: "Bars grow with the push, then wider. Touch a boat for its numbers, a ringed one for what a leader observes.",
   },
   {
     name: "opposed",
@@ -58,6 +55,16 @@ export const LESSONS = [
     after: "Two against two, chance decides; three against one, most flocks follow the three.",
   },
 ];
+
+/** A link to each lesson. */
+export function lessonLinks() {
+  return LESSONS.map(({ name, title, link }) => {
+    const anchor = element("a", "", title);
+    anchor.href = link;
+    anchor.dataset.lesson = name;
+    return anchor;
+  });
+}
 
 /** The words of a lesson by its name, or those of the opening. */
 export function wordsOf(name) {

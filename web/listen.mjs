@@ -2,6 +2,7 @@
 
 import { colors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { linkOf } from "./follow.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
 
 /** Has a page do what a visitor asks for. */
@@ -86,7 +87,9 @@ function files(page) {
 }
 
 async function copy(page, button) {
-  const text = button.dataset.copies === "address" ? location.href : byId(button.dataset.copies).value;
+  const { copies } = button.dataset;
+  const link = copies === "address" && !page.recorded ? linkOf(page.flocks, page.other, page.time) : location.hash;
+  const text = copies === "address" ? new URL(link, location.href).href : byId(copies).value;
   try {
     await navigator.clipboard.writeText(text);
     page.say("Copied.");

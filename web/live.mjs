@@ -2,48 +2,48 @@
 
 import { LinkWriter } from "../flockenv/replay/shared/link.mjs";
 import { colorKey } from "../flockenv/replay/shared/panel.mjs";
-import { byId, element } from "../flockenv/replay/shared/words.mjs";
+import { byId } from "../flockenv/replay/shared/words.mjs";
 import { Controls } from "./controls.mjs";
 import { changed, Flocks } from "./flocks.mjs";
-import { LESSONS } from "./lessons.mjs";
+import { follow, linkOf } from "./follow.mjs";
+import { Helm } from "./helm.mjs";
+import { lessonLinks } from "./lessons.mjs";
 import { Playback } from "./playback.mjs";
-import { linkTo, readLink, SPEEDS } from "./request.mjs";
-import { Rudder } from "./rudder.mjs";
+import { readLink, SPEEDS } from "./request.mjs";
 import { showTexts } from "./share.mjs";
-import { View } from "./view.mjs";
+import { quantitiesOf, View } from "./view.mjs";
+
+/** After how long, in ms, the page says that a flock runs ahead. */
+const LONG = 500;
 
 export class LivePage {
   /** What the link holds besides the flocks. */
   other = { speed: "8" };
-  /** What a change asks for that waits for the one before. */
-  wanted = null;
+  /** Names and values that wait for the change before. */
+  wanted = [];
   changing = false;
   broken = false;
-  #link = new LinkWriter(() => (this.flocks.isRecorded ? null : linkTo({ ...this.flocks.shown, other: this.other })));
+  /** The link that is followed now: a later one takes its place; and whether it asks for a picture that does not move. */
+  followed = 0;
+  isHeld = false;
+  link = new LinkWriter(() => (this.flocks.isRecorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
 
   constructor(simulator, about, described) {
     this.simulator = simulator;
     this.about = about;
     this.entries = described.entries;
     this.kinds = Object.fromEntries(described.fields.map(({ name, kind }) => [name, kind]));
-    this.quantities = described.quantities.filter(({ kind }) => kind !== "structure").map(({ name, label, symbol, ...rest }) => ({
-      ...rest, key: name, decimals: 2, words: label.replace(/^[^,]*/, (word) => `${word} ${symbol}`.trim()).replace("_o", "ₒ"),
-    }));
+    this.quantities = quantitiesOf(described);
     const series = this.quantities.map(({ key }) => key);
     this.flocks = new Flocks(simulator, { kinds: this.kinds, laws: described.laws, series, phases: described.phases, version: about.version });
     this.view = new View(this.flocks, this, about.orders, (time) => this.seek(time));
-    this.hand = new Rudder(byId("thumb"), () => this.flocks.areYours);
     this.playback = new Playback(this);
+    this.hand = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());
     const meanings = Object.fromEntries(described.fields.map(({ name, meaning, accepted }) => [name, `${meaning} Accepted: ${accepted}`]));
     this.controls = new Controls(meanings, this.flocks.laws, (name, value) => this.set(name, value));
     byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
     byId("color-key").append(...colorKey());
-    byId("lessons").append(...LESSONS.map(({ name, title, link }) => {
-      const anchor = element("a", "", title);
-      Object.assign(anchor, { href: link });
-      anchor.dataset.lesson = name;
-      return anchor;
-    }));
+    byId("lessons").append(...lessonLinks());
   }
 
   get runs() {
@@ -68,72 +68,78 @@ export class LivePage {
 
   /** Shows what a link asks for. */
   async follow(fragment) {
+    const [turn, asked] = [this.followed + 1, performance.now()];
+    this.followed = turn;
+    const isWanted = () => {
+      if (performance.now() - asked > LONG) {
+        this.say("The flock runs ahead to the moment of the link.");
+      }
+      return turn === this.followed;
+    };
+    this.changing = true;
     const linked = readLink(fragment, Object.keys(this.kinds));
-    const words = [...linked.ignored];
-    const { start = "0", ...other } = linked.other;
+    this.#showOther(linked.other);
+    await this.attempt(() => follow(this.flocks, linked, isWanted));
+    if (isWanted() && !this.broken) {
+      this.changing = false;
+      this.#shows("open", false);
+      this.say(linked.ignored.join(" "));
+      await this.#change();
+    }
+  }
+
+  /** What a link says besides the flocks. */
+  #showOther({ start: _, now: __, flocks: ___, paused, ...other }) {
     this.other = { speed: "8", ...other };
+    this.isHeld = paused === "1";
+    if (this.isHeld) {
+      this.playback.transport.pause();
+    }
     byId("speed").value = this.other.speed;
     byId("forces").checked = this.other.forces === "1";
     byId("colors").value = this.other.colors ?? "direction";
     this.view.pinned = this.other.boat === undefined ? null : Number(this.other.boat);
     this.view.tell(this.other.lesson ?? "");
-    const wanted = { flock: linked.flock, beside: linked.beside };
-    // What the simulator refuses is left out, one parameter after another.
-    for (let tries = 0; tries < 40; tries += 1) {
-      try {
-        await this.#become(wanted, "open", words, Number(start));
-        return;
-      } catch (error) {
-        if (!error.refused) {
-          this.#stop(error);
-          return;
-        }
-        words.push(`The link asks for what cannot be: ${error.message}.`);
-        const held = [wanted.flock, wanted.beside ?? {}].filter((fields) => Object.hasOwn(fields, error.field));
-        if (held.length === 0) {
-          Object.assign(wanted, { flock: {}, beside: null });
-        }
-        for (const fields of held) {
-          delete fields[error.field];
-        }
-      }
-    }
   }
 
   /** Changes one parameter, from where the flock is if that is possible. */
   set(name, value) {
-    this.wanted = changed(this.wanted ?? this.flocks.asked, this.flocks.values, this.flocks.laws, name, value);
+    this.wanted = [...this.wanted.filter(([each]) => each !== name), [name, value]];
     this.#change();
   }
 
   /** Starts again, with this seed. */
   async restart(seed = this.flocks.asked.flock.seed) {
+    this.followed += 1;
+    this.changing = false;
     const flock = { ...this.flocks.asked.flock, ...(seed !== undefined && { seed }) };
-    await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open", []));
+    await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open"));
   }
 
-  /** Starts again, with a new thread where the old one stopped. */
+  /** Starts again, with a new thread where the old one stopped; a game with the next round's flocks, if one is over. */
   async again() {
     if (this.broken) {
       this.broken = false;
       await this.attempt(() => this.simulator.start());
     }
     if (!this.broken) {
-      await this.restart();
+      const { seed = "0" } = this.flocks.asked.flock;
+      await this.restart(this.playback.isOver ? String(BigInt(seed) + BigInt(this.flocks.besides)) : undefined);
     }
   }
 
-  /** One change after another, the last of those that came meanwhile. */
+  /** One change after another, of what was wanted meanwhile the last. */
   async #change() {
     if (this.changing) {
       return;
     }
     this.changing = true;
-    while (this.wanted) {
-      const wanted = this.wanted;
-      this.wanted = null;
-      const alike = JSON.stringify(wanted.beside) === JSON.stringify(this.flocks.asked.beside);
-      await this.attempt(() => this.#become(wanted, alike && !this.flocks.isRecorded ? "change" : "open", []));
+    while (this.wanted.length > 0) {
+      const { asked, isRecorded, laws, values } = this.flocks;
+      const wanted = this.wanted.reduce((base, [name, value]) => changed(base, values, laws, name, value), asked);
+      this.wanted = [];
+      const isAlike = !isRecorded && JSON.stringify(wanted.beside) === JSON.stringify(asked.beside);
+      await this.attempt(() => this.#become(wanted, isAlike ? "change" : "open"));
     }
     this.changing = false;
   }
@@ -153,34 +159,28 @@ export class LivePage {
   }
 
   /** Has the simulator open or change the flocks, and shows them. */
-  async #become(wanted, kind, words, aheadSeconds = 0) {
-    const hadFlock = this.flocks.shown !== null;
-    const isSame = await this.flocks.become(wanted, kind, aheadSeconds);
+  async #become(wanted, kind) {
+    this.#shows(kind, await this.flocks.become(wanted, kind));
+  }
+
+  /** Shows the flocks after an answer of this kind, and says whether they continue. */
+  #shows(kind, isSame) {
     if (!isSame) {
       this.playback.restart();
     }
-    if (hadFlock && kind === "change") {
-      words.push(isSame ? "The flock continues from where it is." : "The flock starts again: it cannot continue with this change.");
-    }
     this.showRuns();
-    this.say(words.join(" "));
-    this.#link.write();
+    const continued = isSame ? "The flock continues from where it is." : "The flock starts again: it cannot continue with this change.";
+    this.say(kind === "change" ? continued : "");
+    this.link.write();
   }
 
   /** Shows the runs that there are now. */
   showRuns() {
     this.view.rebuild((boat) => this.pin(boat), () => this.show());
-    if (this.flocks.areYours) {
-      this.view.pinned = 0;
-    }
     const { pinned } = this.view;
     this.pin(pinned !== null && pinned < this.runs[0].boats ? pinned : null);
     this.controls.show(this.flocks.controlled);
-    for (const link of byId("story").querySelectorAll("a")) {
-      const { flock } = readLink(link.hash, Object.keys(this.kinds));
-      link.setAttribute("aria-current", String(Object.entries(flock).every(([name, value]) => this.shown.flock[name] === value)));
-    }
-    showTexts(this.flocks);
+    showTexts(this.flocks, this.time);
   }
 
   say(words) {
@@ -223,7 +223,7 @@ export class LivePage {
     } else {
       this.other[name] = value;
     }
-    this.#link.write();
+    this.link.write();
     this.show();
   }
 

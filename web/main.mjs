@@ -3,7 +3,10 @@
 import { OPENING } from "./lessons.mjs";
 import { listen } from "./listen.mjs";
 import { LivePage } from "./live.mjs";
+import { PAUSED } from "./playback.mjs";
 import { Simulator } from "./simulator.mjs";
+
+const text = (id) => document.getElementById(id).textContent;
 
 async function start() {
   for (const needed of ["Worker", "WebAssembly", "DecompressionStream"]) {
@@ -11,7 +14,6 @@ async function start() {
       throw new Error(`this browser has no ${needed}, in which the simulator runs`);
     }
   }
-  const text = (id) => document.getElementById(id).textContent;
   const packed = Uint8Array.from(atob(text("wasm")), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const simulator = new Simulator(text("thread"), await new Response(stream).arrayBuffer());
@@ -24,7 +26,9 @@ async function start() {
   listen(window.page);
   await window.page.follow(location.hash.length > 1 ? location.hash : about.opening ?? OPENING);
   document.body.dataset.ready = "true";
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    window.page.say(text("status") || PAUSED);
+  } else if (!window.page.isHeld) {
     window.page.toggle();
   }
 }

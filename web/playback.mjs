@@ -1,21 +1,21 @@
 // The clock of the page: flocks that go on while it plays, and a game that ends.
 
 import { Transport } from "../flockenv/replay/shared/transport.mjs";
-import { fixed } from "../flockenv/replay/shared/words.mjs";
-import { GAME_SECONDS } from "./lessons.mjs";
-import { verdict } from "./rudder.mjs";
+import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { NO_BOAT } from "./flocks.mjs";
+import { Game, scoreOf } from "./game.mjs";
 
-/** How long the simulator may compute for one frame, in ms, and after how long it is called slow. */
-const [FRAME_WORK, SLOW] = [12, 1000];
-/** Seconds after the start that the map leaves out: boats start at random and at rest. */
-const SETTLING = 30;
-/** The number of no boat. */
-const NO_BOAT = 1e6;
+/** How long the simulator may compute for one frame, in ms, and after how long it is called slow; its first answer takes longer. */
+const [FRAME_WORK, SLOW, SLOW_AT_FIRST] = [12, 1000, 8000];
+
+/** Where the system asks for less motion. */
+export const PAUSED = "Paused, since your system asks for less motion: the button or the space bar plays.";
 
 export class Playback {
   time = 0;
   advancing = false;
   costs = { frames: 0, drawing: 0, simulating: 0, memory: 0 };
+  game = new Game();
   #page;
   #rate = { since: 0, passed: 0, words: "" };
   #isOver = false;
@@ -23,23 +23,47 @@ export class Playback {
   /** `page`: what is played, and says what there is to say. */
   constructor(page) {
     this.#page = page;
-    this.transport = new Transport(document.getElementById("play"), (passed, now) => this.#tick(passed, now));
+    this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
   }
 
   /** Other flocks, at their present. */
   restart() {
-    this.time = this.#page.runs[0].end;
+    const { flocks, hand, view } = this.#page;
+    this.time = flocks.runs[0].end;
     this.#isOver = false;
+    if (flocks.areYours) {
+      hand.center();
+      this.game.play(flocks.shown.flock);
+      view.rounds = this.game.words;
+    }
+  }
+
+  /** The hand was moved: a game that waits for it starts. */
+  start() {
+    if (this.#page.flocks.areYours && !this.#isOver && !this.transport.playing) {
+      this.toggle();
+    }
+  }
+
+  /** Whether a round of the game is over. */
+  get isOver() {
+    return this.#isOver;
   }
 
   toggle() {
     const { broken, flocks, runs, simulator } = this.#page;
-    if (this.transport.playing && simulator.waiting > SLOW) {
+    if (this.transport.playing && this.#isSlow(simulator)) {
       simulator.stop("you stopped it in the middle of a step");
     } else if (this.transport.playing) {
       this.transport.pause();
+      this.#page.link.write();
       this.show();
+    } else if (this.#isOver) {
+      this.#page.again().then(() => this.transport.play());
     } else if (!broken) {
+      if (byId("status").textContent === PAUSED) {
+        this.#page.say("");
+      }
       if (flocks.isRecorded && this.time >= runs[0].end) {
         this.time = runs[0].time[0];
       }
@@ -55,7 +79,10 @@ export class Playback {
   }
 
   #tick(passed, now) {
-    const { flocks, other } = this.#page;
+    const { changing, flocks, other } = this.#page;
+    if (changing) {
+      return;
+    }
     const speed = other.speed === "max" ? Infinity : Number(other.speed);
     const { end } = flocks.runs[0];
     const from = this.time;
@@ -72,28 +99,26 @@ export class Playback {
     this.show(now);
   }
 
+  #isSlow({ waiting }) {
+    return waiting > (this.costs.simulating > 0 ? SLOW : SLOW_AT_FIRST);
+  }
+
   /** Has the simulator take some more samples, unless it is at work already. */
   async #advance(samples) {
-    const { hand, runs, simulator, view } = this.#page;
-    if (simulator.waiting > SLOW) {
+    const { flocks, hand, simulator, view } = this.#page;
+    if (this.#isSlow(simulator)) {
       this.#page.say("The simulator is busy with one step: pause stops it.");
     }
     if (this.advancing || this.#page.changing || samples <= 0) {
       return;
     }
     this.advancing = true;
-    const question = { samples, milliseconds: FRAME_WORK, boat: view.pinned ?? NO_BOAT, rudder: hand.value };
+    const question = { samples, milliseconds: FRAME_WORK, boat: view.pinned ?? NO_BOAT, heading: hand.value };
     await this.#page.attempt(async () => {
-      const { taken, milliseconds, memory } = await simulator.ask("advance", question);
+      const { taken, milliseconds, memory } = await flocks.advance(question, (noise, order) => view.map.note(noise, order));
       this.costs.simulating += milliseconds;
       this.costs.memory = memory;
-      // The flocks may have become others meanwhile.
-      if (runs === this.#page.runs) {
-        taken.forEach((each, place) => {
-          runs[place].append(each, place === 0 && runs[0].end > SETTLING ? (order) => view.map.note(runs[0].bw_s, order) : undefined);
-        });
-        view.observed = taken[0].observation;
-      }
+      view.observed = taken[0].observation;
       if (!this.transport.playing) {
         this.show();
       }
@@ -101,20 +126,18 @@ export class Playback {
     this.advancing = false;
   }
 
-  /** Whether the lesson that is a game ends, between two answers of the simulator. */
+  /** Whether a round of the game ends, between two answers of the simulator. */
   #judge() {
-    const { flocks, other } = this.#page;
-    const [yours, law] = flocks.runs;
-    if (other.lesson !== "steer" || !flocks.areYours || this.#isOver || this.advancing) {
+    const { flocks, other, view } = this.#page;
+    if (other.lesson !== "steer" || !flocks.areYours || this.#isOver || this.advancing || !Game.isOver(this.time)) {
       return false;
     }
-    const words = verdict(yours.mean("signed_order"), law.mean("signed_order"), this.time, GAME_SECONDS);
-    if (words) {
-      this.#isOver = true;
-      this.transport.pause();
-      this.#page.say(`${words} “Again” starts another round.`);
-    }
-    return words !== null;
+    const { runs, besides } = flocks;
+    this.#isOver = true;
+    this.transport.pause();
+    this.#page.say(this.game.end(scoreOf(runs.slice(0, besides)), scoreOf(runs.slice(besides))));
+    view.rounds = this.game.words;
+    return true;
   }
 
   /** Counts frames, and what of time passed in them. */
@@ -129,7 +152,8 @@ export class Playback {
 
   show(now = performance.now()) {
     const { flocks, view } = this.#page;
-    if (flocks.runs.length > 0) {
+    // Flocks that have not started yet have no pictures.
+    if (view.panels.length > 0) {
       const start = performance.now();
       const isPlaying = this.transport.playing;
       view.show(this.time, { now, isPlaying, rate: isPlaying && !flocks.isRecorded ? this.#rate.words : "" });

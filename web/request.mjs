@@ -2,13 +2,19 @@
 
 import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
 
+/** How far a link may go ahead, in s. */
+export const LATEST = 7200;
+const isTime = (text) => /^\d{1,4}(?:\.\d)?$/.test(text) && Number(text) <= LATEST;
 /** What else than parameters of flocks a link may hold: accepted values, in words and as a test. */
 export const OTHER = {
   speed: ["one of 1, 2, 4, 8, 16, 32, 64 and max", (text) => SPEEDS.includes(text)],
   boat: ["the number of a boat", (text) => /^\d{1,3}$/.test(text)],
   forces: ["0 or 1", (text) => /^[01]$/.test(text)],
   colors: ["direction or role", (text) => ["direction", "role"].includes(text)],
-  start: ["a whole number of seconds up to 600", (text) => /^\d{1,3}$/.test(text) && Number(text) <= 600],
+  start: [`a number of seconds up to ${LATEST}`, isTime],
+  now: [`a number of seconds up to ${LATEST}`, isTime],
+  paused: ["0 or 1", (text) => /^[01]$/.test(text)],
+  flocks: ["1, 2 or 3", (text) => /^[123]$/.test(text)],
   lesson: ["a word", (text) => /^[a-z-]{1,20}$/.test(text)],
 };
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
@@ -18,18 +24,21 @@ const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
 const STRINGS = ["preset", "seed", "leaders"];
 /** Of the second flock: what of it differs from the first. */
 const BESIDE = "beside.";
+/** Of a change on the way: when, and what is another from then on; nothing for the preset's own. */
+const CHANGE = /^at\.(\d{1,4}(?:\.\d)?)\.(.+)$/;
 
 /**
- * What a fragment asks for: `flock` and `beside` (null: none) hold parameters by name, `other` the rest, and
- * `ignored` a sentence for each part that cannot be followed.
+ * What a fragment asks for: `flock` and `beside` (null: none) hold parameters by name, `changes` what changes of the
+ * flock on the way, `other` the rest, and `ignored` a sentence for each part that cannot be followed.
  */
 export function readLink(fragment, fields) {
-  const wanted = { flock: {}, beside: null, other: {}, ignored: [] };
+  const wanted = { flock: {}, beside: null, changes: [], other: {}, ignored: [] };
   const refuse = (key, text, why) => wanted.ignored.push(ignoredPart(key, text, why));
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
     const isBeside = key.startsWith(BESIDE);
-    const name = isBeside ? key.slice(BESIDE.length) : key;
-    if (!isBeside && Object.hasOwn(OTHER, name)) {
+    const [, time, changed] = CHANGE.exec(key) ?? [];
+    const name = changed ?? (isBeside ? key.slice(BESIDE.length) : key);
+    if (name === key && Object.hasOwn(OTHER, name)) {
       const [words, isAccepted] = OTHER[name];
       if (isAccepted(text)) {
         wanted.other[name] = text;
@@ -38,8 +47,12 @@ export function readLink(fragment, fields) {
       }
     } else if (![...STRINGS, ...fields].includes(name) || /[\n\r]/.test(text)) {
       refuse(key, text, "this page knows no such parameter");
-    } else if (Object.hasOwn(LIMITS, name) && !isWithin(LIMITS[name], text)) {
+    } else if (time !== undefined && !isTime(time)) {
+      refuse(key, text, `a change comes by ${LATEST} s`);
+    } else if (Object.hasOwn(LIMITS, name) && !isWithin(LIMITS[name], text) && !(changed && text === "")) {
       refuse(key, text, `${name} is ${LIMITS[name].join(" to ")} on this page`);
+    } else if (changed) {
+      wanted.changes = withChange(wanted.changes, Number(time), { [name]: text });
     } else if (isBeside) {
       wanted.beside = { ...wanted.beside, [name]: text };
     } else {
@@ -49,14 +62,33 @@ export function readLink(fragment, fields) {
   return wanted;
 }
 
+/** Changes with one more, in their order; those of one time are one. */
+export function withChange(changes, time, fields) {
+  const before = changes.filter((each) => each.time < time);
+  const same = changes.find((each) => each.time === time);
+  return [...before, { time, fields: { ...same?.fields, ...fields } }, ...changes.filter((each) => each.time > time)];
+}
+
+/** What is other in a flock than before, as changes have it. */
+export function differences(before, after) {
+  const names = new Set([...Object.keys(before), ...Object.keys(after)]);
+  return Object.fromEntries([...names].filter((name) => before[name] !== after[name]).map((name) => [name, after[name] ?? ""]));
+}
+
+/** A flock after a change. */
+export function changedFlock(flock, fields) {
+  return Object.fromEntries(Object.entries({ ...flock, ...fields }).filter(([, value]) => value !== ""));
+}
+
 function isWithin([low, high], text) {
   const value = text.trim() === "" ? NaN : Number(text);
   return value >= low && value <= high;
 }
 
-/** The fragment for what is shown. */
-export function linkTo({ flock, beside, other }) {
+/** The fragment for flocks, what changed of them on the way, and what else is shown. */
+export function linkTo({ flock, beside, changes = [], other }) {
   const pairs = [...Object.entries(flock), ...Object.entries(beside ?? {}).map(([name, value]) => [BESIDE + name, value]),
+    ...changes.flatMap(({ time, fields }) => Object.entries(fields).map(([name, value]) => [`at.${time}.${name}`, value])),
     ...Object.entries(other)];
   return `#${new URLSearchParams(pairs).toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
 }
@@ -97,72 +129,19 @@ export function requestOf(flock, kinds) {
   return request;
 }
 
-/** The simulator's requests for the flocks that are shown, one or two. */
-export function requestsOf({ flock, beside }, kinds) {
-  return [flock, ...(beside ? [{ ...flock, ...beside }] : [])].map((each) => requestOf(each, kinds));
+/** The simulator's requests for the flocks that are shown: each of so many seeds, and then those beside them. */
+export function requestsOf({ flock, beside, copies = 1 }, kinds) {
+  const kindsOfFlock = [flock, ...(beside ? [{ ...flock, ...beside }] : [])];
+  return kindsOfFlock.flatMap((each) => Array.from({ length: copies }, (_, copy) => requestOf({ ...each, ...seedOf(each, copy) }, kinds)));
 }
 
-const isOwn = (name) => !STRINGS.includes(name);
-
-/** The command that simulates a flock, for so many seconds. */
-export function commandLine(flock, seconds) {
-  const words = ["flockenv run"];
-  if (flock.preset) {
-    words.push(`--preset ${flock.preset}`);
-  }
-  for (const [name, value] of Object.entries(flock).filter(([name]) => isOwn(name))) {
-    const isList = value.includes(",") || value.includes(";");
-    words.push(`--set ${isList ? `'${name}=${listed(value)}'` : `${name}=${value}`}`);
-  }
-  const { leaders = "" } = flock;
-  words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
-  // A flock whose leaders have policies of their own is no command.
-  return leaders.includes(",") ? "" : words.join(" ");
+/** The seed of a copy of a flock. What is no seed stays, for the simulator to refuse. */
+function seedOf({ seed = "0" }, copy) {
+  return copy > 0 && /^\d+$/.test(seed) ? { seed: String(BigInt(seed) + BigInt(copy)) } : {};
 }
 
-/** A list as TOML has it; a row of numbers that ends in a semicolon is one of several. */
-function listed(value) {
-  if (value.includes(";")) {
-    return `[${value.split(";").filter(Boolean).map(listed).join(", ")}]`;
-  }
-  return `[${value.split(",").join(", ")}]`;
-}
-
-/** The same in Python, for one flock or two. `kinds`: what kind of value each field has. */
-export function pythonText(flocks, seconds, kinds) {
-  return ["import flockenv", ...flocks.map((flock, place) => simulation(flock, seconds, kinds, place > 0 ? "beside" : "recording")), ""].join("\n");
-}
-
-function simulation(flock, seconds, kinds, name) {
-  const changes = Object.entries(flock).filter(([name]) => isOwn(name))
-    .map(([name, value]) => `${name}=${pythonValue(value, kinds[name])}`);
-  const { leaders = "" } = flock;
-  const each = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
-  const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
-  const policy = leaders ? `, policy=${steering}` : "";
-  return [
-    "",
-    `parameters = flockenv.FlockParameters.preset("${flock.preset ?? "simulation"}")${changes.length > 0 ? `.replace(\n    ${changes.join(", ")}\n)` : ""}`,
-    `${name} = flockenv.simulate(parameters, seed=${flock.seed ?? 0}, duration_s=${seconds}${policy})`,
-  ].join("\n");
-}
-
-function pythonValue(text, kind) {
-  const number = (each) => (/inf/i.test(each) ? 'float("inf")' : each.trim());
-  if (kind === "flag") {
-    return text === "true" ? "True" : "False";
-  }
-  if (kind === "count" || kind === "real") {
-    return text;
-  }
-  if (kind === "rows") {
-    return `(${text.split(";").filter(Boolean).map((row) => `(${row.split(",").map(number).join(", ")}), `).join("").trim()})`;
-  }
-  if (kind === "pool" && text.includes(",")) {
-    return `(${text.split(",").map(number).join(", ")})`;
-  }
-  return text.includes(",") ? `[${text.split(",").map((each) => `"${each}"`).join(", ")}]` : `"${text}"`;
-}
+/** Whether a field of a flock is one of its parameters. */
+export const isOwn = (name) => !STRINGS.includes(name);
 
 /** Parameters as TOML, a line each: what JSON and TOML write alike, and infinity. */
 export function tomlOf(values) {

@@ -4,9 +4,10 @@ import { GrowingRun } from "./growing_run.mjs";
 import { YOU } from "./laws.mjs";
 import { array, readNpz, writeNpz } from "./npz.mjs";
 import { checkedArrays } from "./recording.mjs";
-import { commandLine, pythonText, tomlOf, valuesOfToml } from "./request.mjs";
+import { tomlOf, valuesOfToml } from "./request.mjs";
+import { commandLine, isSchedule, pythonText } from "./texts.mjs";
 
-/** How long the commands that show the same flock run, in s. */
+/** How long the commands that show the same flock run at least, in s. */
 const SECONDS = 480;
 
 /**
@@ -93,20 +94,27 @@ export function derivedOf(arrays, { target, boats }, names) {
   return { names, recorded, states, samples, sign: target === "ccw" ? -1 : 1 };
 }
 
-/** Writes the same flocks as commands and in Python. */
-export function showTexts({ shown, kinds }) {
-  const isYours = shown.flock.leaders === YOU;
-  const { leaders: _, ...lawful } = shown.flock;
-  const flocks = [isYours ? lawful : shown.flock];
-  if (shown.beside && !isYours) {
-    flocks.push({ ...shown.flock, ...shown.beside });
+/** Writes the flocks at a time as commands and in Python. */
+export function showTexts(flocks, time) {
+  const { first, changes } = flocks.past;
+  const isTold = isSchedule(changes);
+  const told = isTold ? changes : [];
+  const { flock, beside } = isTold ? first : flocks.shown;
+  const isYours = flock.leaders === YOU;
+  const { leaders: _, ...lawful } = flock;
+  const texts = [isYours ? lawful : flock];
+  if (beside && !isYours) {
+    texts.push({ ...flock, ...beside });
   }
-  const commands = flocks.map((each) => commandLine(each, SECONDS));
+  const seconds = Math.max(SECONDS, 60 * Math.ceil((time + 1) / 60));
+  const commands = texts.map((each) => commandLine(each, seconds, told));
   const byId = (id) => document.getElementById(id);
   byId("command").value = commands.join("\n").trim();
-  byId("python").value = pythonText(flocks, SECONDS, kinds);
+  byId("python").value = pythonText(texts, seconds, flocks.kinds, told);
   byId("same").textContent = [
-    isYours ? "Your own rudders are in the recording alone: these run the law in your place." : "",
-    commands.includes("") ? "No command gives each leader a policy of its own, as Python does." : "",
+    isYours ? "How you steered is in the recording alone: these run the law in your place. " : "",
+    commands.includes("") ? "No command gives each leader a policy of its own, as Python does. " : "",
+    isTold ? "" : "These start as the flock is now: the link alone knows how leaders or the preset changed on the way. ",
+    flocks.linked().isWhole ? "" : "So much changed on the way that the link holds the parameters of now alone. ",
   ].join("");
 }

@@ -4,9 +4,12 @@ import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
 import { colors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
+import { doing } from "./doing.mjs";
+import { ROUND_SECONDS, scoreOf } from "./game.mjs";
 import { drawLapFrame } from "./lap_frame.mjs";
 import { storyOf, wordsOf } from "./lessons.mjs";
 import { OrderMap } from "./order_map.mjs";
+import { readLink } from "./request.mjs";
 
 const CHARTS = ["psi_o", "rotation", "signed_order"];
 /** Seconds of the charts before and after the present. */
@@ -15,8 +18,17 @@ const REACH = 60;
 const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
 /** How often, in ms, words and numbers that nobody reads faster are written. */
 const WORDS_EVERY = 250;
+/** How often, in ms, what the flocks do is said to those who do not see it. */
+const TELL_EVERY = 5000;
 /** Force, in cm/s², that a bar as long as a hull is wide stands for. */
 const FORCE = 20;
+
+/** The quantities that the simulator describes, as charts and tables have them. */
+export function quantitiesOf({ quantities }) {
+  return quantities.filter(({ kind }) => kind !== "structure").map(({ name, label, symbol, ...rest }) => ({
+    ...rest, key: name, decimals: 2, words: label.replace(/^[^,]*/, (word) => `${word} ${symbol}`.trim()).replace("_o", "ₒ"),
+  }));
+}
 
 export class View {
   panels = [];
@@ -26,11 +38,16 @@ export class View {
   hovered = null;
   /** What the pinned leader observes. */
   observed = null;
+  /** What there is to say of the rounds of a game. */
+  rounds = "";
   #flocks;
   #quantities;
   #entries;
   #charts;
+  /** Where means are written: under each picture, and of a game under all of them. */
+  #scores = [];
   #worded = -Infinity;
+  #told = -Infinity;
 
   /** `orders`: expected curves of the map; `seek`: goes to a time. */
   constructor(flocks, { quantities, entries }, orders, seek) {
@@ -57,25 +74,31 @@ export class View {
 
   /** Pictures of other runs. `pin`: keeps a boat's numbers, or lets them go. */
   rebuild(pin, redraw) {
-    const { runs, areYours, isRecorded, shown } = this.#flocks;
-    const isPair = runs.length > 1;
+    const { runs, seen, besides, areYours, isRecorded, shown } = this.#flocks;
+    const isPair = seen.length === 2 && besides === 1;
     document.body.classList.toggle("you", areYours);
-    document.body.classList.toggle("pair", isPair && !areYours);
+    document.body.classList.toggle("pair", isPair);
+    document.body.classList.toggle("many", seen.length > 1 && !isPair);
     document.body.classList.toggle("recorded", isRecorded);
-    this.panels = runs.map((run, place) => new Panel(run, place, isPair));
+    this.panels = seen.map((run, place) => new Panel(run, place, isPair));
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; redraw(); }, (boat) => pin(boat === this.pinned ? null : boat));
-      panel.root.append(element("p", "so-far"));
     }
-    byId("runs").replaceChildren(...(isPair ? [runSwitch(runs, redraw)] : []), ...this.panels.map(({ root }) => root));
+    this.#scores = isPair || !areYours ? this.panels.map(({ root }) => root.appendChild(element("p", "so-far"))) : [element("p", "so-far")];
+    byId("runs").replaceChildren(...(isPair ? [runSwitch(runs, redraw)] : []), ...this.panels.map(({ root }) => root),
+      ...(areYours ? this.#scores : []));
     for (const [chart] of this.#charts) {
-      chart.runs = runs;
+      chart.runs = [runs[0], ...runs.slice(besides, besides + 1)];
     }
     byId("signed").hidden = runs.every(({ target }) => target === null);
     this.map.expect(isRecorded ? null : shown.flock, this.#flocks.signature);
     const kept = (boat, leaders) => new Option(boat < leaders ? `${boat}, leader` : boat, boat);
     byId("boat").replaceChildren(new Option("none", ""), ...Array.from({ length: runs[0].boats }, (_, k) => kept(k, runs[0].leaders)));
     byId("parameters").replaceChildren(parameterTable(runs));
+    for (const link of byId("story").querySelectorAll("a")) {
+      const { flock } = readLink(link.hash, Object.keys(this.#flocks.kinds));
+      link.setAttribute("aria-current", String(Object.entries(flock).every(([name, value]) => shown.flock[name] === value)));
+    }
   }
 
   /** Draws the flocks at a time, and now and then writes what else is said of them. */
@@ -111,21 +134,48 @@ export class View {
     byId("clock").textContent = rate || `${fixed(time, 1)} s`;
     Object.assign(byId("scrub"), { min: runs[0].time[0], max: runs[0].end, value: time });
     byId("scrub").setAttribute("aria-valuetext", `${fixed(time, 1)} s`);
-    for (const [, key] of this.#charts) {
-      byId(key).previousElementSibling.replaceChildren(...legendOf(runs, this.#quantity(key), time));
+    for (const [chart, key] of this.#charts) {
+      byId(key).previousElementSibling.replaceChildren(...legendOf(chart.runs, this.#quantity(key), time));
     }
-    this.panels.forEach(({ root, run }, place) => {
-      const yours = this.#flocks.areYours && place === 0 ? runs : [run];
-      root.querySelector(".so-far").replaceChildren(...yours.flatMap((each, k) => this.#mean(each, k)));
-    });
+    this.#scores.forEach((score, place) => { score.replaceChildren(...this.#score(place, time)); });
+    this.#tellWhatIsDone(time);
     this.#showObserved();
   }
 
-  /** The mean so far, large; of a game both. */
-  #mean(run, place) {
-    const key = run.target === null ? "psi_o" : "signed_order";
-    const words = this.#flocks.areYours ? ["you ", " · the law "][place] : `mean ${this.#quantity(key).words} so far `;
-    return [element("span", "faint", words), element("b", "", fixed(run.mean(key), 2, key === "signed_order"))];
+  /** The mean so far, large; of a pair both, of which a wide window shows that of its own pool, and of a game both. */
+  #score(place, time) {
+    const { areYours, besides, runs, seen } = this.#flocks;
+    const line = (words, value, className = "") => {
+      const part = element("span", className);
+      part.append(element("span", "faint", words), element("b", "", value));
+      return part;
+    };
+    const signed = (value) => fixed(value, 2, true);
+    if (areYours) {
+      const [yours, law] = [runs.slice(0, besides), runs.slice(besides)].map((each) => signed(scoreOf(each)));
+      const isGame = byId("story").dataset.lesson === "steer";
+      const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
+      return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
+    }
+    const mean = (run) => (run.target === null ? fixed(run.mean("psi_o"), 2) : signed(run.mean("signed_order")));
+    const words = (run) => `mean ${this.#quantity(run.target === null ? "psi_o" : "signed_order").words} so far `;
+    if (!document.body.classList.contains("pair")) {
+      return [line(words(seen[place]), mean(seen[place]))];
+    }
+    return [line(words(seen[place]), mean(seen[place]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each"))];
+  }
+
+  /** What the flocks do, for those who do not see it: the pictures' names, and a sentence that is read now and then. */
+  #tellWhatIsDone(time) {
+    const told = this.panels.map(({ canvas, run }) => {
+      const words = doing(run, run.sampleAt(time), this.palette);
+      canvas.setAttribute("aria-label", words);
+      return this.panels.length > 1 ? `${run.name}: ${words}` : words;
+    }).join(" ");
+    if (told !== byId("doing").textContent && performance.now() - this.#told > TELL_EVERY) {
+      this.#told = performance.now();
+      byId("doing").textContent = told;
+    }
   }
 
   #showObserved() {

@@ -7,9 +7,6 @@ const WORK = 20_000;
 /** Samples of one flock before the next flock's turn. */
 const TURN = 4;
 
-/** The number of no boat. */
-const NO_BOAT = 1e6;
-
 let core = null;
 let shown = [];
 
@@ -39,13 +36,9 @@ export const ANSWERS = {
     return { series: Float64Array.from(rows.flat()) };
   },
 
-  /** Starts all flocks again, and lets them run for so many samples. */
-  open({ requests, ahead = 0 }) {
+  /** Starts all flocks again. */
+  open({ requests }) {
     const values = opened(requests);
-    for (const flock of shown.keys()) {
-      advanced(flock, ahead);
-      core.look(flock, NO_BOAT);
-    }
     return { continues: false, values, taken: taken(requests.length) };
   },
 
@@ -64,9 +57,11 @@ export const ANSWERS = {
   },
 
   /** Takes samples of all flocks, up to so many within so many milliseconds. */
-  advance({ samples, milliseconds, boat, rudder }) {
+  advance({ samples, milliseconds, boat, heading }) {
     const start = performance.now();
-    core.steer(0, rudder);
+    for (const flock of shown.keys()) {
+      core.steer(flock, heading);
+    }
     for (let left = samples; left > 0 && performance.now() - start < milliseconds; left -= TURN) {
       for (const flock of shown.keys()) {
         advanced(flock, Math.min(TURN, left));

@@ -17,8 +17,8 @@ _MOST_BYTES = 16 << 30
 _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
-def _most_bytes(size: int) -> int:
-    """Return what all arrays of a file of so many bytes may hold together.
+def most_held(size: int) -> int:
+    """Return how many bytes a file of so many may hold together.
 
     Numbers of runs take a tenth at best if they are compressed, and zeros a thousandth.
     """
@@ -36,7 +36,7 @@ def write_arrays(
     with atomic_write(path) as file:
         if compressed:
             np.savez_compressed(file, allow_pickle=False, **dict(arrays))
-        if not compressed or held > _most_bytes(file.tell()):
+        if not compressed or held > most_held(file.tell()):
             file.seek(0)
             file.truncate()
             np.savez(file, allow_pickle=False, **dict(arrays))
@@ -52,7 +52,7 @@ def read_arrays(
     than 64 MiB only in a file that is a hundredth of it.
     """
     with open_plain(path) as file:
-        most = _most_bytes(os.fstat(file.fileno()).st_size) if most_bytes is None else most_bytes
+        most = most_bytes or most_held(os.fstat(file.fileno()).st_size)
         try:
             with zipfile.ZipFile(file) as archive:
                 held = sum(entry.file_size for entry in archive.infolist())

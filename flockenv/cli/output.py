@@ -46,15 +46,15 @@ def load_recording(
     one that is guessed from its columns, and what is to be checked in it is printed. A
     ParameterError names a file that cannot be read, is damaged, or neither.
     """
-    from flockenv.tracks import SUFFIXES, guess_layout, read_layout, read_tracks
+    from flockenv.tracks import check_ending, description_of, guess_layout, read_layout, read_tracks
 
-    if layout is None and path.suffix.lower() not in SUFFIXES:
+    if layout is None and path.suffix.lower() == ".npz":
         try:
             return Recording.load(path)
         except OSError as error:
             raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
-    beside = path.with_suffix(".toml")
-    if layout is None and path.exists() and not beside.exists():
+    check_ending(path)
+    if layout is None and not (beside := description_of(path)).exists():
         checks = guess_layout(path)
         say(f"{printable(path)} has no description; {printable(beside)} is a guess:", errors)
         for line in checks:

@@ -1,17 +1,19 @@
 """`flockenv run`."""
 
 import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
+from typing import Any
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, say
 from flockenv.cli.options import TRUST, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
-from flockenv.cli.parameters import OneFlock
+from flockenv.cli.parameters import OneFlock, changed_fields
 from flockenv.cli.progress import progress
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, shown
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import POLICIES, POOL_POLICIES, quoted
 from flockenv.simulation import simulate
@@ -33,6 +35,12 @@ class RunOptions(OneFlock, Overwriting, Printing):
     seed: int = option(0, "Seed of placement and noise.", min=0)
     minutes: float = option(8.0, "Length of the run.", min=0.0)
     hz: float = option(10.0, "Samples per second.")
+    at: list[str] | None = option(
+        None,
+        "Another value from this time in s on, as in 60:bw_s=0.6; repeatable.",
+        "--at",
+        metavar="TIME:FIELD=VALUE",
+    )
     contacts: bool = option(True, "Record contact forces too.", "--contacts/--no-contacts")
     out: Path | None = option(None, "The recording. [results/run.npz, numbered if that exists]")
 
@@ -63,6 +71,7 @@ def run(options: RunOptions) -> None:
             policy,
             contacts=options.contacts,
             progress=advance,
+            schedule=_schedule(options.at or ()),
         )
     recording.save(out)
     policy_name = printable(options.policy)
@@ -76,6 +85,21 @@ def run(options: RunOptions) -> None:
     say(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(recording)}")
     say(f"Written to {out} and {beside}")
     say(f"See it: {shlex.join(['flockenv', 'replay', str(out)])}")
+
+
+def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
+    """Return what changes on the way, from texts ``TIME:FIELD=VALUE``."""
+    changes = []
+    for text in texts:
+        time_s, colon, change = text.partition(":")
+        try:
+            changes.append(
+                (float(time_s if colon else "no time"), changed_fields([change], "--at"))
+            )
+        except ValueError as error:
+            accepted = "TIME:FIELD=VALUE, as in 60:bw_s=0.6"
+            raise ParameterError(f"--at {shown(text)} is not accepted: {accepted}") from error
+    return changes
 
 
 def _free(path: Path) -> Path:

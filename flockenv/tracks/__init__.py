@@ -2,10 +2,10 @@
 
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.guess import guess_layout
-from flockenv.tracks.layout import TrackLayout, read_layout
+from flockenv.tracks.layout import TrackLayout, description_of, read_layout
 from flockenv.tracks.reader import read_tracks
 from flockenv.tracks.report import TrackReport
-from flockenv.tracks.table import SUFFIXES
+from flockenv.tracks.table import SUFFIXES, check_ending
 from flockenv.tracks.writer import EXPORTS, export
 
 __all__ = [
@@ -13,6 +13,8 @@ __all__ = [
     "SUFFIXES",
     "TrackLayout",
     "TrackReport",
+    "check_ending",
+    "description_of",
     "export",
     "guess_layout",
     "read_layout",

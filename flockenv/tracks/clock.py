@@ -1,6 +1,5 @@
-"""Times of tracks: seconds from whatever a column holds, clocks that go back, and frames."""
+"""Times of tracks: seconds from whatever a column holds, and frames."""
 
-import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,25 +7,28 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, shown
+from flockenv.tracks.formats import plain
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.table import Floats, column, numbers
+from flockenv.tracks.table import Floats, Table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_STEPS_S = (1e-4, 10.0)
-"""Steps between samples of anything that swims or drives."""
+PER_S = {"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e3, "us": 1e6, "µs": 1e6}
+PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
+"""Units of time by their names in headers, per second."""
 
 
-def times_of(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
-    """Return the column of times as it counts, from its least: frames, or s if it has a type."""
-    pandas, found = require("pandas", "plot"), column(table, layout.frame)
-    times = _typed(pandas, found)
-    if times is None:
-        times = numbers(table, layout.frame, layout)
-        _check_kind(times, layout)
-    elif layout.fps is not None:
+def times_of(table: Table, layout: TrackLayout) -> Floats:
+    """Return the times in s, from the least."""
+    found = table.column(layout.frame)
+    times = _typed(require("pandas", "plot"), found)
+    if times is not None and layout.fps is not None:
         raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
+    if times is None:
+        times = table.numbers(layout.frame, layout)
+        _check_kind(times, layout)
+        times = times / (layout.fps or 1.0)
     if not np.isfinite(times).all():
         line = found.index[~np.isfinite(times)][0]
         raise ParameterError(
@@ -61,52 +63,27 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
 
 def _check_kind(times: Floats, layout: TrackLayout) -> None:
     """Refuse frame numbers that would count as seconds, and seconds as frame numbers."""
-    steps = np.diff(np.unique(times[np.isfinite(times)]))
+    stamps = np.unique(times[np.isfinite(times)])
+    steps = np.diff(stamps)
     if not len(steps):
         return
-    is_whole = (times == np.rint(times)).all()
-    counts = re.search("frame|step|image|index|idx|sample|number", layout.frame.lower())
-    if layout.fps is None and is_whole and counts:
+    is_whole = bool((stamps == np.rint(stamps)).all())
+    # Steps of 12 may be seconds if the name says so, and 0, 1, 2 are frames whatever it says.
+    name, unit = plain(layout.frame)
+    says_s = PER_S.get(unit or name) == 1.0 and steps.min() > 1.0
+    if layout.fps is None and is_whole and not says_s:
         raise ParameterError(
             f"fps is missing: column {layout.frame!r} holds whole numbers (fps = 1 if it counts s)"
         )
-    if layout.fps is not None and not is_whole and np.median(steps) < 0.5:
+    if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
             f"{np.median(steps):.4g}, which are no frames: leave fps out if it holds times in s"
         )
 
 
-def check_order(rows: "pd.DataFrame", layout: TrackLayout) -> None:
-    """Refuse rows, of which `time` is in s and in the order of the file, whose clock goes back."""
-    steps = rows.groupby("id", sort=False)["time"].diff()
-    if (steps < 0.0).any():
-        place = int((steps < 0.0).to_numpy().argmax())
-        _refuse_order(rows, place, f"of {rows['id'].iloc[place]!r} go")
-    # Blocks of several boats each, one after another, are films too, though no name is in both.
-    back = rows["time"].diff() < 0.0
-    blocks = rows["time"].groupby(back.cumsum().to_numpy())
-    if (blocks.size() >= 1.5 * blocks.nunique()).sum() > 1:
-        _refuse_order(rows, int(back.to_numpy().argmax()), "go")
-    typical = steps[steps > 0.0].median()
-    if typical < _STEPS_S[0] or typical > _STEPS_S[1]:
-        raise ParameterError(
-            f"a boat's samples are {typical:.3g} s apart (median), and {_STEPS_S[0]:g} to "
-            f"{_STEPS_S[1]:g} s are accepted: are times in s? fps is the number of units of column "
-            f"{layout.frame!r} in a second"
-        )
-
-
-def _refuse_order(rows: "pd.DataFrame", place: int, whose: str) -> None:
-    raise ParameterError(
-        f"times {whose} back to {rows['time'].iloc[place]:g} s after the start in "
-        f"{rows.index.name} {rows.index[place]}: were there two films, or was the clock set back? "
-        "Give each film a table of its own, in the order of time"
-    )
-
-
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
-    """Return the frame of each row.
+    """Return the frame of each row, of rows in the order of time.
 
     Rows of one time are one frame. Where each boat has time stamps of its own, a frame lasts until
     one of its boats is seen again, and less than the boats' own step.
@@ -118,11 +95,9 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
         return frames
     if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
         return frames
-    order = np.argsort(rows["time"].to_numpy(), kind="stable")
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
     within, number, start, there = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
-    for place in order:
-        name, time = names[place], times[place]
+    for place, (name, time) in enumerate(zip(names, times, strict=True)):
         # A row that is there twice is in one frame, and one without a name is nobody's.
         if there.get(name, time) < time or time - start > within:
             number, start, there = number + 1, time, {}

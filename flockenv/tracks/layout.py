@@ -37,23 +37,23 @@ def _among(*values: Any) -> Rule:
 
 
 _COLUMN = "the name of a column"
+_Columns = str | tuple[str, ...]
 _Heading = str | tuple[str, str, str, str] | None
 _KINDS: dict[Any, Rule] = {
     str: (_is_name, _COLUMN),
-    str | None: (lambda value: value is None or _is_name(value), _COLUMN),
-    str | tuple[str, ...]: (
+    _Columns: (
         lambda value: _is_name(value) or (value != () and _are(_is_name, value)),
-        f"{_COLUMN}, or a list of them",
-    ),
-    str | tuple[str, ...] | None: (
-        lambda value: value is None or _is_name(value) or (value != () and _are(_is_name, value)),
         f"{_COLUMN}, or a list of them",
     ),
     bool: (lambda value: isinstance(value, bool), "true or false"),
     int: (lambda value: type(value) is int and 0 <= value <= 1000, "a number of lines up to 1000"),
     float: (_is_positive, "a positive number"),
-    float | None: (lambda value: value is None or _is_positive(value), "a positive number"),
     tuple[float, float]: (lambda value: _are(_is_number, value, 2), "two numbers"),
+    tuple[str, str]: (lambda value: _are(_is_name, value, 2), "the columns of width and height"),
+    tuple[str, str, str, str]: (
+        lambda value: _are(_is_name, value, 4),
+        "the columns x, y, z and w of a quaternion",
+    ),
     tuple[str, ...]: (
         lambda value: _are(lambda each: isinstance(each, str), value),
         "a list of names",
@@ -68,9 +68,14 @@ _KINDS: dict[Any, Rule] = {
     ),
     Literal["rad", "deg", "turn"]: _among("rad", "deg", "turn"),
     Literal["right", "up", "left", "down"]: _among("right", "up", "left", "down"),
-    Literal["cw", "ccw"] | None: _among("cw", "ccw", None),
+    Literal["cw", "ccw"]: _among("cw", "ccw"),
     Literal[",", ";", "\t", " ", "|"]: _among(",", ";", "\t", " ", "|"),
     Literal[".", ","]: _among(".", ","),
+}
+_KINDS |= {
+    kind | None: (lambda value, holds=holds: value is None or holds(value), words)
+    for kind, (holds, words) in _KINDS.items()
+    if kind != _Heading
 }
 """What fields of a layout take, by their annotation; of the others FlockParameters says it."""
 
@@ -80,8 +85,9 @@ class TrackLayout:
     r"""How tracks lie in a table with one row per frame and animal, robot or boat.
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
-    boat's name: ``x = "x{id}"`` takes x1, x2 and so on. A ParameterError refuses a value out of
-    range or of another kind.
+    boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
+    columns such as ``nose_x``, and what is left out here is found by their names. A ParameterError
+    refuses a value out of range or of another kind.
 
     Attributes
     ----------
@@ -91,17 +97,24 @@ class TrackLayout:
         Names of the leaders.
     frame : str
         Column of frame numbers, or of times in s if `fps` is None. Dates, clock times and
-        durations are converted.
+        durations are converted. Rows may be in any order.
     fps : float or None
-        Units of that column per second: frames, or 1000 if it counts ms.
+        Units of that column per second: frames, 1000 if it counts ms, 1/60 if it counts minutes.
+        Whole numbers need it: 1 if they count s.
     id : str or None
-        Column of names; None if the table has one boat, or names its boats in its columns.
+        Column of names; None if the table has one boat, or names its boats in its columns. A column
+        in which no row has a name is of one boat.
     x, y : str or tuple of str
         Column of the center, or several whose mean it is.
+    box : tuple of two str, or None
+        Columns of width and height, if x and y are the least corner of a box around the boat.
     heading : str, or tuple of four str, or None
         Column of headings; or the columns x, y of the tail and x, y of the head, two key points
         that the heading joins; or None for the direction of motion: wrong for robots that are
         pushed sideways.
+    quaternion : tuple of four str, or None
+        Columns x, y, z and w of a turn, of which z is about the vertical, in place of `heading`; of
+        a system in which y is up, the columns x, z, y and w.
     heading_unit : str
         "rad", "deg" or "turn", a full turn.
     heading_zero : str
@@ -114,8 +127,8 @@ class TrackLayout:
         which a boat mostly moves, so it must not move backward for longer than forward.
     wrapped : bool
         Whether headings are within a full turn.
-    cm_per_unit : float
-        Length in cm of a unit in the file, such as a pixel.
+    cm_per_unit : float or None
+        Length in cm of a unit in the file, such as a pixel. None: 1, or what a dataset says.
     center : tuple of float
         Center of the pool in units of the file.
     y_down : bool
@@ -131,9 +144,12 @@ class TrackLayout:
     missing : tuple of str
         Further texts and numbers that stand for a missing value.
     separator, decimal : str
-        Of a CSV file: ",", ";", "\\t", " " or "|", and "." or ",".
+        Of a text file: ",", ";", "\\t", " " or "|", and "." or ",". None: a tab in a file that ends
+        in .tsv, a comma otherwise.
     skip : int
-        Lines before the header of a CSV file.
+        Lines before the header of a text file.
+    header : tuple of str
+        Names of the columns of a text file without a header.
     """
 
     pool: Any
@@ -143,19 +159,21 @@ class TrackLayout:
     frame: str = "frame"
     fps: float | None = None
     id: str | None = "id"
-    x: str | tuple[str, ...] = "x"
-    y: str | tuple[str, ...] = "y"
+    x: _Columns = "x"
+    y: _Columns = "y"
+    box: tuple[str, str] | None = None
     heading: _Heading = "heading"
+    quaternion: tuple[str, str, str, str] | None = None
     heading_unit: Literal["rad", "deg", "turn"] = "rad"
     heading_zero: Literal["right", "up", "left", "down"] = "right"
     heading_turns: Literal["cw", "ccw"] | None = None
     axis: bool = False
     wrapped: bool = True
-    cm_per_unit: float = 1.0
+    cm_per_unit: float | None = None
     center: tuple[float, float] = (0.0, 0.0)
     y_down: bool = False
     max_speed_cm_s: float = 200.0
-    confidence: str | tuple[str, ...] | None = None
+    confidence: _Columns | None = None
     least_confidence: float | None = None
     unassigned: tuple[str, ...] = (
         *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
@@ -163,9 +181,10 @@ class TrackLayout:
     )
     lost: tuple[tuple[float, float], ...] = ()
     missing: tuple[str, ...] = ()
-    separator: Literal[",", ";", "\t", " ", "|"] = ","
+    separator: Literal[",", ";", "\t", " ", "|"] | None = None
     decimal: Literal[".", ","] = "."
     skip: int = 0
+    header: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -196,19 +215,33 @@ class TrackLayout:
     @property
     def is_wide(self) -> bool:
         """Whether the table has one row per frame, with boats beside each other."""
-        return isinstance(self.x, str) and "{id}" in self.x
+        return "{id}" in columns_of(self.x)[0]
+
+    @property
+    def scale(self) -> float:
+        """Length in cm of a unit."""
+        return self.cm_per_unit or 1.0
+
+    @property
+    def columns(self) -> dict[str, tuple[str, ...]]:
+        """The columns of each field but those of times and names."""
+        heading = self.heading if self.quaternion is None else None
+        of_boats = {"x": self.x, "y": self.y, "box": self.box, "heading": heading}
+        of_boats |= {"quaternion": self.quaternion, "confidence": self.confidence}
+        return {name: columns_of(value) for name, value in of_boats.items()}
 
 
-def columns_of(value: str | tuple[str, ...] | None) -> tuple[str, ...]:
+def columns_of(value: _Columns | None) -> tuple[str, ...]:
     """Return the names in a field that takes none, one or several."""
     return (value,) if isinstance(value, str) else value or ()
 
 
-def beside(path: Path) -> Path:
+def description_of(path: Path) -> Path:
     """Return where the description of a table is, if it is no other."""
     if not path.name:
         raise ParameterError(f"{os.fspath(path)!r} is the name of no table")
-    return path.with_suffix(".toml")
+    bare = path.with_suffix("") if path.suffix.lower() == ".gz" else path
+    return bare.with_suffix(".toml")
 
 
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
@@ -221,7 +254,7 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
         refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
-        none = {name: None for name in ("id", "heading") if values.get(name) == ""}
+        none = {name: None for name in ("id", "heading", "separator") if values.get(name) == ""}
         return TrackLayout(**{**values, **none})
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error

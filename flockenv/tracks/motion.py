@@ -95,11 +95,14 @@ class Motion:
                 f"{layout.max_speed_cm_s:g}: do cm_per_unit, fps and times fit this table, and "
                 "is it one film?"
             )
-        if isinstance(layout.heading, str):
+        is_angle = len(layout.columns["heading"]) == 1
+        if is_angle:
             self._check_unit(pose, layout)
         jumps = (np.abs(np.diff(pose[..., 2], axis=0)) > _AXIS_JUMP * np.pi) & steps
-        may_be_axes = isinstance(layout.heading, str) and not layout.axis
-        if may_be_axes and jumps.sum() >= 3 and _is_half(pose[..., 2]):
+        may_be_axes = is_angle and not layout.axis and jumps.sum() >= 3 and _is_half(pose[..., 2])
+        if may_be_axes and self.cosine(_with(pose, bows_of(pose[..., 2], self))) > self.cosine(
+            pose
+        ):
             raise ParameterError(
                 "headings lie within half a turn and jump from one end of it to the other: set "
                 "axis = true if they are axes without a bow, as of ellipses"
@@ -108,19 +111,23 @@ class Motion:
     def _check_unit(self, pose: Floats, layout: TrackLayout) -> None:
         """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
         turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
-        whole, other = TURN[layout.heading_unit], pose.copy()
+        whole = TURN[layout.heading_unit]
         for unit, turn in TURN.items():
             # A full turn of the smaller unit, and headings over more than half of one.
             least = TURN["rad"] * turn / whole
             if turn >= whole or np.nanmax(np.abs(turned)) > 1.003 * least:
                 continue
-            other[..., 2] = pose[..., 2] + turned * (whole / turn - 1.0)
+            other = _with(pose, pose[..., 2] + turned * (whole / turn - 1.0))
             if np.ptp(turned[self.there]) > 0.5 * least and self.cosine(other) > self.cosine(pose):
                 raise ParameterError(
                     f"headings never exceed a full turn in {UNIT[unit]}, and fit the motion better "
                     f"in {UNIT[unit]} than in {UNIT[layout.heading_unit]}: is heading_unit = "
                     f"{unit!r}?"
                 )
+
+
+def _with(pose: Floats, heading: Floats) -> Floats:
+    return np.concatenate([pose[..., :2], heading[..., None]], axis=-1)
 
 
 def _is_half(heading: Floats) -> bool:

@@ -1,9 +1,10 @@
-"""Tracks of tables (CSV, Parquet) as recordings, with a report of what was left out."""
+"""Tracks of tables and datasets as recordings, with a report of what was left out."""
 
 import os
 import re
 import unicodedata
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,34 +14,38 @@ from flockenv._io.arguments import check_function
 from flockenv.errors import ParameterError, shown
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
-from flockenv.tracks.clock import check_order, frames_of
-from flockenv.tracks.layout import TrackLayout, beside, read_layout
+from flockenv.tracks.clock import frames_of
+from flockenv.tracks.dataset import is_dataset, table_of
+from flockenv.tracks.layout import TrackLayout, description_of, read_layout
 from flockenv.tracks.motion import Motion, bows_of, unwrapped
 from flockenv.tracks.report import TrackReport
-from flockenv.tracks.rows import direction, rows_of
-from flockenv.tracks.table import Floats, plain_table, read_table
+from flockenv.tracks.rows import direction, names_nobody, rows_of
+from flockenv.tracks.table import Floats, Table, check_ending, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
 _STUCK = 20
+_TWICE = "that are there twice"
 
 
 def read_tracks(
-    source: "str | os.PathLike[str] | pd.DataFrame",
+    source: "str | os.PathLike[str] | pd.DataFrame | xarray.Dataset",
     layout: TrackLayout | None = None,
     report: Callable[[TrackReport], object] = lambda found: None,
 ) -> Recording:
     """Read tracks as a recording, to analyze and replay it like a simulated one.
 
     Rows without a name, a position or a heading, in no water, with too little confidence, or twice
-    in the table are left out and counted.
+    in the table are left out and counted. Rows may be in any order.
 
     Parameters
     ----------
     source
-        A table with one row per frame and boat, or one per frame (extra ``plot``), or its CSV or
-        Parquet file, in which nothing is executed.
+        A table with one row per frame and boat, or one per frame (extra ``plot``); a dataset with
+        ``position`` and ``confidence`` as the package `movement` makes it (extra ``sweep``); or a
+        file in which nothing is executed: text (.csv, .tsv, .txt, also with .gz) or Parquet.
     layout
         How tracks lie in it; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
     report
@@ -50,8 +55,8 @@ def read_tracks(
     ------
     ParameterError
         If the file cannot be read, a column is missing or holds other things than numbers, a boat
-        is in two places in a frame, times go back, units contradict the layout, everything is
-        missing, the arrays would be too large or there is no layout, and as for `recording_of`.
+        is in two places in a frame, units contradict the layout, everything is missing, the arrays
+        would be too large or there is no layout, and as for `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
     """
@@ -61,9 +66,14 @@ def read_tracks(
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table in memory has no file beside it")
-        return _recording(plain_table(source), layout, report)
+        if is_dataset(source):
+            return _recording(*table_of(source, layout), report)
+        return _recording(plain_table(source), layout, report)  # type: ignore[arg-type]
     path = Path(source)
-    layout = layout or read_layout(beside(path))
+    if layout is None:
+        description = description_of(path)
+        check_ending(path)
+        layout = read_layout(description)
     table = read_table(path, layout)
     try:
         return _recording(table, layout, report)
@@ -72,18 +82,19 @@ def read_tracks(
 
 
 def _recording(
-    table: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
+    table: Table, layout: TrackLayout, report: Callable[[TrackReport], object]
 ) -> Recording:
+    unnamed = names_nobody(table, layout)
+    layout = replace(layout, id=None) if unnamed else layout
     rows = rows_of(table, layout)
-    named = rows[rows["id"].notna()]
-    twice = (named["why"] == "") & named.duplicated(["id", "time", "x", "y", "heading"])
-    rows.loc[twice[twice].index, "why"] = "that are there twice" if twice.any() else ""
-    rows = rows.assign(time=rows["time"] / (layout.fps or 1.0))
-    check_order(rows[rows["id"].notna() & (rows["why"] != "that are there twice")], layout)
+    twice = rows["id"].notna() & rows.duplicated(["id", "time", "x", "y", "heading"])
+    rows["why"] = rows["why"].mask(twice & (rows["why"] == ""), _TWICE)
+    unsorted = int((rows[rows["why"] != _TWICE].groupby("id")["time"].diff() < 0.0).sum())
+    rows = rows.sort_values("time", kind="stable")
     rows["frame"] = frames_of(rows)
     names, time_s, stamps, pose = _poses(rows, layout)
     motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
-    if layout.heading is None:
+    if layout.heading is None and layout.quaternion is None:
         pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
         pose[np.isnan(pose[..., 2])] = np.nan
     elif layout.axis:
@@ -92,30 +103,37 @@ def _recording(
     motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
     motion.check(pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
-    velocity = motion.velocity
-    recording = recording_of(time_s, pose, velocity=velocity, ids=names, **flock)
+    recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
     there = ~np.isnan(pose[..., 0])
-    empty = motion.empty_frames(time_s)
-    gaps = motion.gaps()
+    gaps, speed = motion.gaps(), np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
     counts: Any = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
-    out = {why: counts[why].to_dict() for why in counts.index.unique(0)}
     report(
         TrackReport(
             frames=len(time_s),
             boats=len(names),
             samples=int(there.sum()),
-            missing=len(names) * (len(time_s) + empty) - int(there.sum()),
-            left_out=out,
+            missing=len(names) * (len(time_s) + motion.empty_frames(time_s)) - int(there.sum()),
+            duration_s=float(time_s[-1]),
+            step_s=float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0,
+            median_speed_cm_s=_median(speed),
+            left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
+            unsorted=unsorted,
+            unnamed=unnamed,
             gaps=len(gaps),
             longest_gap_s=float(gaps.max(initial=0.0)),
             broken=motion.broken,
-            lone=int((there & np.isnan(velocity[..., 0])).sum()),
+            lone=int((there & np.isnan(speed)).sum()),
             cosine=motion.cosine(pose),
             stuck=_stuck(rows, layout),
             held=_held(rows),
         )
     )
     return recording
+
+
+def _median(values: Floats) -> float:
+    found = values[np.isfinite(values)]
+    return float(np.median(found)) if len(found) else float("nan")
 
 
 def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Floats, Floats, Floats]:
@@ -133,7 +151,8 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
         same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
         raise ParameterError(
             f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
-            f", at different places, the second time in {rows.index.name} {row.name}"
+            f", at different places, the second time in {rows.index.name} {row.name}: were there "
+            "two films, or was the clock set back? Give each film a table of its own"
         )
     _check_names(rows)
     # By their length, then alphabet, so that 2 comes before 10.
@@ -172,8 +191,8 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
     up = -1.0 if layout.y_down else 1.0
     used = rows[rows["why"] == ""]
     used = used.assign(
-        x=used["x"] / layout.cm_per_unit + layout.center[0],
-        y=up * used["y"] / layout.cm_per_unit + layout.center[1],
+        x=used["x"] / layout.scale + layout.center[0],
+        y=up * used["y"] / layout.scale + layout.center[1],
     )
     counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10

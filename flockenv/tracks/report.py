@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 _WEAK = 0.3
+_MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,8 +19,15 @@ class TrackReport:
     missing : int
         Boat-frames without a pose: times at which a boat is missing, summed over boats; empty
         frames count, too.
+    duration_s, step_s, median_speed_cm_s : float
+        From the first to the last time, the median step between times, and the median of the boats'
+        speeds, NaN for none: what a wrong `fps` or `cm_per_unit` shows in.
     left_out : dict of dict of int
         Rows that are left out, by reason and boat; "" for no boat.
+    unsorted : int
+        How often the times of a boat go back from one row to the next; rows are sorted.
+    unnamed : bool
+        Whether the column of names holds none, so that all rows are of one boat.
     gaps : int, and longest_gap_s : float
         How often a boat is missing between two of its poses, and the longest of these times.
     broken : int
@@ -43,7 +51,12 @@ class TrackReport:
     boats: int
     samples: int
     missing: int
+    duration_s: float
+    step_s: float
+    median_speed_cm_s: float
     left_out: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    unsorted: int = 0
+    unnamed: bool = False
     gaps: int = 0
     longest_gap_s: float = 0.0
     broken: int = 0
@@ -53,9 +66,8 @@ class TrackReport:
     held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:
-        """Return the attributes by name, None for a cosine that is undefined."""
-        named = asdict(self)
-        return named if self.cosine == self.cosine else {**named, "cosine": None}
+        """Return the attributes by name, None for numbers that are undefined."""
+        return {name: None if each != each else each for name, each in asdict(self).items()}
 
     def __str__(self) -> str:
         all_of = self.samples + self.missing
@@ -68,6 +80,8 @@ class TrackReport:
         lines = [
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; "
             f"missing: {self.missing} of {all_of} boat-frames",
+            f"{self.duration_s:.6g} s, a frame every {self.step_s:.4g} s; median speed "
+            f"{self.median_speed_cm_s:.3g} cm/s",
             f"left out: {rows} rows" + (f" ({', '.join(reasons)})" if rows else ""),
             f"gaps: {gaps}; steps too fast for a velocity: {self.broken}; "
             f"samples without a velocity: {self.lone}",
@@ -80,6 +94,7 @@ class TrackReport:
                 ", far from 1: are y_down, heading_unit, heading_turns, heading_zero and the order "
                 "of x and y right, and are headings no axes?"
             )
+        lines += self._doubts()
         if self.stuck:
             points = (
                 f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
@@ -96,6 +111,28 @@ class TrackReport:
                 "if a number stands for no heading, name it in `missing`"
             )
         return "\n  ".join(lines)
+
+    def _doubts(self) -> list[str]:
+        """Return lines about what is unusual, and may be as it should."""
+        lines = []
+        if self.unsorted:
+            lines.append(
+                f"rows are not in the order of time ({self.unsorted} steps back), and were sorted: "
+                "is it one film?"
+            )
+        if self.unnamed:
+            lines.append("the column of names is empty: all rows are of one boat")
+        if self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S:
+            lines.append(
+                "that is slow for boats: are times in s? `fps` says how many units a s has"
+            )
+        outside = sum(self.left_out.get("in no water", {}).values())
+        if outside > _MANY_OUTSIDE * (outside + self.samples):
+            lines.append(
+                f"{outside / (outside + self.samples):.0%} of the detections lie beside the pool: "
+                "do cm_per_unit, center and pool fit?"
+            )
+        return lines
 
 
 def _by_boat(boats: Mapping[str, int]) -> str:

@@ -1,6 +1,5 @@
 """Rows of tracks in cm and rad, and why some of them count for nothing."""
 
-import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,9 +7,10 @@ import numpy as np
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.clock import times_of
-from flockenv.tracks.layout import TrackLayout, columns_of
+from flockenv.tracks.formats import quaternion
+from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import HEADING_ZERO, TURN, UNIT, in_water
-from flockenv.tracks.table import Floats, column, numbers
+from flockenv.tracks.table import Floats, Table, listed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,26 +19,29 @@ FULL_TURN = {unit: turn + 1e-6 for unit, turn in TURN.items()}
 """The greatest heading within a full turn, rounded up."""
 
 _MOST_STRANGE = 0.01
-_MOST_OUTSIDE = 0.1
+_MOST_OUTSIDE = 0.5
 
 
-def rows_of(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
-    """Return the columns id, time, x, y, heading and why of rows.
+def rows_of(table: Table, layout: TrackLayout) -> "pd.DataFrame":
+    """Return the columns id, time, x, y, heading and why of rows, in the order of the table.
 
-    Times count as in the table, from the least; places are in cm from the pool's center, y up;
-    headings in rad. `why` says why a row is left out, and is "" where it is not.
+    Times are in s from the least; places are in cm from the pool's center, y up; headings in rad.
+    `why` says why a row is left out, and is "" where it is not.
     """
     table = long_table(table, layout) if layout.is_wide else table
     up = -1.0 if layout.y_down else 1.0
-    x, y, is_lost = _point(table, layout, layout.x, layout.y)
-    rows = table[[]].assign(
+    x, y, is_lost = _point(table, layout, layout.columns["x"], layout.columns["y"])
+    if layout.box is not None:
+        width, height = (table.numbers(name, layout) for name in layout.box)
+        x, y = x + width / 2, y + height / 2
+    rows = table.rows[[]].assign(
         id=_names(table, layout),
         time=times_of(table, layout),
-        x=(x - layout.center[0]) * layout.cm_per_unit,
-        y=(y - layout.center[1]) * layout.cm_per_unit * up,
+        x=(x - layout.center[0]) * layout.scale,
+        y=(y - layout.center[1]) * layout.scale * up,
     )
     heading, is_strange = _headings(table, layout)
-    sure = [numbers(table, name, layout) for name in columns_of(layout.confidence)]
+    sure = [table.numbers(name, layout) for name in layout.columns["confidence"]]
     is_sure = [each >= (layout.least_confidence or 0.0) for each in sure]
     is_wet = in_water(layout.pool, rows[["x", "y"]].to_numpy(), 2 * layout.hull[0])
     reasons = {
@@ -55,39 +58,51 @@ def rows_of(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
     return rows.assign(heading=heading, why=why)
 
 
-def long_table(table: "pd.DataFrame", layout: TrackLayout) -> "pd.DataFrame":
+def names_nobody(table: Table, layout: TrackLayout) -> bool:
+    """Return whether there is a column of names in which no row has one."""
+    if layout.id is None or layout.is_wide:
+        return False
+    ids = table.column(layout.id)
+    return bool((ids.isna() | (ids.astype(str).str.strip() == "")).all())
+
+
+def long_table(table: Table, layout: TrackLayout) -> Table:
     """Return one row per frame and boat of a table in which boats stand beside each other."""
-    heading, sure = columns_of(layout.heading), columns_of(layout.confidence)
-    fields = [str(layout.x), *columns_of(layout.y), *heading, *sure]
-    pattern = re.compile(re.escape(str(layout.x)).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-    there = {str(each).strip().casefold() for each in table}
-    found = [pattern.fullmatch(str(each).strip()) for each in table]
-    names = [each[1] for each in found if each]
-    names = [each for each in names if fields[1].replace("{id}", each).casefold() in there]
+    pandas = require("pandas", "plot")
+    fields = [name for columns in layout.columns.values() for name in columns]
+    first, _, last = (part.casefold() for part in fields[0].partition("{id}"))
+    bare = [name.strip() for name in table.names]
+    names = [
+        name[len(first) : len(name) - len(last)]
+        for name in bare
+        if name.casefold().startswith(first)
+        and name.casefold().endswith(last)
+        and len(name) > len(first + last)
+    ]
+    names = [n for n in names if all(each.replace("{id}", n) in table for each in fields)]
     if not names:
         raise ParameterError(
-            f"no columns look like {fields[0]!r} and {fields[1]!r}; there are "
-            f"{', '.join(map(str, table))}"
+            f"no columns look like {' and '.join(map(repr, fields))}; there are "
+            f"{listed(table.names)}"
         )
-    time = column(table, layout.frame)
-    each = [
-        time.to_frame(layout.frame).assign(
-            **{"{id}": name},
-            **{field: column(table, field.replace("{id}", name)) for field in fields},
-        )
-        for name in names
-    ]
-    long: pd.DataFrame = require("pandas", "plot").concat(each)
-    long.index.name = table.index.name
-    return long
+    rows, many = table.rows, len(names)
+    columns: dict[str, Any] = {
+        layout.frame: np.tile(table.column(layout.frame), many),
+        "{id}": np.repeat(names, len(rows)),
+    }
+    for field in dict.fromkeys(fields):
+        boats = [table.name_of(field.replace("{id}", name)) for name in names]
+        columns[field] = rows[boats].to_numpy().T.ravel()
+    index = pandas.Index(np.tile(rows.index, many), name=rows.index.name)
+    return Table(pandas.DataFrame(columns, index))
 
 
-def _names(table: "pd.DataFrame", layout: TrackLayout) -> "pd.Series[Any]":
+def _names(table: Table, layout: TrackLayout) -> "pd.Series[Any]":
     """Return the names as text, none where no boat is named; whole numbers have no point."""
-    if layout.id is None or layout.is_wide:
-        ids = table["{id}"] if layout.is_wide else table.assign(id="0")["id"]
+    if layout.is_wide:
+        ids = table.column("{id}")
     else:
-        ids = column(table, layout.id)
+        ids = table.rows.assign(id="0")["id"] if layout.id is None else table.column(layout.id)
     names = ids.convert_dtypes().astype(object).where(ids.notna(), "").astype(str).str.strip()
     names = names.str.replace(r"^(-?\d+)\.0+$", r"\1", regex=True)
     nobody = {each.strip().casefold() for each in layout.unassigned} | {""}
@@ -95,13 +110,10 @@ def _names(table: "pd.DataFrame", layout: TrackLayout) -> "pd.Series[Any]":
 
 
 def _point(
-    table: "pd.DataFrame", layout: TrackLayout, x: Any, y: Any
+    table: Table, layout: TrackLayout, x: tuple[str, ...], y: tuple[str, ...]
 ) -> tuple[Floats, Floats, Any]:
     """Return x and y in units of the file, and whether they stand for a boat that is lost."""
-    pairs = [
-        [numbers(table, name, layout) for name in names]
-        for names in zip(columns_of(x), columns_of(y), strict=True)
-    ]
+    pairs = [[table.numbers(name, layout) for name in names] for names in zip(x, y, strict=True)]
     is_lost = np.zeros(len(table), bool)
     for pair in pairs:
         for point in layout.lost:
@@ -110,27 +122,56 @@ def _point(
     return means[0], means[1], is_lost
 
 
-def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, Any]:
+def _headings(table: Table, layout: TrackLayout) -> tuple[Floats, Any]:
     """Return headings in rad from x, y up, 0 where the table has none, and which are strange."""
     up = -1.0 if layout.y_down else 1.0
     strange = np.zeros(len(table), bool)
-    if layout.heading is None:
-        return np.zeros(len(table)), strange
-    if not isinstance(layout.heading, str):
-        x_tail, y_tail, tail_lost = _point(table, layout, *layout.heading[:2])
-        x_head, y_head, head_lost = _point(table, layout, *layout.heading[2:])
+    columns, unit = layout.columns["heading"], layout.heading_unit
+    if len(columns) == 4:
+        x_tail, y_tail, tail_lost = _point(table, layout, columns[:1], columns[1:2])
+        x_head, y_head, head_lost = _point(table, layout, columns[2:3], columns[3:])
         heading = direction(x_head - x_tail, (y_head - y_tail) * up)
         heading[tail_lost | head_lost] = np.nan
         return heading, strange
-    heading = numbers(table, layout.heading, layout)
+    if layout.quaternion is not None:
+        heading, unit = _turned(table, layout, layout.quaternion), "rad"
+    elif not columns:
+        return np.zeros(len(table)), strange
+    else:
+        heading = table.numbers(columns[0], layout)
+        _check_no_part(table, layout, columns[0], heading)
+        if layout.wrapped:
+            strange = np.abs(heading) > FULL_TURN[unit]
+            _check_turn(heading, strange, layout)
+            heading[strange] = np.nan
     turns = layout.heading_turns or ("cw" if layout.y_down else "ccw")
-    if layout.wrapped:
-        strange = np.abs(heading) > FULL_TURN[layout.heading_unit]
-        _check_turn(heading, strange, layout)
-        heading[strange] = np.nan
     sign = 1.0 if turns == "ccw" else -1.0
-    heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
-    return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
+    return HEADING_ZERO[layout.heading_zero] + sign * heading * (TURN["rad"] / TURN[unit]), strange
+
+
+def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str]) -> Floats:
+    """Return the angle about the vertical of quaternions, whose length is 1."""
+    x, y, z, w = (table.numbers(name, layout) for name in columns)
+    off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
+    if np.nanmedian(off) > 0.01:
+        raise ParameterError(
+            f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
+            "add up to 1"
+        )
+    heading = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+    return np.where(off > 0.1, np.nan, heading)
+
+
+def _check_no_part(table: Table, layout: TrackLayout, name: str, heading: Floats) -> None:
+    """Refuse a part of a quaternion in place of a heading."""
+    if (np.abs(heading[np.isfinite(heading)]) > 1.0).any():
+        return
+    same = [each for each in table.names if len(each) == len(name)]
+    four = quaternion(same) or []
+    if name.strip().casefold() in (each.strip().casefold() for each in four):
+        raise ParameterError(
+            f"heading = {name!r} is a part of a quaternion: quaternion = {four} instead"
+        )
 
 
 def direction(x: Floats, y: Floats) -> Floats:

@@ -2,17 +2,20 @@
 
 import codecs
 import csv
+import gzip
 import io
 import itertools
-import re
+import os
+from collections.abc import Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.array_file import most_held
 from flockenv._io.extras import require
-from flockenv._io.plain_file import is_special
+from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, shown
 from flockenv.tracks.layout import TrackLayout
 
@@ -21,35 +24,123 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-SUFFIXES = (".csv", ".parquet", ".pq")
+_TEXTS, _PARQUET = (".csv", ".tsv", ".txt"), (".parquet", ".pq")
+SUFFIXES = (*_TEXTS, *(f"{each}.gz" for each in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
 _NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
 """What stands for no number, in small letters."""
 
 
-def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
-    """Return the rows of a CSV or Parquet file; a ParameterError names one that is none.
+class Table:
+    """Rows of tracks, in which columns are found by their names in any case.
 
-    Rows of a CSV file are numbered by their line.
+    Parameters
+    ----------
+    rows
+        Numbered by their line or row, with different names of columns.
+    twice
+        Names that several columns had.
+    """
+
+    def __init__(self, rows: "pd.DataFrame", twice: Set[Any] = frozenset()) -> None:
+        self.rows, self._twice = rows, twice
+        self.names = [*map(str, rows)]
+        self._by_key: dict[str, list[Any]] = {}
+        for name in dict.fromkeys(rows):
+            self._by_key.setdefault(_key(name), []).append(name)
+
+    def __contains__(self, name: str) -> bool:
+        return _key(name) in self._by_key
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def name_of(self, name: str) -> Any:
+        """Return the name of a column, which may differ in case or blanks."""
+        like = self._by_key.get(_key(name), [])
+        found = [name] if name in like else like
+        if len(found) == 1 and found[0] not in self._twice:
+            return found[0]
+        if found:
+            raise ParameterError(f"there are several columns {name!r}: give each its own name")
+        raise ParameterError(
+            f"column {name!r} is missing; there are {listed(self.names)}{_other_mark(self.names)}"
+        )
+
+    def column(self, name: str) -> "pd.Series[Any]":
+        """Return the column of a name, or of one that differs in case or blanks only."""
+        series: pd.Series[Any] = self.rows[self.name_of(name)]
+        return series
+
+    def numbers(self, name: str, layout: TrackLayout) -> Floats:
+        """Return a column as numbers, NaN where none stands; infinite ones are none."""
+        pandas, found = require("pandas", "plot"), self.column(name)
+        types = pandas.api.types
+        if types.is_bool_dtype(found) or types.is_complex_dtype(found):
+            raise ParameterError(f"column {name!r} holds other things than numbers")
+        if not types.is_numeric_dtype(found):
+            found = _parsed(pandas, found, name, layout)
+        values = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
+        none = pandas.to_numeric(list(layout.missing), errors="coerce")
+        values[np.isinf(values) | np.isin(values, none)] = np.nan
+        return values
+
+
+def ending(path: Path) -> str:
+    """Return the ending of a file in small letters, with that under .gz."""
+    suffixes = [each.lower() for each in path.suffixes[-2:]]
+    return "".join(suffixes if suffixes[-1:] == [".gz"] else suffixes[-1:])
+
+
+def check_ending(path: Path) -> None:
+    """Refuse a file that is not there, or of another ending."""
+    if not path.exists():
+        raise ParameterError(f"{path} cannot be read: No such file or directory")
+    if ending(path) not in SUFFIXES:
+        raise ParameterError(
+            f"{path} is no table of tracks: its name ends in none of {', '.join(SUFFIXES)} "
+            "(recordings end in .npz)"
+        )
+
+
+def read_table(path: Path, layout: TrackLayout) -> Table:
+    """Return the rows of a text or Parquet file; a ParameterError names one that is none.
+
+    Rows of a text file are numbered by their line.
     """
     pandas = require("pandas", "plot")
-    if path.suffix.lower() not in SUFFIXES:
-        raise ParameterError(f"{path}: it ends in none of {', '.join(SUFFIXES)}")
+    check_ending(path)
     try:
-        if is_special(path):
-            raise ParameterError("a device, a pipe or a socket")
-        if path.suffix.lower() in (".parquet", ".pq"):
-            table: pd.DataFrame = pandas.read_parquet(path)
-            return plain_table(table)
-        return _read_csv(pandas, text_of(path), layout)
+        if ending(path) in _PARQUET:
+            return plain_table(_read_parquet(pandas, path))
+        return _read_text(pandas, text_of(path), layout, _separator(path, layout))
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"{path} cannot be read as a table: {error}") from error
 
 
+def _separator(path: Path, layout: TrackLayout) -> str:
+    return layout.separator or ("\t" if ending(path).startswith(".tsv") else ",")
+
+
+def _read_parquet(pandas: Any, path: Path) -> Any:
+    with open_plain(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        held = require("pyarrow.parquet", "plot").ParquetFile(file).metadata
+        cells = held.num_rows * held.num_columns
+        if 8 * cells > most_held(size):
+            raise ParameterError(f"it holds {cells} cells, too many for its {size} bytes")
+        return pandas.read_parquet(file)
+
+
 def text_of(path: Path) -> str:
     """Return a file as text: UTF-8 or UTF-16 by its mark, and what Windows wrote otherwise."""
-    data = path.read_bytes()
+    with open_plain(path) as file:
+        most = most_held(os.fstat(file.fileno()).st_size)
+        opened = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
+        data: bytes = opened.read(most + 1)
+    if len(data) > most:
+        raise ParameterError(f"it holds more than the {most} bytes that are accepted")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         text = data.decode("utf-16")
     else:
@@ -60,18 +151,18 @@ def text_of(path: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def cells_of(text: str, layout: TrackLayout, count: int) -> list[list[str]]:
+def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
     """Return the cells of the first lines after those that are skipped."""
-    lines = itertools.islice(io.StringIO(text), layout.skip, layout.skip + count)
-    if layout.separator == " ":
+    lines = itertools.islice(io.StringIO(text), skip, skip + count)
+    if separator == " ":
         return [line.split() for line in lines]
-    rows = csv.reader(lines, delimiter=layout.separator, skipinitialspace=True)
+    rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
     return [[cell.strip() for cell in row] for row in rows]
 
 
-def _read_csv(pandas: Any, text: str, layout: TrackLayout) -> "pd.DataFrame":
-    rows = cells_of(text, layout, 8)
-    names, height = _header(rows)
+def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:
+    rows = cells_of(text, separator, layout.skip, 10)
+    names, height = (list(layout.header), 0) if layout.header else _header(rows)
     extra = [place for place, row in enumerate(rows[height:]) if any(row[len(names) :])]
     if extra:
         line = layout.skip + height + extra[0] + 1
@@ -79,16 +170,13 @@ def _read_csv(pandas: Any, text: str, layout: TrackLayout) -> "pd.DataFrame":
             f"the header names {len(names)} columns, and line {line} holds "
             f"{len(rows[height + extra[0]])} values: every column needs a name{_other_mark(names)}"
         )
-    width = max(map(len, rows))
-    names += [f"unnamed {place}" for place in range(len(names), width)]
-    texts = {name for name in names if layout.id and _key(name) == _key(layout.id)}
+    names += [f"unnamed {place}" for place in range(len(names), max(map(len, rows)))]
+    unique, twice = _unique(names)
+    texts = {name for name in unique if layout.id and _key(name) == _key(layout.id)}
     none = [*_NONE, *(word.upper() for word in _NONE), "NaN", "None", *layout.missing]
-    unique = [
-        f"{name} {place}" if name in names[:place] else name for place, name in enumerate(names)
-    ]
     table: pd.DataFrame = pandas.read_csv(
         io.StringIO(text),
-        sep=r"\s+" if layout.separator == " " else layout.separator,
+        sep=r"\s+" if separator == " " else separator,
         decimal=layout.decimal,
         skiprows=layout.skip + height,
         header=None,
@@ -101,42 +189,65 @@ def _read_csv(pandas: Any, text: str, layout: TrackLayout) -> "pd.DataFrame":
         skip_blank_lines=False,
         low_memory=False,
     )
-    table.attrs["twice"] = {name for name in names if names.count(name) > 1}
     table.index = pandas.RangeIndex(layout.skip + height + 1, layout.skip + height + 1 + len(table))
     table.index.name = "line"
-    blank = (table.isna() | (table == "")).all(axis=1)
+    blank = table.drop(columns=[*texts]).isna().to_numpy().all(axis=1)
+    for name in texts:
+        blank &= (table[name] == "").to_numpy()
     # Some write units, or longer names, into the lines under the header.
-    under = [number for number, row in table.head(4).iterrows() if not any(map(_is_value, row))]
-    return table[~blank & ~table.index.isin(under)]
+    under = [] if layout.header else [n for n, row in table.head(4).iterrows() if not _is_data(row)]
+    return Table(table[~blank & ~table.index.isin(under)], twice)
+
+
+def _unique(names: list[Any]) -> tuple[list[Any], set[Any]]:
+    """Return names of which each is there once, and those that were there more often."""
+    seen, twice, unique = set[Any](), set[Any](), []
+    for place, name in enumerate(names):
+        unique.append(f"{name} {place}" if name in seen else name)
+        twice |= {name} & seen
+        seen.add(name)
+    return unique, twice
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
-    """Return the names of columns, and how many lines they take: DeepLabCut's take some."""
+    """Return the names of columns, and how many lines they take: some write them in levels."""
     if not rows or not any(rows[0]):
         raise ParameterError("there is no header in its first line")
-    first = [row[0].lower() if row else "" for row in rows[:4]]
-    if first[0] != "scorer" or "coords" not in first:
-        # Separators at the ends of lines name nothing.
-        names = [name or f"unnamed {place}" for place, name in enumerate(rows[0])]
-        return names, 1
-    height = first.index("coords") + 1
-    return ["frame", *map(_joined, list(zip(*rows[1:height], strict=True))[1:])], height
+    first = [row[0].lower() if row else "" for row in rows]
+    if first[0] == "scorer" and "coords" in first[:4]:  # DeepLabCut.
+        height = first.index("coords") + 1
+        return ["frame", *map(_joined, list(zip(*rows[1:height], strict=True))[1:])], height
+    if first[0] == "" and "frame" in first and rows[0][1:2] == ["Type"]:  # OptiTrack Motive.
+        last = first.index("frame")
+        name = next(row for row in rows[1:last] if row[1] == "Name")
+        columns = zip(name[2:], rows[last - 1][2:], rows[last][2:], strict=False)
+        return [*rows[last][:2], *map(_joined, columns)], last + 1
+    # Separators at the ends of lines name nothing.
+    return [name or f"unnamed {place}" for place, name in enumerate(rows[0])], 1
 
 
 def _joined(levels: Any) -> str:
-    """Return the name of a column that DeepLabCut names in levels: individual, body part, coord."""
+    """Return the name of a column that is named in levels: individual, body part, coord."""
     *individual, part, coord = map(str, levels)
     return f"{'.'.join([*individual, part])}_{coord}"
 
 
-def _is_value(cell: Any) -> bool:
-    return bool(re.match(r"[-+.]?\d", str(cell)))
+def _is_data(row: Any) -> bool:
+    return any(is_value(cell) for cell in row)
 
 
-def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
+def is_value(cell: Any) -> bool:
+    """Return whether a cell begins as a number does."""
+    return str(cell).lstrip("-+.")[:1].isdigit()
+
+
+def plain_table(table: "pd.DataFrame") -> Table:
     """Return a table whose columns have one name each, those of the index among them."""
     if not hasattr(table, "columns") or not hasattr(table, "index"):
-        raise TypeError(f"tracks must be a file or a DataFrame of pandas, not {shown(table)}")
+        raise TypeError(
+            f"tracks must be a file, a DataFrame of pandas or a Dataset of xarray, not "
+            f"{shown(table)}"
+        )
     columns: Any = table.columns
     index: Any = table.index
     if columns.nlevels > 1 and "coords" in columns.names:
@@ -157,68 +268,44 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
                 f"the index and a column are both called {name!r}, and differ: rename one"
             )
         table = table if name in table else table.assign(**{str(name): values})
-    names = list(table.columns)
     table = table.reset_index(drop=True).rename_axis(index="row")
-    table.attrs["twice"] = {name for name in names if names.count(name) > 1}
-    return table
+    return Table(table, _unique(list(table.columns))[1])
 
 
 def _key(name: object) -> str:
     return str(name).strip().lstrip("#%").strip().casefold()
 
 
-def column(table: "pd.DataFrame", name: str) -> "pd.Series[Any]":
-    """Return the column of a name, or of one that differs in case or blanks only."""
-    there: list[Any] = list(table)
-    found = [each for each in there if each == name]
-    found = found or [each for each in there if _key(each) == _key(name)]
-    if len(set(found)) == 1 and found[0] not in table.attrs.get("twice", ()):
-        series: pd.Series[Any] = table[found[0]]
-        return series
-    if found:
-        raise ParameterError(f"there are several columns {name!r}: give each its own name")
-    names = [*map(str, there)]
-    raise ParameterError(
-        f"column {name!r} is missing; there are {', '.join(names)}{_other_mark(names)}"
-    )
+def listed(names: list[str]) -> str:
+    """Return names with commas between them, the first ones of very many."""
+    more = f" and {len(names) - 40} more" if len(names) > 40 else ""
+    return f"{', '.join(names[:40])}{more}"
 
 
 def _other_mark(names: list[str]) -> str:
-    """Return what separates names that were read as one."""
+    """Return what separates names that were read as one, or that they are no names."""
+    if sum(map(is_value, names)) > len(names) / 2:
+        return ": `header` names the columns of a file whose first line does not"
     if names[0][:1] in ("#", "%", "/") and len(names) == 1:
         return ": `skip` leaves out lines before the header, such as remarks"
     marks = [mark for mark in (";", "\t", "|", " ", ",") if len(names) == 1 and mark in names[0]]
     return f": the header looks like one with separator = {marks[0]!r}" if marks else ""
 
 
-def numbers(table: "pd.DataFrame", name: str, layout: TrackLayout) -> Floats:
-    """Return a column as numbers, NaN where none stands; infinite ones are none."""
-    pandas, found = require("pandas", "plot"), column(table, name)
-    types = pandas.api.types
-    if types.is_bool_dtype(found) or types.is_complex_dtype(found):
-        raise ParameterError(f"column {name!r} holds other things than numbers")
-    if not types.is_numeric_dtype(found):
-        found = _parsed(pandas, found, name, layout)
-    values = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-    none = pandas.to_numeric(list(layout.missing), errors="coerce")
-    values[np.isinf(values) | np.isin(values, none)] = np.nan
-    return values
-
-
 def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
     texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
     none = texts.str.lower().isin(_NONE | {each.strip().lower() for each in layout.missing})
-    plain = texts.str.replace(layout.decimal, ".").mask(none)
-    values = pandas.to_numeric(plain, errors="coerce")
+    point = texts.str.replace(layout.decimal, ".")
+    values = pandas.to_numeric(point.mask(none), errors="coerce")
     strange = values.isna() & ~none
     if strange.any():
         line = strange.idxmax()
         value = texts[line] if texts.index.is_unique else texts[strange].iloc[0]
         decimal = "," if layout.decimal == "." else "."
-        is_other = re.fullmatch(rf"[-+]?\d+{re.escape(decimal)}\d+", value)
-        hint = f"; is decimal = {decimal!r}?" if is_other else ""
+        whole, _, part = value.lstrip("-+").partition(decimal)
+        is_other = whole.isdigit() and part.isdigit()
         raise ParameterError(
             f"column {name!r} holds other things than numbers: {shown(value)} in "
-            f"{found.index.name} {line}{hint}"
+            f"{found.index.name} {line}{f'; is decimal = {decimal!r}?' if is_other else ''}"
         )
     return values

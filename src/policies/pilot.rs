@@ -91,6 +91,14 @@ impl Pilot {
         }
     }
 
+    /// From now on each leader's heading leans so far outward of its target's tangent, in rad in any turn; a leaning law
+    /// decides that by itself.
+    pub fn lean_to(&mut self, leans: impl IntoIterator<Item = f64>) {
+        for (lean, wanted) in self.leans.iter_mut().zip(leans) {
+            *lean = wanted;
+        }
+    }
+
     /// Continues a run with control steps for about so many substeps times boats, or to its end.
     ///
     /// # Errors

@@ -86,27 +86,17 @@ CONTROLS = (
 
 @pytest.mark.parametrize("selector", CONTROLS)
 def test_arrow_keys_steer_whatever_had_the_focus(live, selector):
-    from selenium.webdriver.common.keys import Keys
-
     live.choose("#leaders", "you")
     live.script("document.getElementById('more').open = true")
-    live.click("#play")
     shown, values = live.script("return [page.shown, page.flocks.values]")
-    for key, rudder in ((Keys.ARROW_LEFT, 1), (Keys.ARROW_RIGHT, -1)):
+    for key, heading in (("ARROW_LEFT", -15), ("ARROW_RIGHT", 0)):
         live.script("document.querySelector(arguments[0]).focus()", selector)
-        # Looked at before the key: the next sample may come at once.
-        now = live.script("return page.runs[0].length")
-        live.actions().key_down(key).perform()
+        live.press(key)
         assert live.script("return document.activeElement.id") == "thumb"
-        assert live.script("return page.hand.value") == rudder
-        live.until(
-            "return page.runs[0].rudder(0, page.runs[0].length - 1) === arguments[0]", rudder
-        )
-        assert live.script("return page.runs[0].length") > now
-        live.actions().key_up(key).perform()
-        assert live.script("return page.hand.value") == 0
-    # Nothing else was changed by them.
+        assert live.script("return page.hand.value") == heading / 180
+    # Nothing else was changed by them, and they started the flock.
     assert live.script("return [page.shown, page.flocks.values]") == [shown, values]
+    assert live.script("return page.playing")
     assert live.complaints() == []
 
 
@@ -122,7 +112,7 @@ def test_arrow_keys_steer_neither_in_text_nor_in_a_dialog(live):
     live.script("document.activeElement.blur()")
     live.press("?")
     assert live.find("#keys").is_displayed()
-    assert "your rudder" in live.text("#keys")
+    assert "the heading of your boats" in live.text("#keys")
     live.press("ARROW_RIGHT")
     assert live.script("return document.activeElement.id") != "thumb"
     live.press("ESCAPE")
@@ -137,29 +127,39 @@ def test_without_leaders_you_are_one(open_live):
     assert live.find("#leaders").get_attribute("value") == "you"
 
 
-def test_the_game_ends_with_a_score_against_the_law(open_live):
+def test_rounds_of_the_game_are_scored_against_the_law(open_live):
     live = open_live().go()
     live.script("document.querySelector(\"a[data-lesson='steer']\").click()")
     live.until("return page.other.lesson === 'steer'")
     live.wait()
     assert "Goal" in live.text("#story")
-    live.choose("#speed", "64")
-    live.click("#play")
-    live.until("return page.runs[0].end > 20")
-    live.script("document.activeElement.blur()")
-    live.until("return !page.playing")
-    assert live.script("return page.time") >= 120.0
-    means = live.script("return page.runs.map((run) => run.mean('signed_order'))")
-    words = live.text(".so-far").replace("−", "-")
-    assert words.startswith("you ")
-    for mean, said in zip(means, words.removeprefix("you ").split(" · the law "), strict=True):
-        assert float(said) == pytest.approx(mean, abs=0.006)
-    assert ("win" in live.status()) or ("draw" in live.status())
-    assert ("You win" in live.status()) == (round(means[0], 2) > round(means[1], 2))
-    # It may go on, and another round ends again.
-    live.click("#again")
-    live.wait()
-    assert live.script("return page.runs[0].end") == 0
+    assert len(live.driver.find_elements("css selector", ".run canvas")) == 3
+    live.choose("#speed", "max")
+    seeds = []
+    for number in (1, 2):
+        seeds += live.script("return page.runs.map(({seed}) => seed)")
+        if not live.script("return page.playing"):
+            live.click("#play")
+        live.until("return !page.playing && page.playback.isOver")
+        assert live.script("return page.time") >= 300.0
+        means = live.script("return page.runs.map((run) => run.mean('signed_order'))")
+        you, law = (
+            f"{mean:+.2f}".replace("-", "−") for mean in (np.mean(means[:3]), np.mean(means[3:]))
+        )
+        assert live.status().startswith(f"Round {number}: ")
+        assert f"you {you}, the law {law}." in live.status()
+        live.script("page.show()")
+        words = live.text(".so-far")
+        assert words.startswith(f"you {you}")
+        assert {1: "1 round: ", 2: "mean of 2 rounds: "}[number] in words
+        # Another round has other flocks, and starts straight at the wall.
+        live.click("#play" if number == 1 else "#again")
+        live.until("return !page.playback.isOver")
+        live.wait()
+        assert live.script("return page.hand.value") == 0
+    # The law's three flocks have the same starts, and another round has others.
+    assert seeds == ["1", "2", "3", "1", "2", "3", "4", "5", "6", "4", "5", "6"]
+    assert live.complaints() == []
 
 
 def test_keys_switch_colors_forces_and_boats(live):
@@ -185,6 +185,16 @@ def test_contacts_are_there_at_once(open_live):
     run = "page.runs[0]"
     assert live.script(f"return {run}.contacts({run}.length - 1).length") > 5
     assert live.find(".force-key").is_displayed()
+    # Paused while the motors drive forward: bars would be gone a moment later.
+    assert not live.script("return page.playing")
+    assert live.find(".phase.now").get_attribute("data-phase") == "fw"
+    lengths = live.script(f"""
+        const {{hull_radius_cm: radius, hull_half_length_cm: half}} = {run}.lengths;
+        const forces = {run}.contacts({run}.length - 1).map(({{force}}) => force);
+        return forces.map((force) => Math.min(force / 20, 1 + half / radius))""")
+    assert sum(length > 0.3 for length in lengths) > 10
+    live.click("#play")
+    live.until("return page.time > 89.5")
 
 
 def test_plots_without_data_are_not_there_and_the_expected_order_is(open_live):

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import flockenv
+
 pytestmark = pytest.mark.live
 
 
@@ -56,6 +58,51 @@ def test_a_change_while_a_link_is_followed_is_one_of_the_links_flock(live):
     assert (live.parameters()["pool"], live.parameters()["c4"]) == ("wide", "0.2")
 
 
+def test_what_changed_on_the_way_is_in_the_link_the_command_and_python(open_live):
+    """Whoever opens the link, or runs what stands beside it, sees the same flock, bit for bit."""
+    live = open_live().go("#n_boats=12&n_leaders=2&bw_s=0.3&seed=7&start=20&leaders=learned")
+    for name, value in (("bw_s", "0.8"), ("target", "ccw"), ("c4", "0.2")):
+        live.run_to(live.script("return page.runs[0].end") + 1.5)
+        live.script("page.set(arguments[0], arguments[1])", name, value)
+        live.wait()
+    live.run_to(live.script("return page.runs[0].end") + 5.0)
+    live.script("page.seek(page.runs[0].end)")
+    time, end = live.script("return [page.time, page.runs[0].end]")
+    pose, velocity = live.rows("pose"), live.rows("velocity")
+    # The command and Python.
+    schedule = live.script("return page.flocks.past.changes")
+    changes = [(each["time"], each["fields"]) for each in schedule]
+    assert [list(fields) for _, fields in changes] == [["bw_s"], ["target"], ["c4"]]
+    for time_s, fields in changes:
+        for name, value in fields.items():
+            assert f"--at {time_s:g}:{name}={value}" in live.find("#command").get_attribute("value")
+    numbers = [
+        (
+            time_s,
+            {name: value if name == "target" else float(value) for name, value in fields.items()},
+        )
+        for time_s, fields in changes
+    ]
+    parameters = flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
+    native = flockenv.simulate(parameters, 7, end, policy="learned", schedule=numbers)
+    assert np.array_equal(native.pose.reshape(len(native), -1), pose)
+    assert np.array_equal(native.velocity.reshape(len(native), -1), velocity)
+    python = live.find("#python").get_attribute("value")
+    assert f'({changes[0][0]:g}, {{"bw_s": 0.8}})' in python
+    # The link, as the button copies it.
+    live.script("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    live.script("document.getElementById('take').open = true")
+    live.click("[data-copies='address']")
+    live.until("return window.copied")
+    live.go("#" + live.script("return window.copied").partition("#")[2])
+    assert live.status() == ""
+    # It opens at this moment, and plays on.
+    assert live.script("return page.time") >= time
+    assert np.array_equal(live.rows("pose")[: len(pose)], pose)
+    assert live.parameters()["bw_s"] == "0.8"
+    assert live.complaints() == []
+
+
 def test_a_link_shows_the_same_flock_again(open_live):
     live = open_live().go("#n_boats=9&bw_s=0.2&pool=narrow&seed=3&beside.bw_s=0.8&speed=4&forces=1")
     live.run_to(5.0)
@@ -88,6 +135,9 @@ def test_a_link_shows_the_same_flock_again(open_live):
         ("#target=cw,cw,ccw", "target = [cw, cw, ccw] is not accepted"),
         ("#speed_cm_s=1e300", "speed_cm_s = "),
         ("#c1=1e6&c3=1e6&dt_s=1&n_boats=40", ""),
+        ("#at.5.bw_s=-1&n_boats=5", "bw_s = -1 is not accepted"),
+        ("#at.5.wheels=4", "this page knows no such parameter"),
+        ("#start=1e9", "start is a number of seconds up to 7200"),
         ("#%E0%A4%A&=&&&==", "this page knows no such parameter"),
     ],
 )

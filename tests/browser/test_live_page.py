@@ -5,7 +5,7 @@ import pytest
 
 import flockenv
 
-from .conftest import FLOCK, LAPTOP, PHONE
+from .conftest import FLOCK, LAPTOP, PHONE, LivePage, resize
 
 pytestmark = pytest.mark.live
 
@@ -181,28 +181,19 @@ def test_a_second_flock_runs_beside(live):
     assert live.complaints() == []
 
 
-def test_the_arrow_keys_steer_one_leader(live):
+def test_the_arrow_keys_turn_all_leaders(live):
     live.choose("#leaders", "you")
     assert live.find("#thumb").is_displayed()
-    live.choose("#speed", "8")
     live.script("document.activeElement.blur()")
-    hold = "document.dispatchEvent(new KeyboardEvent(arguments[0], {key: arguments[1]}))"
-    live.click("#play")
-    live.script("document.activeElement.blur()")
-    for key, rudder in (("ArrowLeft", 1.0), ("ArrowRight", -1.0)):
-        live.script(hold, "keydown", key)
-        live.until(
-            "return page.runs[0].rudder(0, page.runs[0].length - 1) === arguments[0]", rudder
-        )
-        live.script(hold, "keyup", key)
-    now = live.script("return page.runs[0].end")
-    live.until("return page.runs[0].end > arguments[0] + 3", now)
+    for _ in range(5):
+        live.press("ARROW_RIGHT")
+    assert live.text("#heading") == "clockwise, 15° outward"
+    # The first key started it.
+    live.until("return page.playing")
+    live.until("return page.runs[0].end > 5")
     live.click("#play")
     live.wait()
-    rudders = live.rows("rudder")
-    assert set(rudders[:, 0]) == {-1.0, 0.0, 1.0}
-    assert (rudders[1:, 1] != rudders[1:, 0]).any()
-    assert rudders[-1, 0] == 0.0
+    assert (np.abs(live.rows("rudder")[:, :2]).max(axis=0) > 0.1).all()
     assert "you" in live.text(".so-far")
     assert "the law" in live.text(".so-far")
     assert live.complaints() == []
@@ -211,7 +202,8 @@ def test_the_arrow_keys_steer_one_leader(live):
 def test_a_thumb_steers_on_a_phone(open_live):
     live = open_live(PHONE).go(f"{FLOCK}&leaders=you&beside.leaders=paper's law at every substep")
     thumb = live.find("#thumb")
-    # In reach wherever the page is scrolled.
+    # In reach wherever the page is scrolled, and named.
+    assert live.text("#steer label") == "your boats head straight at the wall"
     for top in (0, 400):
         live.script("window.scrollTo(0, arguments[0])", top)
         box = live.script(
@@ -219,17 +211,13 @@ def test_a_thumb_steers_on_a_phone(open_live):
         )
         assert 0 < box["top"] < box["bottom"] <= PHONE[1]
         assert box["height"] >= 44
-    live.click("#play")
     width = thumb.size["width"]
     held = live.actions().move_to_element(thumb).click_and_hold()
-    held.move_by_offset(round(-0.25 * width), 0).perform()
-    assert live.script("return page.hand.value") == pytest.approx(0.5, abs=0.15)
-    now = live.script("return page.runs[0].end")
-    live.until("return page.runs[0].end > arguments[0] + 1", now)
-    assert live.script("return page.runs[0].rudder(0, page.runs[0].length - 1)") > 0.3
-    live.actions().release().perform()
-    assert live.script("return page.hand.value") == 0
-    assert thumb.get_attribute("value") == "0"
+    held.move_by_offset(round(0.25 * width), 0).release().perform()
+    # It stays where it was left, and the round has started.
+    assert live.script("return page.hand.value") == pytest.approx(0.5, abs=0.1)
+    assert "clockwise" in live.text("#heading")
+    assert live.script("return page.playing")
 
 
 @pytest.mark.parametrize("missing", ["Worker", "WebAssembly", "DecompressionStream"])
@@ -276,9 +264,7 @@ def test_a_boats_numbers_frame_and_observation(live):
 def test_texts_of_the_flock_are_shown_and_copied(live, chromium):
     live.script("document.getElementById('take').open = true")
     command = live.find("#command").get_attribute("value")
-    assert command == (
-        "flockenv run --set n_boats=12 --set n_leaders=2 --set bw_s=0.3 --seed 7 --minutes 8"
-    )
+    assert command == ("flockenv run --n-boats 12 --n-leaders 2 --bw-s 0.3 --seed 7 --minutes 8")
     assert "flockenv.simulate(parameters, seed=7" in live.find("#python").get_attribute("value")
     live.choose("#beside", "leaders=learned")
     live.until("return page.runs.length === 2")
@@ -344,9 +330,132 @@ def test_less_motion_is_respected_and_it_plays_when_asked(open_live, emulated):
     emulated("prefers-reduced-motion", "reduce")
     live = open_live().go("", plays=True)
     assert not live.script("return page.playing")
+    assert "Paused, since your system asks for less motion" in live.status()
+    now = live.script("return page.time")
     live.script("document.activeElement.blur()")
     live.press(" ")
-    live.until("return page.time > 0.5")
+    live.until("return page.time > arguments[0] + 0.5", now)
+    assert live.status() == ""
+    # An arrow key starts the game.
+    live.script("document.querySelector(\"a[data-lesson='steer']\").click()")
+    live.until("return page.other.lesson === 'steer'")
+    live.wait()
+    live.script("if (page.playing) page.toggle(); document.activeElement.blur()")
+    live.press("ARROW_LEFT")
+    live.until("return page.playing")
+
+
+def test_there_is_a_pool_and_a_word_until_the_core_has_started(open_live, chromium):
+    """The simulator's thread starts when the test lets it."""
+    source = """
+        window.Worker = class {
+            constructor() { window.held = this; }
+            addEventListener() {}
+            postMessage() {}
+        }"""
+    held = chromium.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": source})
+    try:
+        live = open_live()
+        live.open(live.file.as_uri())
+        live.until("return Boolean(window.held)")
+        assert live.find("#loading").is_displayed()
+        assert "loading" in live.text("#loading")
+        width, height = live.find("#loading").size.values()
+        assert min(width, height) > 300
+        assert live.status() == ""
+    finally:
+        chromium.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", held)
+    live.go()
+    assert not live.driver.find_elements("css selector", "#loading")
+
+
+def tree_of(live) -> list[tuple[str, str, str]]:
+    """Roles, names and values, as a screen reader has them."""
+    nodes = live.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
+    said = [each for each in nodes if not each.get("ignored")]
+    parts = ("role", "name", "value")
+    return [tuple(str(each.get(part, {}).get("value", "")) for part in parts) for each in said]
+
+
+def test_a_screen_reader_hears_names_values_and_what_the_flock_does(open_live):
+    live = open_live().go("#preset=experiment&n_boats=27&bw_s=0.8&seed=6&start=180")
+    slider = live.script("return document.getElementById('bw_s').ariaValueText")
+    assert slider == "0.8 seconds"
+    tree = tree_of(live)
+    assert [name for role, name, _ in tree if role == "slider"] == ["backward duration"]
+    pictures = [name for role, name, _ in tree if role in ("image", "img")]
+    said = {f"27 boats; {share} clockwise." for share in ("all", "nearly all", "most")}
+    assert said & set(pictures)
+    assert live.text("#doing") in said
+    # It changes with the flock, which is another one here.
+    live.script("page.follow('#preset=experiment&n_boats=27&bw_s=0&seed=16&start=180')")
+    live.wait()
+    live.until(
+        "return !arguments[0].includes(document.getElementById('doing').textContent)", [*said]
+    )
+    assert live.text("#doing").startswith("27 boats; ")
+
+
+FINGERS = """
+    document.querySelectorAll("details").forEach((each) => { each.open = true; });
+    const controls = [...document.querySelectorAll("main :is(a, button, input, select, summary)")];
+    return controls.filter((each) => each.checkVisibility()).flatMap((each) => {
+        each.scrollIntoView({block: "center", inline: "center"});
+        const box = each.getBoundingClientRect();
+        const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
+        const own = (dx, dy) => {
+            const at = document.elementFromPoint(x + dx, y + dy);
+            return at && (each.contains(at) || at.contains(each) && at.matches("label"));
+        };
+        const tall = own(0, -21) && own(0, 21);
+        const wide = box.width >= 44 || own(-21, 0) && own(21, 0);
+        return tall && wide ? [] : [each.id || each.textContent];
+    })"""
+
+
+@pytest.mark.parametrize("fragment", ["", "#n_boats=12&n_leaders=2&seed=7&beside.n_leaders=0"])
+def test_a_finger_of_44_pixels_hits_what_it_touches(open_live, fragment):
+    live = open_live(PHONE).go(fragment)
+    assert live.script(FINGERS) == []
+
+
+def test_a_phone_shows_both_means_of_two_flocks(open_live):
+    live = open_live(PHONE).go()
+    live.script("document.querySelector(\"a[data-lesson='learned']\").click()")
+    live.until("return page.other.lesson === 'learned'")
+    live.wait()
+    live.run_to(20.0)
+    means = live.script("return page.runs.map((run) => run.mean('signed_order').toFixed(2))")
+    for word in ("left", "right", "Left", "Right"):
+        assert word not in live.text("#story").split()
+    for shown in (0, 1):
+        live.script("document.querySelectorAll('.switch button')[arguments[0]].click()", shown)
+        words = live.text(".so-far", shown).replace("−", "-").replace("+", "").split()
+        assert [each for each in words if each in means] == means
+        right = "return arguments[0].getBoundingClientRect().right"
+        assert live.script(right, live.find(".so-far", shown)) <= PHONE[0]
+
+
+def test_nothing_is_lost_when_a_phone_turns_amid_a_game_or_the_page_is_there_twice(open_live):
+    live = open_live(PHONE).go()
+    live.script("document.querySelector(\"a[data-lesson='steer']\").click()")
+    live.until("return page.other.lesson === 'steer'")
+    live.wait()
+    live.press("ARROW_RIGHT")
+    live.until("return page.runs[0].end > 5")
+    resize(live.driver, *PHONE[::-1])
+    now, heading = live.script("return [page.runs[0].end, page.hand.value]")
+    live.until("return page.runs[0].end > arguments[0] + 5", now)
+    assert live.script("return page.hand.value") == heading
+    assert live.script("return document.documentElement.scrollWidth <= innerWidth")
+    live.driver.switch_to.new_window("tab")
+    second = LivePage(live.driver, live.file, PHONE).go(plays=True)
+    second.until("return page.runs[0].end > 2")
+    assert second.complaints() == []
+    live.driver.close()
+    live.driver.switch_to.window(live.driver.window_handles[0])
+    live.until("return page.runs[0].end > arguments[0] + 10", now)
+    assert live.complaints() == []
 
 
 def test_the_file_is_small(file):

@@ -1,5 +1,6 @@
 """`flockenv analyze` and `replay` take tracks where they take recordings, and write both."""
 
+import gzip
 import json
 
 import numpy as np
@@ -118,18 +119,30 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
     (tmp_path / "nameless.csv").write_text("frame,who,x,y\n0,0,0,0\n")
     (tmp_path / "words.csv").write_text("frame,id,x,y\n0,0,left,0\n")
     (tmp_path / "layout.toml").write_text('pool = "narrow"\nx = "x_cm"\n')
+    for name in ("film.xlsx", "README.md", "film"):
+        (tmp_path / name).write_text("no table")
     for arguments, words in (
-        (["analyze", "nameless.csv"], "no column looks like 'id'"),
+        (["analyze", "nameless.csv"], "fill in: one of the columns frame, who, x, y"),
         (["analyze", "words.csv"], "column 'x' holds other things than numbers"),
         (["analyze", "alone.csv", "--layout", "layout.toml"], "column 'x_cm' is missing"),
         (["analyze", "absent.npz"], "absent.npz cannot be read"),
+        (["analyze", "nothere.csv"], "nothere.csv cannot be read: No such file or directory"),
+        (["replay", "nothere.tsv"], "nothere.tsv cannot be read: No such file or directory"),
+        (
+            ["analyze", "film.xlsx"],
+            "film.xlsx is no table of tracks: its name ends in none of .csv",
+        ),
+        (["analyze", "README.md"], ".parquet, .pq (recordings end in .npz)"),
+        (["analyze", "film"], "film is no table of tracks"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
         (["analyze", "run.npz", "--plot", "order.xyz"], "'xyz' is none of .eps"),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
         (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
         (["analyze", "absent.npz", "--out", "new.csv"], "absent.npz cannot be read"),
     ):
-        paths = [str(tmp_path / each) if "." in each else each for each in arguments]
+        paths = [
+            str(tmp_path / each) if "." in each or each == "film" else each for each in arguments
+        ]
         done = cli(*paths)
         assert done.returncode == 2, arguments
         assert words in done.stderr, arguments
@@ -163,3 +176,18 @@ def test_a_table_without_a_description_gets_one_to_check(cli, tmp_path):
     (tmp_path / "small.csv").write_text("frame,robot,x,y,heading_deg\n0,a,1,2,5.0\n")
     flockenv.tracks.guess_layout(tmp_path / "small.csv")
     assert flockenv.tracks.read_layout(tmp_path / "small.toml").heading_unit == "deg"
+
+
+@pytest.mark.parametrize("name", ["t.tsv", "t.txt", "t.csv.gz", "t.tsv.gz"])
+def test_tables_of_other_endings_are_read_and_described(cli, name, tmp_path):
+    separator = "," if "csv" in name else "\t"
+    rows = [f"{k},a,{60 + 0.1 * k},40.5,0" for k in range(60)]
+    text = "\n".join(["frame,id,x,y,heading", *rows]).replace(",", separator)
+    path = tmp_path / name
+    path.write_bytes(gzip.compress(text.encode()) if name.endswith(".gz") else text.encode())
+    done = cli.succeeds("analyze", path)
+    assert "t.toml is a guess" in done.stderr.replace("\n", " ")
+    assert "60 poses of 1 boats in 60 frames" in done.stderr
+    assert (tmp_path / "t.toml").exists()
+    again = cli.succeeds("analyze", path)
+    assert "guess" not in again.stderr

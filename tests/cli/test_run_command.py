@@ -36,6 +36,23 @@ def test_the_parameters_beside_it_run_it_again(cli, run, tmp_path):
     assert "seed 7, policy paper's law at every substep" in toml.read_text()
 
 
+def test_what_changes_on_the_way_is_the_schedule_of_simulate(cli, tmp_path):
+    out = tmp_path / "changed.npz"
+    changes = ["--at", "3:bw_s=0.8", "--at", "3:c4=0.2", "--at", "7.5:target=ccw"]
+    cli.succeeds("run", *SMALL, *changes, "--out", out, "-q")
+    schedule = [(3.0, {"bw_s": 0.8, "c4": 0.2}), (7.5, {"target": "ccw"})]
+    expected = flockenv.simulate(PARAMETERS, 0, 12.0, schedule=schedule, contacts=True)
+    assert flockenv.Recording.load(out) == expected
+    assert not np.array_equal(expected.pose, flockenv.simulate(PARAMETERS, 0, 12.0).pose)
+
+
+@pytest.mark.parametrize("change", ["5", "soon:bw_s=1", "5:bw_s", "5:", ":bw_s=1"])
+def test_a_change_on_the_way_of_another_form_is_refused(cli, tmp_path, change):
+    refused = cli("run", *SMALL, "--at", change, "--out", tmp_path / "run.npz", "-q")
+    assert refused.returncode == 2
+    assert f"--at '{change}' is not accepted: TIME:FIELD=VALUE" in refused.stderr
+
+
 def test_json_is_all_that_is_printed(cli, tmp_path):
     out = tmp_path / "run.npz"
     policy = ["--policy", "damped law", "--no-contacts", "--hz", "5"]

@@ -236,7 +236,7 @@ def test_what_stands_for_no_number(seen, tmp_path, mark):
         (lambda _: "", "there is no header"),
         (lambda text: "# made by a tracker\n" + text, "`skip` leaves out lines before the header"),
         (lambda text: "\n" + text, "there is no header"),
-        (lambda text: text.split("\n", 1)[1], "column 'x_px' is missing; there are 0, boat1"),
+        (lambda text: text.split("\n", 1)[1], "`header` names the columns of a file"),
         (
             lambda text: text.replace(",", ";").replace("\n", ",5\n").replace("le,5", "le", 1),
             "separator = ';'",

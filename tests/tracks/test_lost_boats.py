@@ -96,7 +96,7 @@ def test_a_heading_that_is_held_is_said_and_can_be_left_out(seen, number):
 
 @pytest.mark.parametrize("source", [{"x": [1.0]}, np.zeros(3), 3, None])
 def test_what_is_no_table_or_layout_is_named(seen, source):
-    with pytest.raises(TypeError, match="tracks must be a file or a DataFrame"):
+    with pytest.raises(TypeError, match="tracks must be a file, a DataFrame"):
         read_tracks(source, LAYOUT)
     with pytest.raises(TypeError, match="layout must be a TrackLayout"):
         read_tracks(seen.table, "tracks.toml" if source is None else source)

@@ -229,11 +229,13 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
 
 def test_files_that_are_none(tmp_path):
     (tmp_path / "wrong.txt").write_text("1 2 3")
-    with pytest.raises(flockenv.ParameterError, match=r"tracks\.toml cannot be read"):
+    with pytest.raises(flockenv.ParameterError, match=r"tracks\.csv cannot be read: No such"):
         read_tracks(tmp_path / "tracks.csv")
+    (tmp_path / "wrong.xlsx").write_text("1 2 3")
     for name, words in (
-        ("absent.csv", "cannot be read as a table: .*No such file"),
-        ("wrong.txt", "ends in none of .csv"),
+        ("absent.csv", r"absent\.csv cannot be read: No such file"),
+        ("wrong.xlsx", r"ends in none of \.csv, \.tsv, \.txt, \.csv\.gz"),
+        ("wrong.txt", "column 'id' is missing; there are 1 2 3"),
     ):
         with pytest.raises(flockenv.ParameterError, match=words):
             read_tracks(tmp_path / name, OPEN)

@@ -7,11 +7,11 @@ import { Laws } from "../../web/laws.mjs";
 
 const values = { n_boats: "27", n_leaders: "4", target: "cw" };
 const laws = new Laws([{ name: "a law at every substep" }, { name: "a law" }]);
-const base = { flock: { preset: "paper", seed: "7", bw_s: "0.3" }, beside: null };
+const base = { flock: { preset: "paper", seed: "7", bw_s: "0.3" }, beside: null, copies: 1 };
 
 test("a field changes, and what it was changed from does not", () => {
   const before = structuredClone(base);
-  assert.deepEqual(changed(base, values, laws, "bw_s", "1"), { flock: { ...base.flock, bw_s: "1" }, beside: null });
+  assert.deepEqual(changed(base, values, laws, "bw_s", "1"), { ...base, flock: { ...base.flock, bw_s: "1" } });
   assert.deepEqual(base, before);
 });
 
@@ -58,19 +58,91 @@ test("what the simulator refuses is not what is asked for next", async () => {
     }
     return { continues: false, values: [answer()], taken: [taken] };
   });
-  const first = { flock: { n_boats: "2" }, beside: null };
+  const first = { flock: { n_boats: "2" }, beside: null, copies: 1 };
   await flocks.become(first, "open");
-  await assert.rejects(flocks.become({ flock: { n_boats: "3" }, beside: null }, "change"), /refused/);
+  await assert.rejects(flocks.become({ ...first, flock: { n_boats: "3" } }, "change"), /refused/);
   assert.equal(flocks.asked, first);
   assert.equal(flocks.shown, first);
 });
 
-test("the score leaves out what was simulated before anybody looked", async () => {
-  for (const [ahead, isNumber] of [[0, true], [30, false]]) {
-    const flocks = flocksOf(async () => ({ continues: false, values: [answer()], taken: [taken] }));
-    await flocks.become({ flock: {}, beside: null }, "open", ahead);
-    assert.equal(Number.isFinite(flocks.runs[0].mean("psi_o")), isNumber);
+const first = { flock: { n_boats: "2", seed: "7" }, beside: null, copies: 1 };
+const later = (times, inWindow = 1) => ({ ...taken, time_s: times, in_analysis_window: [inWindow, inWindow] });
+
+/** Flocks that run two samples with each answer, and continue with each change. */
+async function run() {
+  let time = -1;
+  const flocks = flocksOf(async (kind) => {
+    time += 2;
+    return { continues: kind === "change", values: [answer()], taken: [later([time - 1, time])] };
+  });
+  await flocks.become(first, "open");
+  return flocks;
+}
+
+test("the score leaves out what was simulated before anybody looked, and a link says from when on", async () => {
+  const flocks = await run();
+  assert.ok(Number.isFinite(flocks.runs[0].mean("psi_o")));
+  assert.deepEqual(flocks.linked().other, {});
+  await flocks.runTo(5, () => true);
+  assert.equal(flocks.runs[0].end, 5);
+  flocks.countAnew();
+  assert.ok(Number.isNaN(flocks.runs[0].mean("psi_o")));
+  assert.deepEqual(flocks.linked(), { ...first, changes: [], other: { start: "5" }, isWhole: true });
+  assert.deepEqual(flocks.linked(5.5).other, { start: "5", now: "5.5" });
+});
+
+test("a flock that is not wanted any more runs no further", async () => {
+  const flocks = await run();
+  await flocks.runTo(50, () => flocks.runs[0].end < 9);
+  assert.equal(flocks.runs[0].end, 9);
+});
+
+test("what changes on the way is in the link, with its time, and starts the score again", async () => {
+  const flocks = await run();
+  await flocks.become({ ...first, flock: { ...first.flock, bw_s: "0.5" } }, "change");
+  await flocks.become({ ...first, flock: { seed: "7", bw_s: "0.7" } }, "change");
+  const { flock, changes, other } = flocks.linked();
+  assert.deepEqual(flock, first.flock);
+  assert.deepEqual(changes, [{ time: 3, fields: { bw_s: "0.5" } }, { time: 5, fields: { n_boats: "", bw_s: "0.7" } }]);
+  assert.deepEqual(other, {});
+  await flocks.become(first, "open");
+  assert.deepEqual(flocks.linked().changes, []);
+});
+
+test("more changes than a link holds are left out, and it says so", async () => {
+  const flocks = await run();
+  for (let k = 1; k <= 201; k += 1) {
+    await flocks.become({ ...first, flock: { ...first.flock, bw_s: String(k) } }, "change");
   }
+  const { flock, changes, isWhole } = flocks.linked();
+  assert.deepEqual([flock.bw_s, changes, isWhole], ["201", undefined, false]);
+});
+
+test("an answer about flocks that are no longer shown is dropped", async () => {
+  const flocks = await run();
+  const { runs } = flocks;
+  const asked = flocks.advance({});
+  flocks.runs = [...runs];
+  await asked;
+  assert.equal(runs[0].end, 1);
+});
+
+test("a map gets settled orders alone, of the first flock", async () => {
+  const orders = [];
+  const flocks = await run();
+  for (const [times, inWindow] of [[[20, 21], 1], [[22, 23], 0], [[40, 41], 1], [[42, 43], 0]]) {
+    flocks.append([later(times, inWindow)], (...order) => orders.push(order));
+  }
+  assert.deepEqual(orders, [[0.3, 0.5]]);
+});
+
+test("flocks of several seeds are seen, and those beside them only where nobody steers", async () => {
+  const flocks = flocksOf(async (_, { requests }) => ({ continues: false, values: requests.map(() => answer()), taken: requests.map(() => taken) }));
+  await flocks.become({ flock: { n_boats: "2", seed: "9", leaders: "you" }, beside: { leaders: "a law" }, copies: 3 }, "open");
+  assert.deepEqual(flocks.runs.map(({ seed }) => seed), ["9", "10", "11", "9", "10", "11"]);
+  assert.deepEqual([flocks.seen.length, flocks.besides], [3, 3]);
+  await flocks.become({ flock: { n_boats: "2" }, beside: { leaders: "a law" }, copies: 1 }, "open");
+  assert.deepEqual([flocks.seen.length, flocks.besides], [2, 1]);
 });
 
 test("leaders have one target or several", () => {

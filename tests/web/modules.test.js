@@ -39,3 +39,10 @@ test("what is shared imports nothing of either page, and no script is a page in 
     assert.ok(read(path).split("\n").length <= 241, path);
   }
 });
+
+test("no text is written over several lines, whose indents the page leaves out", () => {
+  for (const path of [...shared, ...own]) {
+    const broken = read(path).split("\n").filter((line) => !/^\s*(?:\/\/|\/?\*)/.test(line) && (line.split("`").length - 1) % 2 > 0);
+    assert.deepEqual(broken, [], path);
+  }
+});

@@ -1,10 +1,10 @@
-// Law: the page asks for what it will soon show, notes only settled flocks on the map, and ends a game.
+// Law: the page asks for what it will soon show, waits while flocks become others, and ends the rounds of a game.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
 let frame = null;
-const button = { classList: { toggle: () => undefined }, setAttribute: () => undefined };
+const button = { textContent: "", classList: { toggle: () => undefined }, setAttribute: () => undefined };
 globalThis.requestAnimationFrame = (call) => { frame = call; };
 globalThis.document = { getElementById: () => button };
 globalThis.performance = { now: () => 0 };
@@ -12,19 +12,23 @@ const { Playback } = await import("../../web/playback.mjs");
 
 /** A page that plays two flocks until some time, and notes what it is asked. */
 function played({ end, speed = "8", lesson, means = [0.5, 0.2], waiting = 0 }) {
-  const noted = { asked: [], said: [], appended: [], map: [] };
-  const run = (mean) => ({ time: [0], end, bw_s: 0.3, mean: () => mean, append: (taken, onCycle) => { noted.appended.push([taken, onCycle]); } });
+  const noted = { asked: [], said: [], map: [], again: 0, links: 0 };
+  const run = (mean) => ({ time: [0], end, bw_s: 0.3, mean: () => mean });
   const page = {
-    changing: false, other: { speed, lesson }, runs: means.map(run), hand: { value: 0.25 },
-    view: { pinned: null, observed: null, map: { note: (...words) => noted.map.push(words) }, show: () => undefined },
-    simulator: {
-      waiting,
-      ask: async (kind, question) => { noted.asked.push([kind, question]); return { taken: [{ observation: [1] }, {}], milliseconds: 1, memory: 2 }; },
-      stop: (words) => noted.said.push(words),
-    },
+    changing: false, other: { speed, lesson }, runs: means.map(run), hand: { value: 0.25, center: () => undefined },
+    view: { panels: [{}], pinned: null, observed: null, map: { note: (...words) => noted.map.push(words) }, show: () => undefined },
+    simulator: { waiting, stop: (words) => noted.said.push(words) },
     attempt: (question) => question(), say: (words) => noted.said.push(words),
+    again: async () => { noted.again += 1; }, link: { write: () => { noted.links += 1; } },
   };
-  page.flocks = { runs: page.runs, areYours: lesson === "steer", isRecorded: false };
+  page.flocks = {
+    runs: page.runs, besides: 1, areYours: lesson === "steer", isRecorded: false, shown: { flock: {} },
+    advance: async (question, onCycle) => {
+      noted.asked.push(question);
+      onCycle(0.3, 0.7);
+      return { taken: [{ observation: [1] }, {}], milliseconds: 1, memory: 2 };
+    },
+  };
   const playback = new Playback(page);
   return { playback, page, noted, tick: async (ms) => { frame(ms); await new Promise(setImmediate); } };
 }
@@ -35,7 +39,8 @@ test("it stays ahead of what it shows, by a tenth of a second and more if it pla
     playback.restart();
     playback.toggle();
     await tick(0);
-    assert.deepEqual(noted.asked.map(([kind, question]) => [kind, question.samples, question.rudder]), [["advance", samples, 0.25]]);
+    assert.deepEqual(noted.asked.map((question) => [question.samples, question.heading]), [[samples, 0.25]]);
+    assert.deepEqual(noted.map, [[0.3, 0.7]]);
   }
 });
 
@@ -51,40 +56,48 @@ test("it shows no more than there is, at its speed", async () => {
   assert.equal(playback.time, page.runs[0].end);
 });
 
-test("the map gets settled orders alone, of the first flock", async () => {
-  for (const [end, isNoted] of [[20, false], [40, true]]) {
-    const { playback, noted, tick } = played({ end });
-    playback.restart();
-    playback.toggle();
-    await tick(0);
-    const [[, first], [, second]] = noted.appended;
-    assert.equal(first !== undefined, isNoted);
-    assert.equal(second, undefined);
-    first?.(0.7);
-    assert.deepEqual(noted.map, isNoted ? [[0.3, 0.7]] : []);
-  }
+test("nothing moves while the flocks become others", async () => {
+  const { playback, page, noted, tick } = played({ end: 5 });
+  playback.toggle();
+  page.changing = true;
+  await tick(200);
+  assert.deepEqual([playback.time, noted.asked.length], [0, 0]);
 });
 
-test("a game pauses at its end and says who won, once, and no other lesson does", async () => {
-  for (const [end, lesson, sentences] of [[130, "steer", 1], [100, "steer", 0], [130, "leaders", 0]]) {
+test("a round pauses at its end and is counted, once, and no other lesson's flock is", async () => {
+  for (const [end, lesson, sentences] of [[310, "steer", 1], [299, "steer", 0], [310, "leaders", 0]]) {
     const { playback, noted, tick } = played({ end, lesson });
     playback.restart();
     playback.toggle();
     await tick(0);
     assert.equal(noted.said.length, sentences);
     assert.equal(playback.transport.playing, sentences === 0);
+    assert.equal(playback.isOver, sentences === 1);
     if (sentences > 0) {
-      assert.match(noted.said[0], /^You win/);
+      assert.match(noted.said[0], /^Round 1: you lead better, /);
+      // A hand that moves does not go on, and the button starts another round.
+      playback.start();
+      assert.deepEqual([playback.transport.playing, noted.again], [false, 0]);
       playback.toggle();
       await tick(16);
-      assert.equal(noted.said.length, 1);
-      assert.equal(playback.transport.playing, true);
+      assert.deepEqual([noted.said.length, noted.again], [1, 1]);
     }
+  }
+});
+
+test("a hand that moves starts a round that waits, and nobody else's flock", () => {
+  for (const lesson of ["steer", "leaders"]) {
+    const { playback } = played({ end: 5, lesson });
+    playback.start();
+    assert.equal(playback.transport.playing, lesson === "steer");
+    playback.start();
+    assert.equal(playback.transport.playing, lesson === "steer");
   }
 });
 
 test("a simulator without an answer is named, and pausing stops it", async () => {
   const { playback, noted, tick } = played({ end: 5, waiting: 1500 });
+  playback.costs.simulating = 1;
   playback.toggle();
   await tick(0);
   assert.match(noted.said[0], /pause stops it/);
@@ -98,20 +111,23 @@ test("time is sought within what there is", () => {
   assert.deepEqual([-1, 3, 9].map((time) => { playback.seek(time); return playback.time; }), [2, 3, 5]);
 });
 
-test("an answer about flocks that are no longer shown is dropped", async () => {
-  const { playback, page, noted, tick } = played({ end: 0 });
-  page.simulator.ask = async () => {
-    page.runs = [...page.runs];
-    return { taken: [{ observation: [1] }, {}], milliseconds: 1, memory: 2 };
-  };
+test("pausing writes the moment into the link", () => {
+  const { playback, noted } = played({ end: 5 });
+  playback.toggle();
+  assert.equal(noted.links, 0);
+  playback.toggle();
+  assert.equal(noted.links, 1);
+});
+
+test("a slow first answer is no simulator without one", async () => {
+  const { playback, noted, tick } = played({ end: 5, waiting: 1500 });
   playback.toggle();
   await tick(0);
-  assert.deepEqual(noted.appended, []);
-  assert.equal(page.view.observed, null);
+  assert.deepEqual(noted.said, []);
 });
 
 test("other flocks start another round", async () => {
-  const { playback, noted, tick } = played({ end: 130, lesson: "steer" });
+  const { playback, noted, tick } = played({ end: 310, lesson: "steer" });
   for (const round of [1, 2]) {
     playback.restart();
     playback.toggle();

@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { commandLine, linkTo, pythonText, readLink, requestsOf, textOf, tomlOf, valueFrom, valuesOfToml } from "../../web/request.mjs";
+import { changedFlock, differences, linkTo, readLink, requestsOf, textOf, tomlOf, valueFrom, valuesOfToml } from "../../web/request.mjs";
+import { commandLine, isSchedule, pythonText } from "../../web/texts.mjs";
 
 const FIELDS = ["n_boats", "n_leaders", "pool", "bw_s", "target", "dt_s", "discs"];
 
@@ -21,7 +22,7 @@ test("a second flock may differ in several fields, up to the limits", () => {
 });
 
 test("an empty link asks for nothing", () => {
-  assert.deepEqual(readLink("", FIELDS), { flock: {}, beside: null, other: {}, ignored: [] });
+  assert.deepEqual(readLink("", FIELDS), { flock: {}, beside: null, changes: [], other: {}, ignored: [] });
 });
 
 for (const [fragment, sentence] of [
@@ -32,6 +33,12 @@ for (const [fragment, sentence] of [
   ["dt_s=1e-6", "The link's dt_s=1e-6 is ignored: dt_s is 0.001 to 1 on this page."],
   ["speed=3", "The link's speed=3 is ignored: speed is one of 1, 2, 4, 8, 16, 32, 64 and max."],
   ["lesson=<script>alert(1)</script>", "The link's lesson=<script>alert(1)</script> is ignored: lesson is a word."],
+  ["at.7200.1.bw_s=1", "The link's at.7200.1.bw_s=1 is ignored: a change comes by 7200 s."],
+  ["at.5.wheels=1", "The link's at.5.wheels=1 is ignored: this page knows no such parameter."],
+  ["at.5.n_leaders=9", "The link's at.5.n_leaders=9 is ignored: n_leaders is 0 to 8 on this page."],
+  ["at.5.speed=8", "The link's at.5.speed=8 is ignored: this page knows no such parameter."],
+  ["now=1e3", "The link's now=1e3 is ignored: now is a number of seconds up to 7200."],
+  ["flocks=4", "The link's flocks=4 is ignored: flocks is 1, 2 or 3."],
   ["<img src=x>=1", "The link's <img src=x>=1 is ignored: this page knows no such parameter."],
   ["__proto__=1", "The link's __proto__=1 is ignored: this page knows no such parameter."],
   ["toString=1", "The link's toString=1 is ignored: this page knows no such parameter."],
@@ -40,7 +47,7 @@ for (const [fragment, sentence] of [
   test(`${fragment} is ignored in words, and what is beside it is not`, () => {
     const wanted = readLink(`#${fragment}&bw_s=0.4`, FIELDS);
     assert.deepEqual(wanted.ignored, [sentence]);
-    assert.deepEqual(wanted.flock, { bw_s: "0.4" });
+    assert.deepEqual([wanted.flock, wanted.changes], [{ bw_s: "0.4" }, []]);
   });
 }
 
@@ -49,7 +56,8 @@ test("long texts are cut", () => {
 });
 
 test("what is shown makes a link that asks for it", () => {
-  const shown = { flock: { preset: "experiment", n_boats: "27", target: "cw,ccw" }, beside: { leaders: "tuned law" }, other: { speed: "8" } };
+  const shown = { flock: { preset: "experiment", n_boats: "27", target: "cw,ccw" }, beside: { leaders: "tuned law" },
+    changes: [{ time: 3.5, fields: { bw_s: "0.5", target: "cw,cw" } }, { time: 40, fields: { bw_s: "" } }], other: { speed: "8" } };
   const { ignored, ...wanted } = readLink(linkTo(shown), FIELDS);
   assert.deepEqual(wanted, shown);
   assert.deepEqual(ignored, []);
@@ -61,6 +69,19 @@ test("a request has the values of its parameters, that of the second flock with 
   assert.deepEqual(requestsOf({ flock: { n_boats: "27" }, beside: null }, KINDS), [{ parameters: { n_boats: 27 } }]);
   assert.deepEqual(requestsOf({ flock: { n_boats: "27", seed: "18446744073709551615", leaders: "learned" }, beside: { leaders: "you" } }, KINDS),
     ["learned", "you"].map((leaders) => ({ parameters: { n_boats: 27 }, seed: "18446744073709551615", leaders })));
+});
+
+test("flocks of several seeds, and then those beside them", () => {
+  const requests = requestsOf({ flock: { seed: "18446744073709551613" }, beside: { n_boats: "3" }, copies: 3 }, KINDS);
+  const seeds = ["18446744073709551613", "18446744073709551614", "18446744073709551615"];
+  assert.deepEqual(requests, [{}, { n_boats: 3 }].flatMap((parameters) => seeds.map((seed) => ({ parameters, seed }))));
+  assert.equal(requestsOf({ flock: { seed: "-1" }, beside: null, copies: 2 }, KINDS)[1].seed, "-1");
+});
+
+test("changes are what is other, and make the flock that it became", () => {
+  const [before, after] = [{ n_boats: "2", c4: "0.1" }, { n_boats: "2", bw_s: "0.5" }];
+  assert.deepEqual(differences(before, after), { c4: "", bw_s: "0.5" });
+  assert.deepEqual(changedFlock(before, differences(before, after)), after);
 });
 
 test("a link's text is a value of its kind, and the value is the text again", () => {
@@ -84,7 +105,7 @@ test("what is no value of its kind stays text, for the simulator to refuse", () 
 test("the same flock as a command", () => {
   assert.equal(commandLine({}, 480), "flockenv run --seed 0 --minutes 8");
   assert.equal(commandLine({ preset: "paper", n_boats: "27", pool: "180,0", leaders: "tuned law", seed: "7" }, 60),
-    "flockenv run --preset paper --set n_boats=27 --set 'pool=[180, 0]' --policy \"tuned law\" --seed 7 --minutes 1");
+    "flockenv run --preset paper --n-boats 27 --pool '(180, 0)' --policy \"tuned law\" --seed 7 --minutes 1");
 });
 
 test("the same flock in Python", () => {
@@ -95,6 +116,19 @@ test("the same flock in Python", () => {
     '    n_boats=27, pool=(float("inf"), 0), target=["cw", "ccw"]', ")",
     'recording = flockenv.simulate(parameters, seed=0, duration_s=60, policy="learned")', "",
   ].join("\n"));
+});
+
+test("what changes on the way is an option of the command, and a schedule in Python", () => {
+  const changes = [{ time: 183.5, fields: { bw_s: "2.85", target: "cw,ccw" } }];
+  assert.equal(commandLine({ n_boats: "27", c4: "0.1" }, 480, changes),
+    "flockenv run --n-boats 27 --set c4=0.1 --seed 0 --minutes 8 --at 183.5:bw_s=2.85 --at '183.5:target=[cw, ccw]'");
+  const kinds = { n_boats: "count", target: "choices", bw_s: "real" };
+  assert.match(pythonText([{ n_boats: "27" }], 480, kinds, changes),
+    /simulate\(\n {4}parameters, seed=0, duration_s=480,\n {4}schedule=\[\(183\.5, \{"bw_s": 2\.85, "target": \["cw", "ccw"\]\}\)\],\n\)/);
+  assert.equal(isSchedule(changes), true);
+  for (const fields of [{ leaders: "learned" }, { n_leaders: "2" }, { preset: "paper" }, { c4: "" }]) {
+    assert.equal(isSchedule([{ time: 1, fields }]), false);
+  }
 });
 
 test("leaders with policies of their own are no command, and a dictionary in Python", () => {

@@ -3,20 +3,22 @@
 import runpy
 import shlex
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 import flockenv
-from flockenv.cli.parameters import OneFlock
+from flockenv.cli.parameters import OneFlock, option_of
 
 pytestmark = pytest.mark.live
 
 SCRIPT = """
 import { readFileSync } from "node:fs";
-import { commandLine, pythonText } from "./web/request.mjs";
-const { flocks, kinds } = JSON.parse(readFileSync(0, "utf8"));
+import { commandLine, pythonText } from "./web/texts.mjs";
+const { flocks, kinds, changes } = JSON.parse(readFileSync(0, "utf8"));
 const pair = (each) => [each, { ...each, bw_s: "0.2" }];
-const texts = flocks.map((each) => [commandLine(each, 90), pythonText(pair(each), 90, kinds)]);
+const python = (each) => pythonText(pair(each), 90, kinds, changes);
+const texts = flocks.map((each) => [commandLine(each, 90, changes), python(each)]);
 process.stdout.write(JSON.stringify(texts));
 """
 KINDS = {
@@ -29,6 +31,28 @@ KINDS = {
     "leaders_reverse": "flag",
     "discs": "rows",
 }
+NAMED = {option_of(name): name for name in OneFlock.named}
+TYPES = {"n_boats": int, "n_leaders": int, "bw_s": float}
+
+
+def test_command_and_python_change_the_same_flock_on_the_way(
+    answer_of_node, cli, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    changes = [{"time": 20.5, "fields": {"bw_s": "2.85", "pool": "150,60"}}]
+    changes.append({"time": 60, "fields": {"target": "cw,ccw", "leaders_reverse": "false"}})
+    flock = {"n_boats": "9", "n_leaders": "2", "seed": "5"}
+    question = {"flocks": [flock], "kinds": KINDS, "changes": changes}
+    ((command, python),) = answer_of_node(question, "--input-type=module", "-e", SCRIPT)
+    arguments = [*shlex.split(command)[1:], "--no-contacts", "--quiet", "--out", "run.npz"]
+    cli.succeeds(*arguments)
+    Path("same.py").write_text(python)
+    recording = runpy.run_path("same.py")["recording"]
+    assert flockenv.Recording.load("run.npz") == recording
+    schedule = [(20.5, {"bw_s": 2.85, "pool": (150, 60)})]
+    schedule.append((60.0, {"target": ["cw", "ccw"], "leaders_reverse": False}))
+    parameters = flockenv.FlockParameters(n_boats=9, n_leaders=2)
+    assert recording == flockenv.simulate(parameters, 5, 90.0, schedule=schedule)
 
 
 @pytest.mark.parametrize(
@@ -51,12 +75,15 @@ KINDS = {
     ],
 )
 def test_command_and_python_name_the_same_flock(flock, expected, answer_of_node, tmp_path):
-    question = {"flocks": [flock], "kinds": KINDS}
+    question = {"flocks": [flock], "kinds": KINDS, "changes": []}
     ((command, python),) = answer_of_node(question, "--input-type=module", "-e", SCRIPT)
     wanted = flockenv.FlockParameters(**expected)
     words = shlex.split(command)
-    changes = [value for option, value in pairwise(words) if option == "--set"]
-    assert OneFlock(changes=changes).parameters() == wanted
+    given = list(pairwise(words))
+    changes = [value for option, value in given if option == "--set"]
+    own = {name: value for option, value in given if (name := NAMED.get(option))}
+    numbers = {name: TYPES.get(name, str)(value) for name, value in own.items()}
+    assert OneFlock(changes=changes, **numbers).parameters() == wanted
     assert words[words.index("--minutes") + 1] == "1.5"
     assert words[words.index("--seed") + 1] == flock.get("seed", "0")
     same = tmp_path / "same.py"

@@ -4,6 +4,7 @@ use flockenv::environment::observation::{Block, ObservationLayout, observe_flock
 use flockenv::parameters::FlockParameters;
 use flockenv::policies::{Law, LawName, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The paper's law at every substep, by the name that the command line has for it.
 pub(crate) const EVERY_SUBSTEP: &str = LawName::EverySubstep.name();
@@ -17,7 +18,7 @@ pub(crate) enum Leaders {
     EverySubstep,
     /// By a law, at every decision.
     Law(Pilot),
-    /// By the paper's law, but for leader 0, whose rudder is the visitor's.
+    /// To the visitor's heading, by the damped law.
     You(Pilot),
     /// Each by a law of its own, from what it observes.
     Each(Vec<Observing>),
@@ -43,7 +44,12 @@ impl Leaders {
             "you" if parameters.n_leaders == 0 => {
                 Err(refused(name, "at least one leader, whom you steer"))
             }
-            "you" => Pilot::new(Law::Paper, parameters, CONTROL_HZ).map(Self::You),
+            "you" => Pilot::new(
+                law(LawName::Damped.name(), parameters)?,
+                parameters,
+                CONTROL_HZ,
+            )
+            .map(Self::You),
             _ => Pilot::new(law(name, parameters)?, parameters, CONTROL_HZ).map(Self::Law),
         }
     }
@@ -66,7 +72,8 @@ impl Leaders {
         own.collect::<Result<_>>().map(Self::Each)
     }
 
-    /// The rudders from now on, given those until now; `None` for the law at every substep.
+    /// The rudders from now on, given those until now; `None` for the law at every substep. `yours`: the heading that the
+    /// visitor asks of all leaders, clockwise from outward, over π.
     ///
     /// # Errors
     /// As for [`Pilot::rudders`] and [`observe_flock`].
@@ -75,9 +82,11 @@ impl Leaders {
             Self::EverySubstep => Ok(None),
             Self::Law(pilot) => pilot.rudders(flock).map(Some),
             Self::You(pilot) => {
-                let mut rudders = pilot.rudders(flock)?;
-                rudders[0] = yours;
-                Ok(Some(rudders))
+                let targets = &flock.parameters().target;
+                let leaders = 0..flock.parameters().n_leaders;
+                // Clockwise of outward; a clockwise tangent is a quarter turn from there.
+                pilot.lean_to(leaders.map(|k| FRAC_PI_2 - targets.of(k).sign() * PI * yours));
+                pilot.rudders(flock).map(Some)
             }
             Self::Each(own) => {
                 let own = own.iter().enumerate();

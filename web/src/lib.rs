@@ -18,8 +18,8 @@ use live::{Columns, Live};
 use serde_json::{Value as Json, json};
 use std::cell::RefCell;
 
-/// How many flocks the page runs side by side.
-const FLOCKS: usize = 2;
+/// How many flocks the page runs side by side: three of a game, and the law's.
+const FLOCKS: usize = 6;
 
 #[derive(Default)]
 struct Page {
@@ -157,7 +157,9 @@ pub extern "C" fn open(flock: usize) -> u32 {
         let said = opened.and_then(Live::new).and_then(|live| {
             let values = describe::values(live.parameters());
             let place = page.flocks.get_mut(flock);
-            *place.ok_or_else(|| FlockError::parameter("flock", flock, "0 or 1"))? = Some(live);
+            *place.ok_or_else(|| {
+                FlockError::parameter("flock", flock, format!("less than {FLOCKS}"))
+            })? = Some(live);
             Ok(values)
         });
         page.say(said)
@@ -213,11 +215,11 @@ pub extern "C" fn derived(place: usize, psi_o: f64, phi_o: f64, sign: f64) -> f6
     }
 }
 
-/// Holds the rudder of the leader that the visitor steers, from the next control step on.
+/// Keeps the heading of the leaders that the visitor steers, from the next control step on.
 #[unsafe(no_mangle)]
-pub extern "C" fn steer(flock: usize, rudder: f64) -> u32 {
+pub extern "C" fn steer(flock: usize, heading: f64) -> u32 {
     with(|page| {
-        let said = page.flock(flock).and_then(|live| live.steer(rudder));
+        let said = page.flock(flock).and_then(|live| live.steer(heading));
         page.say(said.map(|()| Json::Null))
     })
 }

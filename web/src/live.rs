@@ -76,13 +76,23 @@ impl Live {
         let continues = request.seed == self.flock.seed()
             && new.n_boats == old.n_boats
             && new.pool.has_outer_wall() == old.pool.has_outer_wall();
-        let change = Change::Parameters(Box::new(new.clone()));
+        let mut turned = old.clone();
+        turned.target.clone_from(&new.target);
+        // As in a schedule of Python: new parameters restart the random streams, and another target alone does not.
+        let change = if turned == *new {
+            Change::Target(new.target.clone())
+        } else {
+            Change::Parameters(Box::new(new.clone()))
+        };
         if !continues || (new != old && self.flock.change(&change).is_err()) {
             *self = Self::new(request)?;
             return Ok(false);
         }
         self.leaders = leaders;
         self.start_steering();
+        // What was decided at this time was decided before the change.
+        let now = self.rudders();
+        self.rudder = self.leaders.decide(&self.flock, &now, self.yours)?;
         Ok(true)
     }
 
@@ -97,19 +107,19 @@ impl Live {
         self.rudder = is_held.then(|| held.unwrap_or(amidships));
     }
 
-    /// Holds the visitor's rudder from the next decision on.
+    /// Keeps the heading that the visitor asks for, from the next decision on: clockwise from outward, over π.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for a rudder beyond −1 and 1.
-    pub fn steer(&mut self, rudder: f64) -> Result<()> {
-        if !(-1.0..=1.0).contains(&rudder) {
+    /// [`FlockError::Parameter`] for a heading beyond −1 and 1.
+    pub fn steer(&mut self, heading: f64) -> Result<()> {
+        if !(-1.0..=1.0).contains(&heading) {
             return Err(FlockError::parameter(
-                "rudder",
-                rudder,
+                "heading",
+                heading,
                 "a number in [-1, 1]",
             ));
         }
-        self.yours = rudder;
+        self.yours = heading;
         Ok(())
     }
 

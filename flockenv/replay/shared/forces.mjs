@@ -1,9 +1,9 @@
-// Contact forces as bars, whose length is in proportion to the force.
+// Contact forces as bars, whose area is in proportion to the force: at most a boat long, and wider for what is more.
 
 import { roundNumber } from "./words.mjs";
 
-/** Longest bar, in widths of a hull; those of stronger forces end in an arrowhead. */
-export const LONGEST = 6;
+/** Width of the bars that are no longer than a boat, in widths of a hull. */
+const NARROWEST = 0.15;
 /** Bars shorter than this part of a hull's width are left out. */
 const SHORTEST = 0.05;
 /** Largest number of forces that the scale is chosen from. */
@@ -27,10 +27,11 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** A force's bar: its length in hull widths, 0 for none, and whether it is cut off. */
-export function barOf(force, scale) {
+/** A force's bar, in hull widths; `longest`: a boat's length. A bar is as wide as a boat at most; 0 long for no bar. */
+export function barOf(force, scale, longest) {
   const widths = force / scale;
-  return { widths: widths < SHORTEST ? 0 : Math.min(widths, LONGEST), cut: widths > LONGEST };
+  const length = widths < SHORTEST ? 0 : Math.min(widths, longest);
+  return { length, width: Math.min(NARROWEST * Math.max(widths / longest, 1), 1) };
 }
 
 /**
@@ -39,10 +40,10 @@ export function barOf(force, scale) {
  */
 export function drawForces(scene, sample, scale) {
   const { run } = scene;
-  const { hull_radius_cm: radius } = run.lengths;
+  const { hull_radius_cm: radius, hull_half_length_cm: half } = run.lengths;
   for (const { i, j, along, angle, force } of run.contacts(sample)) {
-    const bar = barOf(force, scale);
-    if (bar.widths === 0) {
+    const bar = barOf(force, scale, 1 + half / radius);
+    if (bar.length === 0) {
       continue;
     }
     const [x, y, heading] = scene.poses[i];
@@ -57,22 +58,15 @@ export function drawForces(scene, sample, scale) {
   }
 }
 
-function drawBar({ context, palette, scale, run, pixel }, point, angle, { widths, cut }) {
-  const radius = run.lengths.hull_radius_cm * scale;
-  const [length, half] = [2 * widths * radius, Math.max(0.15 * radius, 1)];
+function drawBar({ context, palette, scale, run, pixel }, point, angle, bar) {
+  const hull = 2 * run.lengths.hull_radius_cm * scale;
+  const [length, width] = [bar.length * hull, Math.max(bar.width * hull, 2)];
   context.save();
   context.translate(...pixel(...point));
   context.rotate(-angle);
   for (const [color, extra] of [[palette.mark, 1], [palette.force, 0]]) {
     context.fillStyle = color;
-    context.fillRect(0, -half - extra, length + extra, 2 * (half + extra));
-    if (cut) {
-      context.beginPath();
-      context.moveTo(length + 5 * half + 2 * extra, 0);
-      context.lineTo(length, 3 * half + extra);
-      context.lineTo(length, -3 * half - extra);
-      context.fill();
-    }
+    context.fillRect(0, -width / 2 - extra, length + extra, width + 2 * extra);
   }
   context.restore();
 }

@@ -6,9 +6,9 @@ import { element, fixed, wrapped } from "./words.mjs";
 /** What the motors do in each phase of their cycle. */
 const PHASES = {
   fw: ["forward", "the motors drive the boats forward"],
-  nop1: ["drift", "the motors are off after driving forward"],
+  nop1: ["off", "the motors are off, and the boats drift forward"],
   bw: ["backward", "the motors drive the boats backward"],
-  nop2: ["drift", "the motors are off after driving backward"],
+  nop2: ["off", "the motors are off, and the boats drift backward"],
 };
 
 /** Where a leader heads, in words, if not all head there. */
@@ -129,7 +129,7 @@ export class Panel {
       }
     }
     this.forceKey = element("div", "force-key");
-    this.forceKey.title = "Bars lie on the boat that is pushed, in proportion to the force; one that ends in an arrowhead would be longer";
+    this.forceKey.title = "A bar lies on the boat that is pushed. It grows with the force: at most a boat long, and wider for what is more";
     this.forceBar = element("span", "force-bar");
     this.forceWords = element("span");
     this.forceKey.append(this.forceBar, this.forceWords);

@@ -1,24 +1,27 @@
-// Law: a bar is as long as its force is large, on a round scale that the page's runs share.
+// Law: a bar has the area of its force, on a round scale that the page's runs share, and is no longer than a boat.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { barOf, drawForces, forceScale, LONGEST } from "../../../flockenv/replay/shared/forces.mjs";
+import { barOf, drawForces, forceScale } from "../../../flockenv/replay/shared/forces.mjs";
 import { runOf } from "./runs.js";
 
-test("twice the force is twice the bar", () => {
-  for (const force of [3, 7, 29]) {
-    assert.equal(barOf(2 * force, 10).widths, 2 * barOf(force, 10).widths);
-  }
-  assert.equal(barOf(10, 10).widths, 1);
-});
+const BOAT = 1.5;
 
-test("a bar that would be too long is cut, and says so", () => {
-  assert.deepEqual(barOf(10 * LONGEST, 10), { widths: LONGEST, cut: false });
-  assert.deepEqual(barOf(10 * LONGEST + 1, 10), { widths: LONGEST, cut: true });
+test("twice the force is twice the area, at most a boat long and as wide as one", () => {
+  const area = (force) => barOf(force, 10, BOAT).length * barOf(force, 10, BOAT).width;
+  for (const force of [3, 7, 9, 29, 45]) {
+    assert.ok(Math.abs(area(2 * force) / area(force) - 2) < 1e-12, force);
+  }
+  assert.equal(barOf(10, 10, BOAT).length, 1);
+  for (const force of [15, 16, 90, 1e6]) {
+    assert.equal(barOf(force, 10, BOAT).length, BOAT);
+  }
+  assert.ok(barOf(16, 10, BOAT).width > barOf(15, 10, BOAT).width);
+  assert.equal(barOf(1e6, 10, BOAT).width, 1);
 });
 
 test("a force too weak to be seen has no bar", () => {
-  assert.equal(barOf(0.1, 10).widths, 0);
+  assert.equal(barOf(0.1, 10, BOAT).length, 0);
 });
 
 test("the scale is a round number near what nine in ten forces stay below", () => {
@@ -40,15 +43,14 @@ function written() {
   const ignore = () => undefined;
   const context = {
     save: ignore, restore: ignore, translate: (x, y) => starts.push([x, y]), rotate: (angle) => turns.push(angle),
-    beginPath: ignore, moveTo: ignore, lineTo: ignore, fill: ignore,
     fillRect: (x, _y, width) => rectangles.push([context.fillStyle, x, width]),
   };
   return { context, rectangles, starts, turns };
 }
 
-test("what is drawn has the length of the force from the point where it presses, on each boat", () => {
+test("what is drawn has the length of the force from the point where it presses, up to a boat's, on each boat", () => {
   const { context, rectangles, starts, turns } = written();
-  const run = runOf([6, 12, 24]);
+  const run = runOf([6, 18, 24]);
   const scene = {
     context, run, scale: 2, poses: run.posesAt(0.5), pixel: (x, y) => [x, y],
     palette: { mark: "white", force: "red" },

@@ -28,5 +28,5 @@ export function runOf(forces = [5, 20, 40]) {
     contact_angle: column(forces.map(() => 0)),
     contact_force: column(forces),
   }));
-  return new Run({ boats: 2, leaders: 1, phases: ["fw"], lengths: { hull_radius_cm: 5 } }, columns);
+  return new Run({ boats: 2, leaders: 1, phases: ["fw"], lengths: { hull_radius_cm: 5, hull_half_length_cm: 5 } }, columns);
 }

@@ -1,0 +1,224 @@
+"""What is known of other programs' tables: one row each, and words that many use for columns.
+
+In a pattern ``{id}`` stands for the name of a boat, ``{n}`` for its number, ``{part}`` for a key
+point and ``*`` for anything. The column of y is that of x with one letter exchanged.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """The table of one program."""
+
+    program: str
+    #: Columns by field of a layout; all of them must be there.
+    columns: Mapping[str, str]
+    #: Other fields of a layout: the clock, the marks of a lost animal, the axes.
+    fields: Mapping[str, Any] = field(default_factory=dict)
+
+
+MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
+_MOTIVE = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
+
+FORMATS = (
+    Format(
+        program="MOT",
+        columns={"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"},
+        fields={"box": MOT[4:6], "heading": None, "header": MOT, "y_down": True},
+    ),
+    Format(
+        program="OptiTrack Motive",
+        columns={"frame": "Time (Seconds)", "x": "{id}.Position_X", "y": "{id}.Position_Z"},
+        fields={"id": "", "quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True},
+    ),
+    Format(
+        program="DeepLabCut, several animals",
+        columns={"frame": "frame", "x": "{id}.{part}_x"},
+        fields={"id": ""},
+    ),
+    Format(
+        program="DeepLabCut",
+        columns={"frame": "frame", "x": "{part}_x", "confidence": "{part}_likelihood"},
+    ),
+    Format(
+        program="SLEAP",
+        columns={"frame": "frame_idx", "id": "track", "x": "{part}.x"},
+    ),
+    Format(
+        program="movement",
+        columns={"frame": "time", "id": "individual*", "x": "{part}_x"},
+    ),
+    Format(program="TrackMate", columns={"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
+    Format(program="ROS", columns={"frame": "%time", "x": "*position.x"}, fields={"fps": 1e9}),
+    Format(
+        program="ROS 2",
+        columns={"frame": "*rosbagTimestamp", "x": "*position.x"},
+        fields={"fps": 1e9},
+    ),
+    Format(program="AnimalTA", columns={"frame": "Time", "x": "X_{id}"}, fields={"id": ""}),
+    Format(program="EthoVision", columns={"frame": "Trial time", "x": "X center"}),
+    Format(program="idtracker.ai", columns={"frame": "seconds", "x": "*x{n}*"}, fields={"id": ""}),
+    Format(program="numbered columns", columns={"x": "*x{n}*"}, fields={"id": ""}),
+    Format(program="key points of several", columns={"x": "{id}.{part}_x"}, fields={"id": ""}),
+    Format(program="key points", columns={"x": "{part}_x"}),
+    Format(program="key points", columns={"x": "{part}.x"}),
+)
+"""What is known of each program, the more special ones first."""
+
+_BODIES = ("body", "boat", "robot", "animal", "fish", "individual", "particle", "agent")
+_THINGS = (*_BODIES, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "frame": (
+        *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp", "position_t"),
+        *("rosbagtimestamp", "*time", "*stamp", "step", "image", "frames", "frame", "frame_*"),
+        *("*_frame", "framenumber", "sample", "index"),
+    ),
+    "id": (
+        *("track_id", "track", *(f"{thing}{end}" for thing in _THINGS for end in ("", "s", "_*"))),
+        *("id", "name", "instance", "oid", "trackid", "label"),
+    ),
+    "x": (
+        *("pos_x", "position_x", "cent_x", "centroid_x", "center_x", "centre_x", "wcentroid_x"),
+        *("x", "x_pos", "x_position", "x_centroid", "x_center", "x_wcentroid", "*position_x"),
+    ),
+    "heading": (
+        *("heading", "theta", "angle", "orientation", "yaw", "alpha", "direction", "ang", "*yaw"),
+    ),
+}
+"""What columns are often called, in small letters without a unit, the better names first."""
+
+_PARTS = {
+    "head": ("head", "nose", "snout", "bow", "front"),
+    "tail": ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
+    "middle": ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
+}
+_ANGLES = ("heading", "theta", "angle", "orientation", "alpha", "yaw")
+_PLACES = {"{id}": r"(?P<id>.+?)", "{part}": r"(?P<part>[^.]+)", "{n}": r"[ _#.]?(?P<id>\d+)"}
+_UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$")
+
+
+def plain(name: str) -> tuple[str, str]:
+    """Return what a column is called without its unit, in small letters, and the unit."""
+    found = _UNIT.search(name)
+    unit = next(filter(None, found.groups()), "") if found else ""
+    base = re.sub(r"([a-z])([A-Z])", r"\1_\2", _UNIT.sub("", name)).lower()
+    return re.sub(r"[^a-z0-9]+", "_", base).strip("_"), unit.strip().lower()
+
+
+def _matches(pattern: str, names: Iterable[str]) -> Iterator[re.Match[str]]:
+    text = re.escape(pattern).replace(r"\*", ".*")
+    for place, expression in _PLACES.items():
+        text = text.replace(re.escape(place), expression)
+    compiled = re.compile(text, re.IGNORECASE)
+    return (found for name in names if (found := compiled.fullmatch(name)))
+
+
+def _as_written(found: re.Match[str]) -> str:
+    """Return the name of a column with ``{id}`` in place of a boat's name or number."""
+    if "id" not in found.groupdict():
+        return found[0]
+    return f"{found[0][: found.start('id')]}{{id}}{found[0][found.end('id') :]}"
+
+
+def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
+    """Return the column of y beside one of x, None if there is none; `boat` is what {id} is."""
+    one = (
+        f"{name[:at]}{chr(ord(x) + 1)}{name[at + 1 :]}" for at, x in enumerate(name) if x in "xX"
+    )
+    every = name.replace("x", "y").replace("X", "Y")
+    changed = (each for each in [*[*one][::-1], every] if each.replace("{id}", boat) in names)
+    return next(changed, None) if every != name else None
+
+
+def quaternion(names: Iterable[str]) -> list[str] | None:
+    """Return the columns x, y, z and w of the first quaternion among names, None if none is."""
+    there = {name.casefold(): name for name in names}
+    for key in there:
+        for place in (at for at, letter in enumerate(key) if letter == "w"):
+            four = [f"{key[:place]}{axis}{key[place + 1 :]}" for axis in "xyzw"]
+            if all(each in there for each in four):
+                return [there[each] for each in four]
+    return None
+
+
+def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
+    """Return the fields x, y and heading for key points, given what their columns begin with.
+
+    The center is a point in the middle, or the middle of head and tail, or the first point.
+    """
+
+    def part(kind: str) -> str | None:
+        return next((stems[name] for name in stems if plain(name)[0] in _PARTS[kind]), None)
+
+    head, tail, middle = part("head"), part("tail"), part("middle")
+    ends = [tail, head] if head and tail else []
+    used = [middle] if middle else ends or [*stems.values()][:1]
+    form: dict[str, Any] = {axis: [f"{stem}{axis}" for stem in used] for axis in "xy"}
+    if len(used) == 1:
+        form = {axis: columns[0] for axis, columns in form.items()}
+    if ends:
+        form["heading"] = [f"{stem}{axis}" for stem in ends for axis in "xy"]
+    return form
+
+
+def _fields_of(one: Format, names: list[str], there: Set[str]) -> dict[str, Any] | None:
+    """Return the fields of a layout for a program's table, None if it is another's."""
+    columns = dict(one.columns)
+    y, pattern = columns.pop("y", None), columns.pop("x")
+    found = {name: next(_matches(each, names), None) for name, each in columns.items()}
+    pairs = [each for each in _matches(pattern, names) if y or _as_y(each[0], there)]
+    if not pairs or None in found.values():
+        return None
+    first = pairs[0]
+    boat, x = first.groupdict().get("id", ""), _as_written(first)
+    form: dict[str, Any] = {name: each[0] for name, each in found.items() if each}
+    form |= {"x": x, "y": y or _as_y(x, there, boat)} | dict(one.fields)
+    if "part" in first.groupdict():
+        same = [each for each in pairs if each.groupdict().get("id", "") == boat]
+        form |= key_points({each["part"]: _as_written(each)[:-1] for each in same})
+        form.pop("confidence", None)
+        used = [form["x"]] if isinstance(form["x"], str) else form["x"]
+        stems = {each[:-1] for each in (*used, *form.get("heading", [])[::2])}
+        for word in ("likelihood", "score", "confidence"):
+            sure = sorted(f"{stem}{word}" for stem in stems)
+            if {each.replace("{id}", boat) for each in sure} <= there:
+                form["confidence"] = sure
+    elif "{id}" in x:
+        angles = (each for word in _ANGLES for each in _matches(f"*{word}{{n}}*", names))
+        form.update(("heading", _as_written(each)) for each in islice(angles, 1))
+    return form
+
+
+def recognized(names: list[str]) -> dict[str, Any]:
+    """Return the fields of a layout that names of columns tell, "" for none."""
+    by_plain: dict[str, str] = {}
+    for name in names:
+        by_plain.setdefault(plain(name)[0], name)
+    form: dict[str, Any] = {}
+    for name, words in WORDS.items():
+        found = (each[0] for word in words for each in _matches(word, by_plain))
+        form.update((name, by_plain[each]) for each in islice(found, 1))
+    there = set(names)
+    y = _as_y(form["x"], there) if "x" in form else None
+    has_place = y is not None
+    form = form | {"y": y} if has_place else {n: form[n] for n in form if n != "x"}
+    for one in FORMATS:
+        known = _fields_of(one, names, there)
+        # Any pair of columns may be a key point's.
+        if known and not (has_place and "{" in one.columns["x"] and _is_loose(known)):
+            form |= known
+            break
+    if "heading" not in form and "quaternion" not in form and (four := quaternion(names)):
+        form["quaternion"] = four
+    if "quaternion" in form:
+        form["heading"] = ""
+    return {name: "" if value is None else value for name, value in form.items()}
+
+
+def _is_loose(known: Mapping[str, Any]) -> bool:
+    return not {"heading", "confidence", "quaternion", "box", "fps"} & known.keys()

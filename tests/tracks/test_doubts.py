@@ -1,0 +1,213 @@
+"""Law: what may be wrong is refused or said: no table gives a wrong number without a word."""
+
+import gzip
+import tracemalloc
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import flockenv
+from flockenv.tracks import TrackLayout, guess_layout, read_tracks
+from flockenv.tracks import table as tables
+
+from .conftest import LAYOUT, but, read_and_counted
+from .test_honest_tables import CORPUS, METERS, ORDERS, PLACE, PLAIN, quaternions, ros, rows
+
+SMALL = TrackLayout(**PLAIN)
+
+
+@pytest.mark.parametrize("order", ["shuffled", "newest first", "late block first"])
+def test_rows_that_were_sorted_are_said(order):
+    found, report = read_and_counted(ORDERS[order](rows()), SMALL)
+    expected, plain = read_and_counted(rows(), SMALL)
+    assert found == expected
+    assert report.unsorted > 0 == plain.unsorted
+    assert "rows are not in the order of time" in str(report)
+    assert "order of time" not in str(plain)
+
+
+@pytest.mark.parametrize("order", ["by boat", "leaders, then others"])
+def test_blocks_of_boats_are_nothing_to_say(order):
+    found, report = read_and_counted(ORDERS[order](rows()), SMALL)
+    assert report.unsorted == 0
+    assert found == read_tracks(rows(), SMALL)
+
+
+def test_two_films_one_after_the_other_are_sorted_and_said(seen):
+    other = seen.table.assign(frame=seen.table["frame"] - 1000)
+    _, report = read_and_counted(pd.concat([seen.table, other]), LAYOUT)
+    assert report.unsorted == 20
+    assert report.longest_gap_s == pytest.approx(40.0, abs=0.3)
+
+
+@pytest.mark.parametrize("name", ["time", "t", "seconds", "time_s", "Time [s]", "stamp"])
+def test_whole_numbers_in_a_row_are_no_times_whatever_their_name(name):
+    table = rows().rename(columns={"frame": name})
+    layout = but(SMALL, frame=name, fps=None)
+    with pytest.raises(
+        flockenv.ParameterError, match=r"fps is missing.*\(fps = 1 if it counts s\)"
+    ):
+        read_tracks(table, layout)
+    assert read_tracks(table, but(layout, fps=10.0)) == read_tracks(rows(), SMALL)
+    # Every third frame is no time either, unless the name says so: pictures every 3 s.
+    third = table.assign(**{name: 3 * table[name]})
+    if name in ("seconds", "time_s", "Time [s]"):
+        assert read_and_counted(third, layout)[1].step_s == 3.0
+    else:
+        with pytest.raises(flockenv.ParameterError, match="fps is missing"):
+            read_tracks(third, layout)
+
+
+def test_duration_and_speed_are_said():
+    _, report = read_and_counted(rows(), SMALL)
+    assert "15 s, a frame every 0.1 s; median speed 5.43 cm/s" in str(report)
+    named = report.named()
+    assert (named["duration_s"], named["step_s"]) == (15.0, pytest.approx(0.1))
+    assert named["median_speed_cm_s"] == pytest.approx(report.median_speed_cm_s)
+
+
+@pytest.mark.parametrize("axis", "xyzw")
+def test_a_part_of_a_quaternion_is_no_heading(axis):
+    layout = TrackLayout(**METERS, fps=10.0, heading=f"q{axis}")
+    with pytest.raises(flockenv.ParameterError) as raised:
+        read_tracks(quaternions(), layout)
+    words = f"heading = 'q{axis}' is a part of a quaternion: quaternion = ['qx', 'qy', 'qz', 'qw']"
+    assert words in str(raised.value)
+
+
+def test_quaternions_of_any_sign_are_one_turn():
+    layout = TrackLayout(**METERS, fps=10.0, quaternion=("qx", "qy", "qz", "qw"))
+    table = quaternions()
+    sign = np.where(np.arange(len(table)) % 3 == 0, -1.0, 1.0)
+    other = table.assign(**{f"q{axis}": table[f"q{axis}"] * sign for axis in "xyzw"})
+    assert np.allclose(read_tracks(other, layout).pose, read_tracks(table, layout).pose)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t: t, "w, whose squares add up to 1"),
+        (lambda t: t.drop(columns="qw"), "column 'qw' is missing"),
+        (lambda t: t.assign(qw="turned"), "'qw' holds other things"),
+    ],
+)
+def test_what_is_no_quaternion_is_named(change, words):
+    columns = ("x", "y", "qz", "qw") if "squares" in words else ("qx", "qy", "qz", "qw")
+    layout = TrackLayout(**METERS, fps=10.0, quaternion=columns)
+    with pytest.raises(flockenv.ParameterError, match=words):
+        read_tracks(change(quaternions()), layout)
+
+
+def test_lost_quaternions_count_as_missing_headings():
+    table = quaternions().astype(float)
+    table.loc[7:12, ["qx", "qy", "qz", "qw"]] = 0.0
+    layout = TrackLayout(**METERS, fps=10.0, quaternion=("qx", "qy", "qz", "qw"))
+    _, report = read_and_counted(table, layout)
+    assert sum(report.left_out["without a heading"].values()) == 6
+
+
+def test_an_empty_column_of_names_is_one_boat_and_said():
+    table = rows()[rows()["id"] == 1]
+    for empty in (np.nan, None, "", " "):
+        found, report = read_and_counted(table.assign(id=empty), SMALL)
+        assert found.ids.tolist() == ["0"]
+        assert "the column of names is empty: all rows are of one boat" in str(report)
+    with pytest.raises(flockenv.ParameterError, match="id is missing: several rows have one time"):
+        read_tracks(rows().assign(id=np.nan), SMALL)
+
+
+def test_detections_beside_the_pool_are_said():
+    _, report = read_and_counted(CORPUS["other: a sixth beside the pool"].table(), SMALL)
+    assert "17% of the detections lie beside the pool: do cm_per_unit" in str(report)
+
+
+def test_a_file_without_a_header_is_named_and_described(tmp_path):
+    text = rows()[["frame", "id", "x", "y", "angle"]].to_csv(index=False, header=False)
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(flockenv.ParameterError, match="`header` names the columns of a file"):
+        read_tracks(tmp_path / "a.csv", SMALL)
+    checks = guess_layout(tmp_path / "a.csv")
+    assert 'header = ["column 0", "column 1", "column 2", "column 3", "column 4"]' in checks[0]
+    with pytest.raises(flockenv.ParameterError, match="the header names 3 columns, and line 1"):
+        read_tracks(tmp_path / "a.csv", but(SMALL, header=("frame", "id", "x")))
+
+
+def test_radians_that_go_on_are_among_the_guesses(tmp_path):
+    table = rows()[["frame", "id", "x", "y", "angle"]]
+    table = table.assign(angle=lambda t: np.radians(t["angle"] + 360 * (t["frame"] // 20)))
+    table.to_csv(tmp_path / "a.csv", index=False)
+    checks = guess_layout(tmp_path / "a.csv")
+    assert any("wrapped = false if they are in rad" in line for line in checks)
+
+
+def test_axes_stay_refused_beside_headings_of_0_and_half_a_turn():
+    """Boats that turn back on a line have such headings, and fit their motion."""
+    table = CORPUS["other: headings 0 and π"].table()
+    layout = TrackLayout(pool=(100.0, 0.0), fps=10.0)
+    _, report = read_and_counted(table, layout)
+    assert report.cosine == pytest.approx(1.0)
+    axes = rows().assign(angle=lambda t: t["angle"] % 180)
+    with pytest.raises(flockenv.ParameterError, match="axis = true"):
+        read_tracks(axes, SMALL)
+
+
+@pytest.mark.parametrize("name", ["zeros.csv.gz", "zeros.parquet"])
+def test_a_small_file_that_would_fill_the_memory_is_refused(name, tmp_path):
+    path = tmp_path / name
+    if name.endswith(".gz"):
+        with gzip.open(path, "wb") as file:
+            file.write(b"frame,id,x,y,heading\n")
+            for _ in range(100):
+                file.write(b"0,0,0,0,0\n" * 100_000)
+    else:
+        zeros = np.zeros(3_000_000)
+        pd.DataFrame(dict.fromkeys(("frame", "id", "x", "y", "heading"), zeros)).to_parquet(path)
+    assert path.stat().st_size < 1 << 20
+    tracemalloc.start()
+    try:
+        with pytest.raises(flockenv.ParameterError, match="it holds"):
+            read_tracks(path, SMALL)
+        assert tracemalloc.get_traced_memory()[1] < 150 << 20
+    finally:
+        tracemalloc.stop()
+
+
+class Name(str):
+    """A name that counts how often it is compared."""
+
+    compared = 0
+
+    def __eq__(self, other):
+        Name.compared += 1
+        return str.__eq__(self, other)
+
+    __hash__ = str.__hash__
+
+
+def test_columns_are_found_without_looking_through_all(tmp_path, monkeypatch):
+    """Names are compared a few times each: 200 000 of them would take an hour otherwise."""
+    boats = 1500
+    names = [Name(f"{axis}{n}") for n in range(boats) for axis in "xy"]
+    assert tables._unique([*names, Name("x7")])[1] == {"x7"}
+    assert Name.compared < 3 * len(names)
+    calls, key = [], tables._key
+    monkeypatch.setattr(tables, "_key", lambda name: calls.append(1) or key(name))
+    line = ",".join(["10.5,20.5"] * boats)
+    (tmp_path / "wide.csv").write_text(f"frame,{','.join(names)}\n0,{line}\n1,{line}\n")
+    layout = TrackLayout(pool=(100.0, 0.0), fps=1.0, x="x{id}", y="y{id}", heading=None)
+    with pytest.raises(flockenv.ParameterError, match="no boat is ever there"):
+        read_tracks(tmp_path / "wide.csv", layout)
+    assert len(calls) < 6 * len(names)
+
+
+@pytest.mark.parametrize("prefix", ["field.", "/robot1/odom/pose."])
+def test_a_ros_bag_of_one_robot_is_guessed(prefix, tmp_path):
+    table = ros(prefix, "%time" if prefix == "field." else "rosbagTimestamp")
+    table[table["robot"] == 1].drop(columns="robot").to_csv(tmp_path / "bag.csv", index=False)
+    checks = guess_layout(tmp_path / "bag.csv")
+    assert not [line for line in checks if line.startswith(("fps", "heading", "quaternion"))]
+    text = (tmp_path / "bag.toml").read_text()
+    assert "orientation.w" in text
+    assert "fps = 1000000000.0" in text
+    assert PLACE["y_down"]

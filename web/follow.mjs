@@ -1,0 +1,62 @@
+// What a link asks for: flocks from their start, what changed of them on the way, and the moment that is seen.
+
+import { changedFlock, linkTo } from "./request.mjs";
+
+/** The link to what is seen of flocks at a time, in s. */
+export function linkOf(flocks, other, time) {
+  const { other: moment, isWhole: _, ...shown } = flocks.linked(Number(time.toFixed(1)));
+  return linkTo({ ...shown, other: { ...moment, ...other } });
+}
+
+/**
+ * Has the flocks become those of a link, with what changed on the way, and run to its moment. What the simulator
+ * refuses is left out, one parameter after another, and named in `linked.ignored`. `isWanted` says whether to go on.
+ */
+export async function follow(flocks, linked, isWanted) {
+  const { start = "0", now = start, flocks: copies = "1" } = linked.other;
+  await opened(flocks, { flock: linked.flock, beside: linked.beside, copies: Number(copies) }, linked);
+  const steps = [{ time: Number(start) }, ...linked.changes, { time: Number(now) }].sort((one, other) => one.time - other.time);
+  for (const { time, fields } of steps) {
+    await flocks.runTo(time, isWanted);
+    if (!isWanted()) {
+      return;
+    }
+    if (fields) {
+      await changedTo(flocks, fields, linked);
+    } else if (time === Number(start) && time > 0) {
+      flocks.countAnew();
+    }
+  }
+}
+
+async function opened(flocks, wanted, linked) {
+  for (let tries = 0; tries < 40; tries += 1) {
+    try {
+      await flocks.become(wanted, "open");
+      return;
+    } catch (error) {
+      if (!error.refused) {
+        throw error;
+      }
+      linked.ignored.push(`The link asks for what cannot be: ${error.message}.`);
+      const held = [wanted.flock, wanted.beside ?? {}].filter((fields) => Object.hasOwn(fields, error.field));
+      if (held.length === 0) {
+        Object.assign(wanted, { flock: {}, beside: null });
+      }
+      for (const fields of held) {
+        delete fields[error.field];
+      }
+    }
+  }
+}
+
+async function changedTo(flocks, fields, linked) {
+  try {
+    await flocks.become({ ...flocks.shown, flock: changedFlock(flocks.shown.flock, fields) }, "change");
+  } catch (error) {
+    if (!error.refused) {
+      throw error;
+    }
+    linked.ignored.push(`The link asks for what cannot be: ${error.message}.`);
+  }
+}

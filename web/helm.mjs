@@ -1,0 +1,76 @@
+// The heading that a visitor asks of the leaders: a thumb, and the arrow keys wherever the focus is.
+
+/** What takes arrow keys for itself: text, and a list of keys that is open. */
+const KEEPS_ARROWS = "textarea, input[type='text'], input[type='number'], [contenteditable], dialog[open]";
+/** What a key turns to: degrees, clockwise. */
+const TURNS = { ArrowLeft: -15, ArrowRight: 15 };
+
+export class Helm {
+  #thumb;
+  #words;
+  #isYours;
+  #onTurn;
+
+  /** `words`: where the heading is said; `isYours`: whether there are boats that the visitor steers; `onTurn`: called after each turn. */
+  constructor(thumb, words, isYours, onTurn) {
+    this.#thumb = thumb;
+    this.#words = words;
+    this.#isYours = isYours;
+    this.#onTurn = onTurn;
+    thumb.addEventListener("input", () => this.#turn(Number(thumb.value)));
+    // Before whatever has the focus, such as a choice that an arrow would change.
+    document.addEventListener("keydown", (event) => this.#key(event), { capture: true });
+    this.center();
+  }
+
+  /** From −1 to 1: clockwise from outward, over half a turn. */
+  get value() {
+    return Number(this.#thumb.value) / 180;
+  }
+
+  /** Straight at the wall, as a round starts. */
+  center() {
+    this.#show(0);
+  }
+
+  #key(event) {
+    if (!Object.hasOwn(TURNS, event.key) || !this.#isYours() || isKept(event)) {
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+    this.#thumb.focus({ preventScroll: true });
+    this.#turn(turned(Number(this.#thumb.value), TURNS[event.key]));
+  }
+
+  #turn(degrees) {
+    this.#show(degrees);
+    this.#onTurn();
+  }
+
+  #show(degrees) {
+    this.#thumb.value = degrees;
+    this.#words.textContent = headingWords(degrees);
+    this.#thumb.setAttribute("aria-valuetext", this.#words.textContent);
+  }
+}
+
+/** A heading after a turn, both in degrees: around and around, within ±180. */
+export function turned(degrees, by) {
+  const next = degrees + by;
+  return next > 180 || next < -180 ? next - 360 * Math.sign(next) : next;
+}
+
+function isKept(event) {
+  return event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.(KEEPS_ARROWS) || document.querySelector("dialog[open]");
+}
+
+/** A heading in words, by its degrees clockwise from outward. */
+export function headingWords(degrees) {
+  const [along, way] = [Math.abs(degrees), degrees > 0 ? "clockwise" : "counter-clockwise"];
+  if (along === 0 || along === 180) {
+    return along === 0 ? "straight at the wall" : "straight inward";
+  }
+  const lean = 90 - along;
+  return lean === 0 ? way : `${way}, ${Math.abs(lean)}° ${lean > 0 ? "outward" : "inward"}`;
+}

@@ -1,0 +1,81 @@
+// A flock as a command and in Python.
+
+import { isOwn } from "./request.mjs";
+
+/** Fields that the command has options for. */
+const OPTIONS = { n_boats: "--n-boats", n_leaders: "--n-leaders", pool: "--pool", bw_s: "--bw-s" };
+const shellWord = (text) => (/^[\w.:=+-]+$/.test(text) ? text : `'${text}'`);
+
+/** Whether commands and Python have words for what changed on the way. */
+export function isSchedule(changes) {
+  const isFixed = (name) => !isOwn(name) || name === "n_leaders";
+  return changes.every(({ fields }) => Object.entries(fields).every(([name, value]) => value !== "" && !isFixed(name)));
+}
+
+/** The command that simulates a flock and changes it on the way, for so many seconds; none for leaders with policies of their own. */
+export function commandLine(flock, seconds, changes = []) {
+  const words = ["flockenv run", ...(flock.preset ? [`--preset ${flock.preset}`] : [])];
+  for (const [name, value] of Object.entries(flock).filter(([name]) => isOwn(name))) {
+    const isList = value.includes(",") || value.includes(";");
+    if (Object.hasOwn(OPTIONS, name)) {
+      words.push(`${OPTIONS[name]} ${shellWord(isList ? `(${value.split(",").join(", ")})` : value)}`);
+    } else {
+      words.push(`--set ${shellWord(`${name}=${isList ? listed(value) : value}`)}`);
+    }
+  }
+  const { leaders = "" } = flock;
+  words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
+  for (const { time, fields } of changes) {
+    words.push(...Object.entries(fields).map(([name, value]) =>
+      `--at ${shellWord(`${time}:${name}=${/[,;]/.test(value) ? listed(value) : value}`)}`));
+  }
+  return leaders.includes(",") ? "" : words.join(" ");
+}
+
+/** A list as TOML has it; a row of numbers that ends in a semicolon is one of several. */
+function listed(value) {
+  if (value.includes(";")) {
+    return `[${value.split(";").filter(Boolean).map(listed).join(", ")}]`;
+  }
+  return `[${value.split(",").join(", ")}]`;
+}
+
+/** The same in Python, for one flock or several. `kinds`: what kind of value each field has. */
+export function pythonText(flocks, seconds, kinds, changes = []) {
+  const names = ["recording", "beside"];
+  const texts = flocks.map((flock, place) => simulation(flock, seconds, kinds, changes, names[place] ?? `recording_${place + 1}`));
+  return ["import flockenv", ...texts, ""].join("\n");
+}
+
+function simulation(flock, seconds, kinds, changes, name) {
+  const given = (fields) => Object.entries(fields).filter(([name]) => isOwn(name)).map(([name, value]) => [name, pythonValue(value, kinds[name])]);
+  const fields = given(flock).map(([name, value]) => `${name}=${value}`);
+  const { leaders = "" } = flock;
+  const each = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
+  const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
+  const policy = leaders ? `, policy=${steering}` : "";
+  const entries = changes.map(({ time, fields }) => `(${time}, {${given(fields).map(([name, value]) => `"${name}": ${value}`).join(", ")}})`);
+  const schedule = entries.length > 0 ? `,\n    schedule=[${entries.join(", ")}],\n` : "";
+  return [
+    "",
+    `parameters = flockenv.FlockParameters.preset("${flock.preset ?? "simulation"}")${fields.length > 0 ? `.replace(\n    ${fields.join(", ")}\n)` : ""}`,
+    `${name} = flockenv.simulate(${schedule ? "\n    " : ""}parameters, seed=${flock.seed ?? 0}, duration_s=${seconds}${policy}${schedule})`,
+  ].join("\n");
+}
+
+function pythonValue(text, kind) {
+  const number = (each) => (/inf/i.test(each) ? 'float("inf")' : each.trim());
+  if (kind === "flag") {
+    return text === "true" ? "True" : "False";
+  }
+  if (kind === "count" || kind === "real") {
+    return text;
+  }
+  if (kind === "rows") {
+    return `(${text.split(";").filter(Boolean).map((row) => `(${row.split(",").map(number).join(", ")}), `).join("").trim()})`;
+  }
+  if (kind === "pool" && text.includes(",")) {
+    return `(${text.split(",").map(number).join(", ")})`;
+  }
+  return text.includes(",") ? `[${text.split(",").map((each) => `"${each}"`).join(", ")}]` : `"${text}"`;
+}
