@@ -28,7 +28,7 @@ shutil.rmtree(_studies, ignore_errors=True)
 shutil.copytree(
     _studies.parents[1] / "studies",
     _studies,
-    ignore=shutil.ignore_patterns("software", "*.py", "*.toml", "__pycache__"),
+    ignore=shutil.ignore_patterns("software", "*.py", "__pycache__"),
 )
 _notebooks = Path(__file__).parent / "examples"
 shutil.rmtree(_notebooks, ignore_errors=True)
@@ -141,10 +141,12 @@ def _link_environment_pages(
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
-    # Links to and from the folder studies, where it was copied to.
-    link, here = ("../../docs/", "../../")
-    if not docname.startswith("studies/"):
-        link, here = ("../studies/", "studies/")
+    # Links to and from the folder studies, where it was copied to; notebooks have their depth.
+    link, here = (
+        ("../../studies/", "../studies/") if "/" in docname else ("../studies/", "studies/")
+    )
+    if docname.startswith("studies/"):
+        link, here = "../../docs/", "../../"
     source[0] = source[0].replace(f"]({link}", f"]({here}")
 
 

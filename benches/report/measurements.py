@@ -39,7 +39,9 @@ class Measurements:
         """Read every table, and append the tables of other programs."""
         tables = {}
         for name in cls.__dataclass_fields__:
-            frames = [pd.read_csv(folder / f"{name}.csv")]
+            # A long one is compressed once the report has been made.
+            packed = folder / f"{name}.csv.gz"
+            frames = [pd.read_csv(packed if packed.exists() else folder / f"{name}.csv")]
             peers = folder / f"{name}_peers.csv"
             if peers.exists():
                 frames.append(pd.read_csv(peers))
