@@ -10,7 +10,13 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from flockenv.statistics import CONFIDENCE, bootstrap_interval, mean_interval
+from flockenv.statistics import (
+    CONFIDENCE,
+    bootstrap_interval,
+    critical_noise,
+    loss_of_order,
+    mean_interval,
+)
 from studies.study import Options, Study, write
 
 
@@ -196,34 +202,14 @@ def judging(
 
 
 def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:
-    """Return the bw in s at which mean Ψ_o falls through the middle between order and disorder.
-
-    Each group is of shape (runs, 2): Ψ_o and |m| of the runs at a level, the last level being
-    disordered. The ordered level is mean Ψ_o where mean |m| is largest. NaN where there is no order
-    to lose: where mean |m| is nowhere 0.5.
-    """
-    arrays = [np.asarray(group, float) for group in groups]
-    if min(map(len, arrays)) < 3 or max(group[:, 1].mean() for group in arrays) < 0.5:
-        return unknown(sum(map(len, arrays)))
-    return bca(arrays, lambda *drawn: fall(levels_s, drawn))
+    """Return the bw in s at which order is lost, as `flockenv.statistics.critical_noise`."""
+    return Interval(critical_noise(levels_s, groups), sum(map(len, groups)))
 
 
 def fall(levels_s: Sequence[float], groups: Sequence[Any]) -> Any:
-    """Return `critical_bw` of groups of shape (..., runs, 2), one value for each draw."""
-    x = np.asarray(levels_s, float)
+    """Return the loss of order of groups of shape (..., runs, 2), one value for each draw."""
     psi_o, abs_m = (
         np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in groups)))
         for column in (0, 1)
     )
-    curves = zip(psi_o.reshape(len(x), -1).T, abs_m.reshape(len(x), -1).T, strict=True)
-    return np.array([_middle(x, *each) for each in curves]).reshape(psi_o.shape[1:])
-
-
-def _middle(x: Any, psi_o: Any, abs_m: Any) -> float:
-    top = int(abs_m.argmax())
-    middle = (psi_o[top] + psi_o[-1]) / 2
-    place = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])
-    if place == len(x) - 1:
-        return float(x[-1])
-    share = (psi_o[place] - middle) / (psi_o[place] - psi_o[place + 1])
-    return float(x[place] + share * (x[place + 1] - x[place]))
+    return loss_of_order(levels_s, psi_o, abs_m)

@@ -1,6 +1,7 @@
 """`flockenv sweep`."""
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,8 @@ from flockenv.runs.store import RUNS_FOLDER, RunStore, run_missing
 from flockenv.runs.workload import Shard, measure_workload
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from flockenv.runs.sweep import SweepSpec
 
 
@@ -47,6 +50,8 @@ def sweep(options: SweepOptions) -> None:
     `runs/`: give the same command again to resume. Machines that share a folder can make one shard
     each, with `--shard 1/8` to `--shard 8/8`; afterwards the command without `--shard` writes the
     table.
+    If the noise `bw_s` varies, the command prints at which noise each flock loses its order, with a
+    95 % interval (three runs of a noise at least).
     A folder holds one sweep: for another one, name another folder or give `--force`.
     `docs/runs.md` describes the TOML file. If a run fails, its row says why, the others go on, and
     the command ends with exit code 1.
@@ -101,9 +106,26 @@ def sweep(options: SweepOptions) -> None:
         print_json(found)
     else:
         say(done)
+        if shard is None:
+            _show_critical_noises(table)
     if failed:
         say(f"{failed} of {len(runs)} runs failed: {where}", errors)
         raise typer.Exit(1)
+
+
+def _show_critical_noises(table: "pd.DataFrame") -> None:
+    """Print where each flock loses its order, if the sweep has several noises."""
+    from flockenv.runs.sweep import critical_noises
+
+    found = critical_noises(table)
+    for row in found.to_dict("records"):
+        flock = ", ".join(f"{name} {row[name]}" for name in found.columns[:-4])
+        noise, low, high = (row[f"critical_bw_s{end}"] for end in ("", "_low", "_high"))
+        lost = f"order is lost at bw_s {noise:.3g} s ({low:.3g} to {high:.3g})"
+        if math.isnan(noise):
+            most = row["rotation_size"]
+            lost = f"no order to lose, or fewer than three runs (mean |m| at most {most:.2f})"
+        say(f"{flock}: {lost}" if flock else lost.capitalize())
 
 
 def _is_same(path: Path, work: "SweepSpec") -> bool:

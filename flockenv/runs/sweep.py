@@ -25,6 +25,7 @@ from flockenv.recording import Recording
 from flockenv.runs.executors import Engine, threads
 from flockenv.runs.spec import RunSpec
 from flockenv.runs.store import RUNS_FOLDER, RunStore, StorageError, run_missing
+from flockenv.statistics import critical_noise
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,6 +38,7 @@ _AVERAGED = tuple(each.name for each in QUANTITIES if each.is_averaged)
 _COLUMNS = (
     "frames",
     *(f"{name}_{kind}" for name in _AVERAGED for kind in ("mean", "std")),
+    "rotation_size",
     "failure",
 )
 
@@ -156,7 +158,8 @@ def summary(run: Recording) -> dict[str, float]:
         ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
         the nematic order, milling, the signed order towards the target and the rotation
-        Ψ_o·sin φ_o. Over the frames that define them, NaN if none does.
+        m = Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
+        turns round. Over the frames that define them, NaN if none does.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
@@ -165,6 +168,9 @@ def summary(run: Recording) -> dict[str, float]:
         series = series[np.isfinite(series)]
         row[f"{name}_mean"] = float(series.mean()) if len(series) else np.nan
         row[f"{name}_std"] = float(series.std()) if len(series) else np.nan
+    rotation = used.order.rotation()
+    rotation = rotation[np.isfinite(rotation)]
+    row["rotation_size"] = float(abs(rotation).mean()) if len(rotation) else np.nan
     return row
 
 
@@ -232,6 +238,40 @@ def _one_word(value: Any) -> Any:
     if all(isinstance(each, float) for each in value):
         return "x".join(f"{radius:g}" for radius in value)
     return repr(value)
+
+
+def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
+    """Return where each flock of a sweep loses its order, as `flockenv.statistics.critical_noise`.
+
+    Parameters
+    ----------
+    table
+        Of `run_sweep` or `load_sweep`. Runs that failed do not count.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per combination of the varied fields but ``bw_s``: these fields, ``critical_bw_s``
+        with the ends of its interval, ``critical_bw_s_low`` and ``critical_bw_s_high`` in s, and
+        ``rotation_size``, the largest of any noise. NaN without order to lose or with fewer than
+        three runs of a noise. No rows if the sweep has fewer than two noises.
+    """
+    pandas = require("pandas", "plot")
+    runs = table[table["failure"] == ""]
+    fields = [name for name in table.columns[: table.columns.get_loc("seed")] if name != "bw_s"]
+    names = ("critical_bw_s", "critical_bw_s_low", "critical_bw_s_high")
+    rows = []
+    if "bw_s" in table and runs["bw_s"].nunique() > 1:
+        for key, group in runs.groupby(fields) if fields else [((), runs)]:
+            levels = np.sort(group["bw_s"].unique())
+            noises = group[["bw_s", "psi_o_mean", "rotation_size"]].groupby("bw_s")
+            if len(levels) > 1:
+                means = [each.drop(columns="bw_s") for _, each in noises]
+                found = critical_noise(levels, means)
+                row = dict(zip(fields, key, strict=True)) | dict(zip(names, found, strict=True))
+                rows.append(row | {"rotation_size": noises["rotation_size"].mean().max()})
+    found_noises: pd.DataFrame = pandas.DataFrame(rows, columns=[*fields, *names, "rotation_size"])
+    return found_noises
 
 
 def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":

@@ -1,10 +1,12 @@
 """Statistics of finished runs: each rule stands here once.
 
 Intervals of means, of differences and of any statistic of independent runs; a straight line with
-its test; times of events that did not come to all runs. `structure` has a file of its own.
+its test; times of events that did not come to all runs; the noise at which order is lost.
+`structure` has a file of its own.
 """
 
 from flockenv.statistics.aggregates import interquartile_mean, probability_of_improvement
+from flockenv.statistics.critical_noise import LEAST_ROTATION, critical_noise, loss_of_order
 from flockenv.statistics.intervals import (
     CONFIDENCE,
     FEW,
@@ -22,13 +24,16 @@ from flockenv.statistics.survival import Survival, kaplan_meier
 __all__ = [
     "CONFIDENCE",
     "FEW",
+    "LEAST_ROTATION",
     "Difference",
     "Line",
     "Survival",
     "bootstrap_interval",
+    "critical_noise",
     "fit_line",
     "interquartile_mean",
     "kaplan_meier",
+    "loss_of_order",
     "mean_interval",
     "paired_difference",
     "probability_of_improvement",

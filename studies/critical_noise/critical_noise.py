@@ -23,6 +23,7 @@ from rich.progress import track
 
 import flockenv
 from flockenv.runs.executors import finished
+from flockenv.statistics import critical_noise
 from studies.study import run, write_table
 
 NOISE_S = {
@@ -39,15 +40,6 @@ def order_of_run(
     """Mean Ψ_o and mean |Ψ_o sin φ_o| in the analysis window after the first tenth of a run."""
     order = flockenv.simulate(parameters, seed, minutes * 60, dtype=np.float32).analyzed().order
     return {"psi_o": order.psi_o.mean(), "rotation": abs(order.rotation()).mean()}
-
-
-def critical_noise(means: pd.DataFrame) -> float:
-    """Where mean Ψ_o falls through the middle, by linear interpolation; rows ordered by noise."""
-    ordered = means["rotation"].to_numpy().argmax()
-    psi_o, bw_s = means["psi_o"].to_numpy()[ordered:], means["bw_s"].to_numpy()[ordered:]
-    middle = (psi_o[0] + psi_o[-1]) / 2
-    above = np.flatnonzero(psi_o >= middle)[-1]
-    return float(np.interp(-middle, -psi_o[above : above + 2], bw_s[above : above + 2]))
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -83,21 +75,9 @@ def main(arguments: list[str] | None = None) -> None:
     runs = pd.DataFrame(rows)
     write_table(options.out, runs.round(4))
     for (preset, pool), group in runs.groupby(["preset", "pool"], sort=False):
-        means = group.groupby("bw_s")[["psi_o", "rotation"]].mean().reset_index()
-        rng = np.random.default_rng(0)
-        resampled = [
-            critical_noise(
-                group[group["seed"].isin(chosen)]
-                .set_index("seed")
-                .loc[chosen]
-                .groupby("bw_s")[["psi_o", "rotation"]]
-                .mean()
-                .reset_index()
-            )
-            for chosen in rng.integers(0, options.seeds, (200, options.seeds))
-        ]
-        low, high = np.quantile(resampled, [0.025, 0.975])
-        print(f"{preset:10} {pool:9} {critical_noise(means):.3f} s  [{low:.3f}, {high:.3f}]")
+        levels = group.groupby("bw_s")[["psi_o", "rotation"]]
+        noise, low, high = critical_noise(list(levels.groups), [runs for _, runs in levels])
+        print(f"{preset:10} {pool:9} {noise:.3f} s  [{low:.3f}, {high:.3f}]")
 
 
 if __name__ == "__main__":

@@ -21,6 +21,8 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = cli.succeeds("sweep", spec, "--out", out)
     assert "8 runs" in done.stdout
+    # Two runs of a noise bear no interval.
+    assert "n_boats 5: no order to lose, or fewer than three runs" in done.stdout
     table = load_sweep(out)
     assert table[["n_boats", "bw_s", "seed"]].drop_duplicates().shape == (8, 3)
     before = (out / "sweep.csv").read_bytes()

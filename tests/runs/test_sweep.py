@@ -4,11 +4,19 @@ import textwrap
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flockenv
 from flockenv.policies.names import EVERY_SUBSTEP
-from flockenv.runs.sweep import SweepSpec, load_sweep, read_sweep, run_sweep, to_xarray
+from flockenv.runs.sweep import (
+    SweepSpec,
+    critical_noises,
+    load_sweep,
+    read_sweep,
+    run_sweep,
+    to_xarray,
+)
 
 SPEC = """
 preset = "paper"
@@ -157,3 +165,35 @@ def test_targets_of_each_leader_are_an_axis(tmp_path: Path) -> None:
     spec.write_text(text.replace("[2]", "[3]"))
     with pytest.raises(flockenv.ParameterError, match="n_leaders = 3"):
         read_sweep(spec)
+
+
+def noisy_table(rotation: float) -> pd.DataFrame:
+    """Two flocks at four noises, three runs of each; Ψ_o of the second falls a level later."""
+    rows = [
+        {
+            "n_boats": n,
+            "bw_s": bw_s,
+            "seed": seed,
+            "psi_o_mean": psi_o,
+            "rotation_size": rotation if psi_o > 0.5 else 0.1,
+            "failure": "",
+        }
+        for n, curve in ((20, [0.9, 0.3, 0.1, 0.1]), (30, [0.9, 0.9, 0.3, 0.1]))
+        for bw_s, psi_o in zip([0.1, 0.2, 0.3, 0.4], curve, strict=True)
+        for seed in range(3)
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_each_flock_of_a_sweep_has_its_critical_noise() -> None:
+    found = critical_noises(noisy_table(0.8)).set_index("n_boats")
+    # The middle of 0.9 and 0.1 is 0.5: two thirds of the way from 0.9 down to 0.3.
+    assert found["critical_bw_s"].to_list() == pytest.approx([0.1 + 0.2 / 3, 0.2 + 0.2 / 3])
+    assert found["rotation_size"].to_list() == pytest.approx([0.8, 0.8])
+    assert critical_noises(noisy_table(0.4))["critical_bw_s"].isna().all()
+    failed = noisy_table(0.8).assign(failure="too many boats")
+    assert critical_noises(failed).empty
+    assert critical_noises(noisy_table(0.8).query("bw_s == 0.1")).empty
+    assert (
+        len(critical_noises(noisy_table(0.8).query("n_boats == 20").drop(columns="n_boats"))) == 1
+    )

@@ -1,0 +1,106 @@
+"""Critical noise: where a flock loses its order as the noise rises."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flockenv._io.arguments import items, series
+from flockenv.errors import ParameterError
+from flockenv.statistics.intervals import bootstrap_interval
+
+LEAST_ROTATION = 0.5
+"""Mean ``|m|`` that a flock must reach at some noise, or it has no order to lose."""
+
+_FEWEST_RUNS = 3
+
+
+def critical_noise(
+    noise: ArrayLike, runs: Sequence[ArrayLike], seed: int = 0
+) -> tuple[float, float, float]:
+    """Return the noise at which a flock loses its order, with its interval at level `CONFIDENCE`.
+
+    See `loss_of_order` for the rule. Runs are drawn at each noise by themselves.
+
+    Parameters
+    ----------
+    noise
+        Shape (levels,), rising, such as ``bw_s`` in s. The flock is disordered at the last one.
+    runs
+        For each level an array of shape (runs, 2): a run's means of Ψ_o and of the rotation's size
+        ``|m| = |Ψ_o sin φ_o|``, over the analysis window.
+    seed
+        Of the bootstrap.
+
+    Returns
+    -------
+    tuple of float
+        The noise and both ends of its interval. All are NaN if there is no order to lose: if mean
+        ``|m|`` is below `LEAST_ROTATION` at every noise, as in a flock that is jammed or
+        disordered; and if a level has fewer than three runs.
+
+    Raises
+    ------
+    ParameterError
+        If the noise does not rise, or runs and levels do not fit together.
+    """
+    levels = series(noise, "noise")
+    groups = [np.asarray(group, float) for group in items(runs, "runs")]
+    if len(levels) < 2 or not (np.diff(levels) > 0.0).all():
+        raise ParameterError("noise: at least two levels, each above the one before")
+    if len(groups) != len(levels) or any(g.ndim != 2 or g.shape[1] != 2 for g in groups):
+        raise ParameterError(
+            f"runs: expected {len(levels)} arrays, one per level, of shape (runs, 2): Ψ_o and |m|"
+        )
+    unknown = math.nan, math.nan, math.nan
+    if min(map(len, groups)) < _FEWEST_RUNS:
+        return unknown
+    if max(group[:, 1].mean() for group in groups) < LEAST_ROTATION:
+        return unknown
+
+    def of_places(*places: Any, axis: int) -> NDArray[np.float64]:
+        drawn = [group[np.asarray(at, int)] for group, at in zip(groups, places, strict=True)]
+        psi_o, rotation = (
+            np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in drawn)))
+            for column in (0, 1)
+        )
+        return loss_of_order(levels, psi_o, rotation)
+
+    return bootstrap_interval([np.arange(len(g)) for g in groups], of_places, seed, paired=False)
+
+
+def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> NDArray[np.float64]:
+    """Return the noise at which mean Ψ_o falls through the middle between order and disorder.
+
+    The ordered level is mean Ψ_o at the noise of the strongest rotation, so that a jam, which has a
+    high Ψ_o too, is not taken for order. The disordered level is mean Ψ_o at the last noise. The
+    curve is straight between levels; of several crossings the last one counts.
+
+    Parameters
+    ----------
+    noise
+        Shape (levels,), rising.
+    psi_o, rotation
+        Means of Ψ_o and ``|m|`` over runs, shape (levels, ...).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...).
+    """
+    x = np.asarray(noise, float)
+    order, turning = np.asarray(psi_o, float), np.asarray(rotation, float)
+    curves = zip(order.reshape(len(x), -1).T, turning.reshape(len(x), -1).T, strict=True)
+    return np.array([_middle(x, *each) for each in curves]).reshape(order.shape[1:])
+
+
+def _middle(x: NDArray[np.float64], psi_o: Any, rotation: Any) -> float:
+    top = int(rotation.argmax())
+    middle = (psi_o[top] + psi_o[-1]) / 2
+    last = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])
+    if last == len(x) - 1:
+        return float(x[-1])
+    share = (psi_o[last] - middle) / (psi_o[last] - psi_o[last + 1])
+    return float(x[last] + share * (x[last + 1] - x[last]))
