@@ -151,8 +151,8 @@ studies-trial: build $(STAMPS)/studies ## run every study in its shortest form, 
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
-floors pictures: build ## print the floors of ARCHITECTURE.md from the linter's layers; draw pages' plots whose data changed
-	$(BIN)/python -m docs.scripts.$(if $(filter floors,$@),floors,plots)
+floors pictures environment-pages: build ## print the floors of ARCHITECTURE.md; draw pages' plots whose data changed; print the environments' pages
+	$(BIN)/python -m docs.scripts.$(subst -,_,$(patsubst pictures,plots,$@))
 
 audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what this depends on
 	$(UV) --quiet pip-audit
@@ -161,7 +161,11 @@ audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what thi
 # The notices of the crates that are compiled in; the crate as it would be published, its API against the last release.
 licenses publish-check:
 	.github/release.sh $@
-release-check: audit publish-check test-processors docs test-oldest test-wheel extend studies-trial ## all of a release that can run here, and what is left for the owner
+# One declaration of repository and site, in .github/addresses.toml.
+addresses check-addresses: $(STAMPS)/venv
+	$(BIN)/python .github/addresses.py $(if $(filter check-%,$@),--check)
+
+release-check: check-addresses audit publish-check test-processors docs test-oldest test-wheel extend studies-trial ## all of a release that can run here, and what is left for the owner
 	.github/release.sh owner
 
 throughput soak speed-vs-error lint-benches: build $(STAMPS)/test ## measure, and compare with other engines (minutes; benches/Makefile)

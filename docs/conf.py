@@ -21,6 +21,7 @@ from flockenv.replay import write_replay  # noqa: E402
 from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 
 environment_pages.write()
+environment_pages.draw()
 
 # Sphinx knows pages below this folder alone.
 _studies = Path(__file__).parent / "studies"
@@ -59,7 +60,7 @@ extensions = [
     "loop",
     "mathml",
 ]
-exclude_patterns = ["_build", "environments/_*", "results", "speed_vs_error"]
+exclude_patterns = ["_build", "results", "speed_vs_error"]
 
 html_theme = "furo"
 html_title = f"flockenv {release}"
@@ -129,6 +130,7 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-signature", _shorten)
     app.connect("doctree-resolved", _mark_wide_pictures)
     app.connect("missing-reference", _plain_name)
+    app.connect("source-read", _open_comments)
     app.connect("source-read", _link_copies)
 
 
@@ -148,6 +150,11 @@ def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
     if docname.startswith("studies/"):
         link, here = "../../docs/", "../../"
     source[0] = source[0].replace(f"]({link}", f"]({here}")
+
+
+def _open_comments(app: Sphinx, docname: str, source: list[str]) -> None:
+    # A repository's viewer shows the same pages as plain Markdown, without what only the site has.
+    source[0] = re.sub(r"<!-- site\n(.*?)\n-->", r"\1", source[0], flags=re.DOTALL)
 
 
 def _shorten(

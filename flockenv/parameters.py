@@ -30,7 +30,7 @@ class FlockParameters:
     plain Python numbers and strings, a list of targets as a tuple, and a pool that equals a named
     one as its name.
 
-    docs/environments/tables.md (`make docs` writes it) lists the fields with meaning, unit, range
+    docs/environments/tables.md lists the fields with meaning, unit, range
     and their values in the presets; ``dataclasses.fields`` has the same as metadata.
 
     Raises

@@ -1,8 +1,9 @@
-"""The pages of the environments, written whenever the pages are built.
+"""The pages of the environments, from what the core declares: `make environment-pages`.
 
-`classes.md` has the docstring of each class, and id_pages.py makes a page for each id. `tables.md`
-lists what the core declares: parameters, options, terms of the reward, entries of the observation
-and of the global state, features of the flock.
+`tables.md` lists parameters, options, terms of the reward, entries of the observation and of the
+global state, and features of the flock. id_pages.py makes a page for each id, and the table of
+`index.md`. They are committed, so that they are there where a repository is read. `classes.md`, the
+docstring of each class, is on the site alone.
 """
 
 import inspect
@@ -12,7 +13,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import flockenv
-from docs.scripts.id_pages import draw_films, id_pages
+from docs.scripts.id_pages import draw_films, id_pages, plain_cell, registered
 from docs.scripts.plots import DOCS, markdown
 from flockenv.envs.observation import (
     BLOCKS,
@@ -35,9 +36,14 @@ CLASSES = (
 EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
 
 
+MARKED = re.compile(r"(?<=<!-- ids -->\n\n).*?(?=\n\n<!-- end -->)", re.DOTALL)
+
+
 def pages() -> dict[Path, str]:
-    """Return the text of every page."""
-    texts = {**id_pages(), "classes": classes(), "tables": tables()}
+    """Return the text of every page that is committed."""
+    index = (FOLDER / "index.md").read_text(encoding="utf-8")
+    index = MARKED.sub(lambda _: registered(), index)
+    texts = {**id_pages(), "tables": tables(), "index": index}
     return {FOLDER / f"{name}.md": text for name, text in texts.items()}
 
 
@@ -53,10 +59,13 @@ def tables() -> str:
     """Return the page of everything that the core declares of the environments."""
     options = markdown(
         ["option", "default", "meaning"],
-        [[f"`{name}`", f"`{each.default!r}`", _plain(each.doc)] for name, each in OPTIONS.items()],
+        [
+            [f"`{name}`", f"`{each.default!r}`", plain_cell(each.doc)]
+            for name, each in OPTIONS.items()
+        ],
     )
     terms = markdown(
-        ["term", "meaning"], [[f"`{name}`", _plain(meaning)] for name, meaning in TERMS.items()]
+        ["term", "meaning"], [[f"`{name}`", plain_cell(meaning)] for name, meaning in TERMS.items()]
     )
     return f"""# Tables
 
@@ -131,9 +140,9 @@ def _by_block(entries: Iterable[Entry]) -> str:
                 [
                     f"`{each.name}`",
                     _bounds(each),
-                    _plain(each.scale),
+                    plain_cell(each.scale),
                     "yes" if each.mirrored else "",
-                    _plain(each.meaning),
+                    plain_cell(each.meaning),
                 ]
                 for each in own
             ],
@@ -148,7 +157,7 @@ def _features() -> str:
     for entry in flock_feature_entries():
         of.setdefault(entry.name, []).append(entry.block)
     body = [
-        [f"`{name}`", ", ".join(of[name]), _bounds(each), _plain(each.meaning)]
+        [f"`{name}`", ", ".join(of[name]), _bounds(each), plain_cell(each.meaning)]
         for name, each in entries.items()
     ]
     return markdown(["feature", "of", "bounds", "meaning"], body)
@@ -158,14 +167,17 @@ def _bounds(entry: Entry) -> str:
     return f"[{entry.low:g}, {entry.high:g}]"
 
 
-def _plain(text: str) -> str:
-    """Return a text in which no character means something to a table in Markdown."""
-    return text.replace("|", r"\|").replace("*", r"\*")
-
-
 def write() -> None:
-    """Write the pages that differ, and draw what they show."""
-    draw_films()
-    for path, text in pages().items():
+    """Write the pages that differ."""
+    for path, text in {**pages(), FOLDER / "classes.md": classes()}.items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
+
+
+def draw() -> None:
+    """Draw what the pages show on the site."""
+    draw_films()
+
+
+if __name__ == "__main__":
+    write()

@@ -1,11 +1,13 @@
-"""A page for each registered id of the environments: film, purpose, options, what policies reach.
+"""A page for each registered id of the environments: purpose, spaces, reward, arguments, results.
 
-All of it follows from the declaration in flockenv/envs/ids.py and from committed data, so that an
-id costs that one file.
+All of it follows from the declaration in flockenv/envs/ids.py, what the core declares and committed
+data, so that an id costs that one file. What only the site can show is a comment `<!-- site`, which
+conf.py opens: in a repository's viewer the page is plain Markdown.
 """
 
+import re
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,7 +21,8 @@ from docs.scripts.plots import STUDIES, markdown
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries
-from flockenv.envs.options import OPTIONS, EnvOptions
+from flockenv.envs.options import OPTIONS, TERMS, EnvOptions
+from flockenv.parameters import FlockParameters
 from flockenv.policies.registry import named_policy
 from studies.leaders.draw import LADDER, MEANS
 from studies.plots import Plot, Row, colors_of, listed, rows
@@ -41,82 +44,174 @@ def page_name(env_id: str) -> str:
 
 
 def id_pages() -> dict[str, str]:
-    """Return the text of every page by its name, and of the list of them."""
-    return {**{page_name(each): page(each) for each in ENVIRONMENTS}, "_registered": registered()}
+    """Return the text of every page by its name."""
+    return {page_name(each): page(each) for each in ENVIRONMENTS}
 
 
 def registered() -> str:
-    """Return the list of all ids, each with a still of its film."""
-    cards = []
-    for env_id, each in ENVIRONMENTS.items():
-        name, short = page_name(env_id), env_id.removeprefix("flockenv/")
-        still = f'<img src="../loops/{name}-still.webp" alt="" loading="lazy">'
-        link = f'<a href="{name}.html">{still}</a>'
-        cards.append(
-            f"::::{{container}} id\n{link}\n\n[`{short}`]({name}.md)\n\n{each.purpose}\n::::"
-        )
+    """Return a table of all ids, and their order on the site."""
+    body = [
+        [f"[`{env_id.removeprefix('flockenv/')}`]({page_name(env_id)}.md)", each.purpose]
+        for env_id, each in ENVIRONMENTS.items()
+    ]
     names = "\n".join(map(page_name, ENVIRONMENTS))
-    shelf = "\n\n".join([":::::{container} ids", *cards, ":::::"])
-    return f"{shelf}\n\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
+    toctree = site(f"```{{toctree}}\n:hidden:\n\n{names}\n```")
+    return f"{markdown(['id', 'purpose'], body)}\n\n{toctree}"
+
+
+def site(text: str) -> str:
+    """Return what a repository's viewer does not show, and the site does."""
+    return f"<!-- site\n{text}\n-->"
 
 
 def page(env_id: str) -> str:
     """Return the page of an id."""
     declared, name = ENVIRONMENTS[env_id], page_name(env_id)
     env = gymnasium.make(env_id)
-    steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
-    spaces = markdown(
-        ["", ""],
-        [
-            ["actions", f"`{env.action_space}`"],
-            ["observations", f"`{env.observation_space.shape}`, float32"],
-            ["an episode", f"{steps} decisions, each of {step_s:g} s"],
-        ],
-    )
     alt = f"A flock in {env_id}. Its leaders have a ring, and steer by the {good_policy(env_id)}."
+    film_words = (
+        f"In the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} "
+        f"(seed {SEED}, a flock that follows), at ten times real time."
+    )
     parts = [
         f"# {env_id.removeprefix('flockenv/')}",
-        f"```{{raw}} html\n{shown(name, alt, '../')}\n```",
+        site(f"```{{raw}} html\n{shown(name, alt, '../')}\n```\n\n{film_words}"),
         declared.purpose,
         "```python\nimport gymnasium\n\n"
         f'env = gymnasium.make("flockenv:{env_id}")\n'
         "observation, info = env.reset(seed=7)\n```",
-        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. Both '
-        "take every [option](tables.md), and [`LeadersEnv`](classes.md#leadersenv) specifies the "
-        f"task. In the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} "
-        f"(seed {SEED}, a flock that follows), at ten times real time.",
-        spaces,
+        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. '
+        "[Other interfaces](index.md#interfaces) have the same task.",
+        *_spaces(env_id, env),
+        *_course(env_id, env),
+        "## Arguments",
+        _arguments(env_id),
     ]
-    if env_id != LEADERS:
-        parts += ["## What differs from `flockenv/Leaders-v0`", _differences(env_id)]
     if found := reached(env_id):
         _, words = found
         picture = (
             f'<img class="plot" src="../loops/{name}.png" alt="Signed order by policy" width="540">'
         )
-        parts += ["## What policies reach", f"```{{raw}} html\n{picture}\n```", words]
+        parts += ["## What policies reach", site(f"```{{raw}} html\n{picture}\n```"), words]
     history = "\n".join(f"- {each}" for each in declared.history)
     return "\n\n".join([*parts, "## Versions", history]) + "\n"
 
 
-def _differences(env_id: str) -> str:
-    usual, own = _settings(LEADERS), _settings(env_id)
-    body = [
-        [f"`{name}`", f"`{usual[name]}`", f"`{value}`"]
-        for name, value in own.items()
-        if value != usual[name]
+def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> list[str]:
+    """Return what an action and an observation consist of."""
+    leaders = env.unwrapped.num_leaders
+    body = [[str(k), f"rudder of leader {k}", "-1", "1"] for k in range(leaders)]
+    every_s = 1.0 / env.metadata["render_fps"]
+    entries = observation_entries(_settings(env_id, by_block=True)["observation"])
+    places: dict[tuple[str, str], list[int]] = {}
+    for place, each in enumerate(entries):
+        places.setdefault((each.block, each.name), []).append(place)
+    first = {key: entries[own[0]] for key, own in places.items()}
+    rows_of = [
+        [
+            _indices(own),
+            f"`{name}`",
+            first[block, name].unit or "1",
+            f"[{first[block, name].low:g}, {first[block, name].high:g}]",
+            plain_cell(first[block, name].meaning),
+        ]
+        for (block, name), own in places.items()
     ]
-    return markdown(["option", *(f"`{page_name(each)}`" for each in (LEADERS, env_id))], body)
+    each_of = f"{leaders} times: leader 0 first. " if leaders > 1 else ""
+    return [
+        "## Actions",
+        f"`{env.action_space}`. A rudder is held for {every_s:g} s. A positive one turns a boat "
+        "that moves forward counter-clockwise, and works in reverse while the boat backs up. Other "
+        "actions, such as headings, are [options](tables.md#options).",
+        markdown(["index", "meaning", "low", "high"], body),
+        "## Observations",
+        f"`{env.observation_space.shape}`, float32. {each_of}The frame is the leader's own place "
+        "in the pool, outward and clockwise. Entries of `neighbors` have an index for each of the "
+        "nearest boats. A number with a unit is divided by its [scale](tables.md#observation) and "
+        "clipped to its range.",
+        markdown(["index", "name", "unit", "range", "meaning"], rows_of),
+    ]
 
 
-def _settings(env_id: str) -> dict[str, Any]:
+def _indices(places: list[int]) -> str:
+    return (
+        ", ".join(map(str, places))
+        if len(places) < 4
+        else f"{places[0]}, {places[1]}, … {places[-1]}"
+    )
+
+
+def _course(env_id: str, env: gymnasium.Env[Any, Any]) -> list[str]:
+    """Return what is rewarded, and how an episode starts and ends."""
+    weights = _settings(env_id, by_block=True)["reward"]
+    formula = " + ".join(
+        name if weight == 1.0 else f"{weight:g}·{name}" for name, weight in weights.items()
+    )
+    terms = "\n".join(f"- `{name}`: {plain_cell(TERMS[name])}" for name in weights)
+    steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
+    return [
+        "## Reward",
+        f"`reward = {formula}`, the mean over a step and over the leaders.",
+        terms,
+        "ψ_o is the length of the normal boats' mean heading in the frame of each one's place, "
+        "and φ_o its angle, clockwise from outward; φ_target is π/2 for a clockwise target and "
+        "-π/2 for the other ([the model](../model.md)).",
+        "## Start",
+        "Boats lie at rest at random places with random headings, and their motors begin to drive "
+        "forward. The seed fixes places, noise, target and backward duration.",
+        "## End",
+        f"After {steps} steps, {steps * step_s:g} s, the episode is truncated. It never "
+        "terminates. The last info has its means as `episode_summary`.",
+    ]
+
+
+USUAL = ("n_boats", "n_leaders", "pool", "bw_s", "target", "episode_s", "control_hz", "reward")
+"""Arguments that most trainings set."""
+
+
+def _arguments(env_id: str) -> str:
+    """Return the arguments that most trainings set, and those that an id sets."""
+    usual, own = _settings(LEADERS), _settings(env_id)
+    differing = [name for name, value in own.items() if value != usual[name]]
+    names = list(dict.fromkeys([*USUAL, *differing]))
+    meanings = {each.name: each.metadata["doc"] for each in fields(FlockParameters)}
+    meanings = {name: each.doc for name, each in OPTIONS.items()} | meanings
+    meanings["episode_s"] = OPTIONS["episode_s"].doc
+    body = []
+    for name in names:
+        block = re.fullmatch(r'observation\["(\w+)"\]', name)
+        meaning = f"block `{block[1]}` of the observation" if block else _first(meanings[name])
+        body.append([f"`{name}`", f"`{own[name]}`", f"`{usual[name]}`", meaning])
+    header = ["argument", "here", f"in `{page_name(LEADERS)}`", "meaning"]
+    if env_id == LEADERS:
+        body, header = (
+            [[name, here, meaning] for name, here, _, meaning in body],
+            ["argument", "here", "meaning"],
+        )
+    more = "These and [every other](tables.md) can be given to `gymnasium.make`."
+    return f"{markdown(header, body)}\n\n{more}"
+
+
+def _first(text: str) -> str:
+    """Return the first sentence of a meaning, for a table."""
+    return plain_cell(re.split(r"\.\s(?=[A-Z])", text, maxsplit=1)[0].rstrip("."))
+
+
+def plain_cell(text: str) -> str:
+    """Return a text in which no character means something to a table in Markdown."""
+    return text.replace("|", r"\|").replace("*", r"\*")
+
+
+def _settings(env_id: str, *, by_block: bool = False) -> dict[str, Any]:
     """Return all parameters and options by name, those that an id leaves at their default too."""
     parsed = EnvOptions.parse(ENVIRONMENTS[env_id].options)
     parameters = asdict(parsed.parameters)
     defaults = {name: each.default for name, each in OPTIONS.items()}
     found = {**parameters, **defaults, **parameters, **parsed.settings}
-    for block, value in {**defaults["observation"], **found.pop("observation")}.items():
-        found[f'observation["{block}"]'] = value
+    found["observation"] = {**defaults["observation"], **found["observation"]}
+    if not by_block:
+        for block, value in found.pop("observation").items():
+            found[f'observation["{block}"]'] = value
     # None stands for a length that depends on the target.
     env = gymnasium.make(env_id)
     found["episode_s"] = round(env.spec.max_episode_steps / env.metadata["render_fps"])

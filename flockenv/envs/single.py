@@ -24,7 +24,7 @@ class LeadersEnv(
 
     This text specifies the task for all interfaces. `LeadersParallelEnv`, `LeadersVectorEnv` and
     `flockenv.sb3.LeaderVecEnv` take the same options and say what differs.
-    docs/environments/tables.md (`make docs` writes it) lists every option, reward term, entry of
+    docs/environments/tables.md lists every option, reward term, entry of
     the observation and feature of the flock. In Python, `flockenv.envs.options` has `OPTIONS` and
     `TERMS`, and `flockenv.envs.observation` has `observation_entries()`, `state_entries()` and
     `flock_feature_entries()`.

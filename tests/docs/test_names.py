@@ -32,7 +32,6 @@ MADE = (
     "my_",
     "docs/_build/",
     "benches/target/",
-    "docs/environments/tables.md",
 )
 """What builds, commands and readers write."""
 OTHERS = {
