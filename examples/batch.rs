@@ -36,7 +36,7 @@ fn main() -> Result<()> {
     for _ in 0..STEPS {
         let actions = policy(&observations, size);
         batch.step(
-            &actions,
+            Some(&actions),
             BatchRows {
                 observations: &mut observations,
                 rewards: &mut rewards,

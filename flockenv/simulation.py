@@ -1,31 +1,21 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from fractions import Fraction
+from collections.abc import Callable, Iterable, Mapping
 from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from flockenv import _core
-from flockenv._io.arguments import by_name, check_function, items, real_numbers, truth
+from flockenv._io.arguments import check_function, items, truth
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock
 from flockenv.order import OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
-from flockenv.policies.base import (
-    LeaderPolicy,
-    check_action_mode,
-    check_pool,
-    control_rate,
-    decision_rate,
-)
-from flockenv.policies.laws import LawPolicy, SteeringLaw
-from flockenv.policies.model import ModelPolicy, as_policy
-from flockenv.policies.registry import named_policy, policy_name
+from flockenv.policies.leaders import Leaders
+from flockenv.policies.registry import Steering
 from flockenv.recording import PHASES, PRECISIONS, Recording, checked_functions
 
 Schedule = Iterable[tuple[float, Mapping[str, Any]]]
@@ -34,11 +24,6 @@ Schedule = Iterable[tuple[float, Mapping[str, Any]]]
 Start = bytes | Mapping[str, Any] | Recording
 """A snapshot, a state, or a recording whose last sample it is."""
 
-Steering = LeaderPolicy | str | None
-"""A policy, its name or its file; None for the paper's law at every substep."""
-
-
-_FASTEST_HZ = 1000
 # Of them depends whether boats fit, which is tried before a run.
 _PLACED = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
 
@@ -76,13 +61,13 @@ def simulate(
         Samples per second, taken at 0, 1/sample_hz, 2/sample_hz … Substeps end on samples, so a
         rate that does not divide 1/dt_s changes the run within its numerical error.
     policy
-        How leaders steer: None for the paper's law, eq. (10), at every substep; the name of another
-        policy, such as "learned" or "damped law", or the path of a policy's file; or an object
-        whose ``predict`` maps observations (k, size) to rudders (k,), clipped to [-1, 1], such as a
-        model of stable-baselines3. It observes the default layout, or what its attributes
-        ``observation`` and ``mirror_to_target`` say; a model observes what it was trained on. A
-        dictionary has one of these for each of ``"leader_0"`` to ``"leader_{k-1}"``; the law then
-        acts at every control step.
+        How leaders steer, as `flockenv.policies.policy` takes it: None for the paper's law, eq.
+        (10), at every substep; the name of another policy, such as "learned" or "damped law", or
+        the path of a policy's file; or an object whose ``predict`` maps observations (k, size) to
+        rudders (k,), clipped to [-1, 1], such as a model of stable-baselines3. It observes the
+        default layout, or what its attributes ``observation`` and ``mirror_to_target`` say; a model
+        observes what it was trained on. A dictionary has one of these for each of ``"leader_0"`` to
+        ``"leader_{k-1}"``; the law then acts at every control step.
     control_hz
         How many times per second policies decide; None: as often as a model was trained with, if
         its observation space says so, and otherwise 10. Policies of a dictionary may then decide at
@@ -138,11 +123,10 @@ def simulate(
         raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
     if progress is not None:
         check_function(progress, "progress")
-    seats = _seats(policy, parameters)
+    leaders = Leaders.of(policy, parameters)
     changes = _changes(parameters, schedule, seed)
     for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
-        for seat in seats:
-            check_pool(seat.policy, pool)
+        leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
     if noise_seed is not None and not isinstance(start, bytes):
         raise ParameterError(
@@ -159,7 +143,7 @@ def simulate(
         "single_precision": bool(precision == np.float32),
         "contacts": truth(contacts, "contacts"),
         "changes": changes,
-        "control": _control(seats, parameters.n_leaders, control_hz),
+        "control": _control(leaders, control_hz),
         "progress": progress,
     }
 
@@ -172,7 +156,7 @@ def simulate(
             parameters=parameters,
             seed=flock.seed,
             version=_core.__version__,
-            policy="; ".join(seat.title for seat in seats) or policy_name(None),
+            policy=leaders.title,
         )
 
     try:
@@ -184,157 +168,26 @@ def simulate(
     return run.with_quantities(functions) if functions else run
 
 
-@dataclass
-class _Seat:
-    """A policy with the leaders that it steers, and its state if it is recurrent."""
-
-    policy: LeaderPolicy
-    leaders: list[int]
-    is_alone: bool
-    state: Any = None
-    #: Control steps from one decision to the next, and until the next one.
-    period: int = 1
-    wait: int = 0
-    held: NDArray[np.float64] | None = None
-
-    def __post_init__(self) -> None:
-        mirrors = getattr(self.policy, "mirror_to_target", False)
-        self.is_mirrored = truth(mirrors, "a policy's mirror_to_target")
-        blocks = getattr(self.policy, "observation", None) or {}
-        self.observation = by_name(blocks, "a policy's observation")
-
-    @property
-    def title(self) -> str:
-        names = ", ".join(f"leader_{leader}" for leader in self.leaders)
-        return ("" if self.is_alone else f"{names}: ") + policy_name(self.policy)
-
-    def rudders(
-        self, observation: NDArray[np.float32], signs: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """Return rudders of its leaders, of what all see and the signs of their targets."""
-        if self.held is not None and self.wait > 0:
-            self.wait -= 1
-            return self.held
-        self.wait = self.period - 1
-        returned = self.policy.predict(observation[self.leaders], self.state)
-        if not isinstance(returned, tuple) or len(returned) != 2:
-            raise ParameterError(
-                f"what a policy returns is not accepted: actions and a state, not {shown(returned)}"
-            )
-        actions, self.state = returned
-        actions = real_numbers(actions, "what a policy returns")
-        if np.ma.is_masked(actions):
-            raise ParameterError("what a policy returns is not accepted: numbers, none masked")
-        if actions.size != len(self.leaders):
-            raise ParameterError(
-                f"what a policy returns has shape {actions.shape}, expected a rudder for each of "
-                f"{len(self.leaders)} leaders"
-            )
-        rudders = np.clip(np.asarray(actions, np.float64).reshape(-1), -1.0, 1.0)
-        # A mirrored policy steers as if every target were clockwise.
-        self.held = signs[self.leaders] * rudders if self.is_mirrored else rudders
-        return self.held
-
-
-def _seats(policy: Steering | Mapping[str, Steering], parameters: FlockParameters) -> list[_Seat]:
-    """Return who steers whom; nobody for the paper's law at every substep."""
-    k = parameters.n_leaders
-    if not isinstance(policy, Mapping):
-        only = _resolved(policy, parameters)
-        if only is not None and k == 0:
-            raise ParameterError(
-                f"policy = {shown(policy)} is not accepted: with n_leaders = 0 it steers nobody"
-            )
-        seats = [] if only is None else [_Seat(only, [*range(k)], is_alone=True)]
-    else:
-        names = [f"leader_{leader}" for leader in range(k)]
-        if policy.keys() != set(names):
-            accepted = ", ".join(names) or "none, since n_leaders = 0"
-            raise ParameterError(
-                f"policy = {shown(dict(policy))} is not accepted: a policy for each of {accepted}"
-            )
-        # Leaders with one policy are steered at once, as a model of several leaders needs it.
-        by_policy: dict[Any, _Seat] = {}
-        for leader, given in enumerate(policy[name] for name in names):
-            key = given if isinstance(given, str) else id(given)
-            if key not in by_policy:
-                own = _resolved(given, parameters) or SteeringLaw()
-                by_policy[key] = _Seat(own, [], is_alone=False)
-            by_policy[key].leaders.append(leader)
-        seats = list(by_policy.values())
-    for seat in seats:
-        if isinstance(seat.policy, ModelPolicy) and seat.leaders:
-            seat.policy.check_leaders(len(seat.leaders))
-    return seats
-
-
-def _resolved(policy: Steering, parameters: FlockParameters) -> LeaderPolicy | None:
-    """Return a policy by its name or file; None for the paper's law at every substep."""
-    if isinstance(policy, str):
-        named = named_policy(policy, parameters.pool)()
-        policy = None if isinstance(named, str) else named
-    policy = as_policy(policy)
-    if isinstance(policy, type) or (policy is not None and not hasattr(policy, "predict")):
-        raise ParameterError(
-            f"policy = {shown(policy)} is not accepted: None, a policy's name or file, or an "
-            "object with predict"
-        )
-    check_pool(policy, parameters.pool)
-    return policy
-
-
-def _control(
-    seats: Sequence[_Seat], n_leaders: int, control_hz: float | None
-) -> dict[str, Any] | None:
-    if not seats:
-        if control_hz is not None:
+def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
+    """Return what the core is told of who steers, and how often per second."""
+    if leaders.law is not None:
+        # The core steers by a law alone, and holds its leans.
+        own = leaders.seats[0].policy.control_hz
+        if own is None and control_hz is not None:
             raise ParameterError(
                 f"control_hz = {shown(control_hz)} is not accepted: without a policy the paper's "
                 "law steers at every substep"
             )
-        return None
-    first = seats[0].policy
-    if isinstance(first, LawPolicy) and seats[0].is_alone:
-        # The core steers by a law alone, and holds its leans.
-        rate = control_rate(first) if control_hz is None else control_hz
-        return {"steer": first.law, "layouts": [], "control_hz": rate}
-    for seat in seats:
-        check_action_mode(seat.policy, "rudder", "in a simulation")
-    if control_hz is None:
-        control_hz = _common_rate(seats)
-
-    def steer(
-        signs: NDArray[np.float64], *observations: NDArray[np.float32]
-    ) -> NDArray[np.float64]:
-        rudders = np.zeros(n_leaders)
-        for seat, observation in zip(seats, observations, strict=True):
-            rudders[seat.leaders] = seat.rudders(observation, signs)
-        return rudders
-
+        rate = own if control_hz is None else control_hz
+        return {"steer": leaders.law, "layouts": [], "control_hz": rate}
+    for seat in leaders.seats:
+        seat.policy.check_action_mode("rudder", "in a simulation")
+    decisions = leaders.decisions(control_hz)
     return {
-        "steer": steer,
-        "layouts": [(seat.observation, seat.is_mirrored) for seat in seats],
-        "control_hz": control_hz,
+        "steer": decisions.rudders,
+        "layouts": decisions.layouts,
+        "control_hz": decisions.control_hz,
     }
-
-
-def _common_rate(seats: Sequence[_Seat]) -> float:
-    """Return the lowest rate of which every seat's is a whole part, and set how long each holds."""
-    rates = [decision_rate(seat.policy) for seat in seats]
-    if len(set(rates)) == 1:
-        return rates[0]
-    exact = [Fraction(rate).limit_denominator(1000) for rate in rates]
-    numerators, denominators = zip(*(each.as_integer_ratio() for each in exact), strict=True)
-    common = Fraction(math.lcm(*numerators), math.gcd(*denominators))
-    if common > _FASTEST_HZ:
-        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
-        raise ParameterError(
-            f"the policies decide {given} times per second, and have no common multiple up to "
-            f"{_FASTEST_HZ}: give control_hz"
-        )
-    for seat, rate in zip(seats, exact, strict=True):
-        seat.period = int(common / rate)
-    return float(common)
 
 
 def _changes(

@@ -84,7 +84,7 @@ pub fn control(batch: &mut EnvBatch, decisions: u64) -> Result<()> {
             rewards: &mut rewards,
             truncated: &mut truncated,
         };
-        batch.step(&actions, rows)?;
+        batch.step(Some(&actions), rows)?;
     }
     black_box(&observations);
     Ok(())

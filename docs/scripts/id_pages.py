@@ -23,7 +23,7 @@ from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS, TERMS, EnvOptions
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import named_policy
+from flockenv.policies import policy
 from studies.leaders.draw import LADDER, MEANS
 from studies.plots import Plot, Row, colors_of, listed, rows
 
@@ -248,8 +248,8 @@ def _told(env_id: str) -> str:
 def film(env_id: str) -> Iterator[Image.Image]:
     """Yield pictures of a flock that a good policy leads."""
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
-    policy: Any = named_policy(good_policy(env_id), pool)()
-    layout = {name: getattr(policy, name) for name in ("observation", "mirror_to_target")}
+    leaders = policy(good_policy(env_id), pool)
+    layout = {name: getattr(leaders, name) for name in ("observation", "mirror_to_target")}
     size = (HEIGHT, HEIGHT)
     env = gymnasium.make(env_id, render_mode="rgb_array", render_size=size, **layout)
     observation, _ = env.reset(seed=SEED)
@@ -262,7 +262,7 @@ def film(env_id: str) -> Iterator[Image.Image]:
         if _told(env_id):
             # The roles of studies/roles/misinformed_pair.py.
             rows[:, _TOLD] = rows[0, _TOLD]
-        observation = env.step(policy.predict(rows.reshape(-1))[0])[0]
+        observation = env.step(leaders.predict(rows.reshape(-1))[0])[0]
     env.close()
 
 

@@ -13,12 +13,11 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
 import flockenv
-from flockenv.policies.registry import named_policy
 from flockenv.replay import write_replay
 
 PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s=0.3)
 SEED, DURATION_S = 7, 480.0
-POLICIES = {"paper's law": None, "learned": named_policy("learned", PARAMETERS.pool)()}
+POLICIES = {"paper's law": None, "learned": "learned"}
 SIZE = (1160, 960)
 # The flocks and their order: no controls, no charts, no small print.
 CROP = (0, 0, 1160, 604)

@@ -14,20 +14,26 @@ from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, say
 from flockenv.cli.options import TRUST, Printing, option, takes
-from flockenv.cli.output import prepare, printable, read_policy
+from flockenv.cli.output import prepare, printable
 from flockenv.cli.parameters import Flocks, changed_fields, option_of
 from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
-from flockenv.comparison.episodes import steering
-from flockenv.comparison.report import ComparisonReport
+from flockenv.comparison.report import ComparisonReport, titled
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
-from flockenv.policies.registry import FILES, named_policy
+from flockenv.policies.registry import FILES, policy
 
 REFERENCES = (LEARNED, TUNED_LAW, PAPERS_LAW)
 """What policies are compared with, unless `--only` is given."""
+
+Given = str | Mapping[str, str]
+"""A policy as it is typed, or one for each leader."""
+
+Steers = Policy | Mapping[str, Policy]
+"""The policy that it is, or one for each leader."""
 
 _BOATS = 27
 _MOST_LEADERS = 64
@@ -108,8 +114,7 @@ def compare(options: CompareOptions) -> None:
     result = _compared(options, cases, policies)
     if own:
         case, name = cases[0], next(iter(own))
-        policy = steering(policies[case.name][name], case.parameters.pool)
-        write_text(options.out / "card.md", result.card(name, policy))
+        write_text(options.out / "card.md", result.card(name, policies[case.name][name]))
     tables = {"means": result.means, "differences": result.differences}
     if options.suite:
         scores = scores_table(result)
@@ -127,7 +132,7 @@ def compare(options: CompareOptions) -> None:
     say(f"Written to {options.out}")
 
 
-def _seconds(cases: list[Case], policies: dict[str, dict[str, Any]]) -> float:
+def _seconds(cases: list[Case], policies: dict[str, dict[str, Steers]]) -> float:
     """Return what cases take here, extrapolated from a minute of a few flocks for each policy."""
     total = 0.0
     for name in dict.fromkeys(name for each in policies.values() for name in each):
@@ -141,7 +146,7 @@ def _seconds(cases: list[Case], policies: dict[str, dict[str, Any]]) -> float:
 
 
 def _compared(
-    options: CompareOptions, cases: list[Case], policies: dict[str, dict[str, Any]]
+    options: CompareOptions, cases: list[Case], policies: dict[str, dict[str, Steers]]
 ) -> ComparisonReport:
     """Run the cases and return their report, which is written whenever a case is finished.
 
@@ -150,10 +155,7 @@ def _compared(
     names = list(dict.fromkeys(name for each in policies.values() for name in each))
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
     shown = {
-        case.name: {
-            name: str(steering(policy, case.parameters.pool))
-            for name, policy in policies[case.name].items()
-        }
+        case.name: {name: titled(own) for name, own in policies[case.name].items()}
         for case in cases
     }
     conditions = {"command": command, "policies": shown}
@@ -183,7 +185,7 @@ def _compared(
     return result
 
 
-def _spent(options: CompareOptions, own: Mapping[str, Any]) -> dict[str, float]:
+def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float]:
     """Return the flock-hours of each policy that is a file; a suite refuses files without them."""
     hours = options.flock_hours or []
     if not options.suite:
@@ -194,7 +196,7 @@ def _spent(options: CompareOptions, own: Mapping[str, Any]) -> dict[str, float]:
         name: [*given.values()] if isinstance(given, Mapping) else [given]
         for name, given in own.items()
     }
-    files = [name for name, each in parts.items() if any(one.endswith(FILES) for one in each)]
+    files = [name for name, each in parts.items() if any(map(_is_made, each))]
     if len(hours) != len(files):
         raise ParameterError(
             f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
@@ -203,14 +205,21 @@ def _spent(options: CompareOptions, own: Mapping[str, Any]) -> dict[str, float]:
     return dict(zip(files, hours, strict=True))
 
 
-def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dict[str, Any]:
+def _is_made(given: str) -> bool:
+    """Return whether a policy is a file or an object of the user's own, which something made."""
+    return given.endswith(FILES) or (":" in given and "=" not in given)
+
+
+def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> dict[str, Steers]:
     """Return the policies of a case by name, the user's first, and name those not for its pool."""
-    found = {name: _read(given, pool, options.trust) for name, given in own.items()}
+    found: dict[str, Steers] = {
+        name: _read(given, pool, options.trust) for name, given in own.items()
+    }
     for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
         if name in own.values() and not options.suite:  # It has a name of the user's.
             continue
         try:
-            found.setdefault(name, named_policy(name, pool))
+            found.setdefault(name, policy(name, pool))
         except ParameterError as error:
             say(f"Left out, {name}: {error}", errors)
     if not found:
@@ -218,10 +227,10 @@ def _policies(pool: Any, own: Mapping[str, Any], options: CompareOptions) -> dic
     return found
 
 
-def _read(given: Any, pool: Any, trust: bool) -> Any:
+def _read(given: Given, pool: Pool, trust: bool) -> Steers:
     if isinstance(given, Mapping):
-        return {leader: _read(each, pool, trust) for leader, each in given.items()}
-    return read_policy(given, pool, trust)
+        return {leader: policy(each, pool, trust=trust) for leader, each in given.items()}
+    return policy(given, pool, trust=trust)
 
 
 def _tasks(options: CompareOptions) -> list[Case]:
@@ -305,13 +314,13 @@ def _pool_name(pool: str | tuple[float, float]) -> str:
     return pool if isinstance(pool, str) else f"{pool[0]:g}x{pool[1]:g}"
 
 
-def _own_policies(options: CompareOptions) -> dict[str, Any]:
+def _own_policies(options: CompareOptions) -> dict[str, Given]:
     """Return the user's policies by name: as given, or a dictionary of these by leader."""
     given, names = options.policy or [], options.name or []
     if names and len(names) != len(given):
         many = f"{len(names)} --name for {len(given)} --policy"
         raise ParameterError(f"{many}: name all of yours, in order, or none")
-    own: dict[str, Any] = {}
+    own: dict[str, Given] = {}
     for place, text in enumerate(given):
         is_each = text.startswith("leader_")
         is_file = text.endswith(FILES) and not is_each
@@ -325,5 +334,5 @@ def _own_policies(options: CompareOptions) -> dict[str, Any]:
         own[name] = text
         if is_each:  # What reads like a number is the name of no policy, and refused as one.
             each = changed_fields(text.split(","), "--policy").items()
-            own[name] = {leader: str(policy) for leader, policy in each}
+            own[name] = {leader: str(one) for leader, one in each}
     return own

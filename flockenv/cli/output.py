@@ -6,7 +6,7 @@ import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +14,6 @@ from flockenv._io.plain_file import check_writable
 from flockenv.cli.console import errors, say
 from flockenv.errors import ParameterError
 from flockenv.order import QUANTITIES
-from flockenv.policies.base import LeaderPolicy
-from flockenv.policies.registry import named_policy
 from flockenv.recording import Recording
 from flockenv.runs.sweep import summary
 
@@ -66,14 +64,6 @@ def load_recording(
         report(found)
 
     return read_tracks(path, None if layout is None else read_layout(layout), say_and_report)
-
-
-def read_policy(name: str, pool: Any, trust: bool) -> Callable[[], LeaderPolicy | str]:
-    """Return what makes the policy of a name or a file, as `named_policy`."""
-    try:
-        return named_policy(name, pool, trust=trust)
-    except OSError as error:
-        raise ParameterError(f"--policy {name} cannot be read: {error.strerror}") from error
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:

@@ -10,12 +10,12 @@ from typing import Any
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import print_json, say
 from flockenv.cli.options import TRUST, Overwriting, Printing, option, takes
-from flockenv.cli.output import in_words, prepare, printable, read_policy, summary_of
+from flockenv.cli.output import in_words, prepare, printable, summary_of
 from flockenv.cli.parameters import OneFlock, changed_fields
 from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError, shown
 from flockenv.policies.names import EVERY_SUBSTEP
-from flockenv.policies.registry import POLICIES, POOL_POLICIES, quoted
+from flockenv.policies.registry import NAMES, policy, quoted
 from flockenv.simulation import simulate
 
 _OUT = Path("results/run.npz")
@@ -29,7 +29,7 @@ class RunOptions(OneFlock, Overwriting, Printing):
         EVERY_SUBSTEP,
         "How leaders steer: by the paper's law at every substep, or at 10 Hz by a policy's file, "
         "an SB3 model's .zip file (with --trust) or one of: "
-        f"{quoted([*POLICIES, *POOL_POLICIES])}.",
+        f"{quoted(NAMES)}.",
     )
     trust: bool = option(False, TRUST, "--trust")
     seed: int = option(0, "Seed of placement and noise.", min=0)
@@ -55,7 +55,7 @@ def run(options: RunOptions) -> None:
     Example: `flockenv run --n-boats 27 --n-leaders 3 --bw-s 0.3 --seed 7`
     """
     parameters = options.parameters()
-    policy = read_policy(options.policy, parameters.pool, options.trust)()
+    leaders = policy(options.policy, parameters.pool, trust=options.trust)
     out = options.out or _free(_OUT)
     if out.suffix != ".npz":
         raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
@@ -68,7 +68,7 @@ def run(options: RunOptions) -> None:
             options.seed,
             duration_s,
             options.hz,
-            policy,
+            leaders,
             contacts=options.contacts,
             progress=advance,
             schedule=_schedule(options.at or ()),

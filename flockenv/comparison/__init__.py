@@ -1,13 +1,8 @@
 """Leader policies against each other."""
 
 from flockenv.comparison.case import Case
-from flockenv.comparison.episodes import (
-    NO_LEADERS,
-    ORDERING_TIMES,
-    QUANTITIES,
-    compare_leaders,
-    run_episodes,
-)
+from flockenv.comparison.comparison import compare_leaders
+from flockenv.comparison.episodes import NO_LEADERS, ORDERING_TIMES, QUANTITIES, run_episodes
 from flockenv.comparison.report import ComparisonReport
 
 __all__ = [

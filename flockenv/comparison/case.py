@@ -1,13 +1,15 @@
 """A case of a comparison: one flock, its seeds and its options, in which policies are compared."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from flockenv._io.arguments import items
 from flockenv._io.extras import require
-from flockenv.comparison.episodes import Steering, compare_leaders
+from flockenv.comparison.comparison import Finished, compare_leaders, nothing_finished
+from flockenv.comparison.episodes import Progress, no_progress
 from flockenv.parameters import FlockParameters
+from flockenv.policies.registry import Steering
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,9 +46,9 @@ class Case:
 
     def run(
         self,
-        policies: Mapping[str, Steering],
-        progress: Callable[[float], None] = lambda flock_seconds: None,
-        finished: Callable[["pd.DataFrame"], object] = lambda rows: None,
+        policies: Mapping[str, Steering | Mapping[str, Steering]],
+        progress: Progress = no_progress,
+        finished: Finished = nothing_finished,
     ) -> "pd.DataFrame":
         """Run every policy; return a row per episode, as `compare_leaders` with a column ``case``.
 

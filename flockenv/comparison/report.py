@@ -19,6 +19,7 @@ from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.comparison.case import Case
 from flockenv.comparison.episodes import NO_LEADERS, ORDERING_TIMES, QUANTITIES
+from flockenv.policies.base import Policy
 from flockenv.statistics import (
     CONFIDENCE,
     Difference,
@@ -163,10 +164,11 @@ class ComparisonReport:
         ]
         return "\n".join(differences + lines)
 
-    def card(self, name: str, policy: Any) -> str:
+    def card(self, name: str, policy: Policy | Mapping[str, Policy]) -> str:
         """Return a policy's model card as Markdown: its provenance and its comparison."""
-        lines = [f"# {name}", "", f"The policy is `{policy!r}`.", ""]
-        provenance = getattr(policy, "provenance", None) or {}
+        lines = [f"# {name}", "", f"The policy is `{titled(policy)}`.", ""]
+        alone = policy.source if isinstance(policy, Policy) else None
+        provenance = getattr(alone, "provenance", None) or {}
         lines += [f"- {key}: `{text}`" for key, text in provenance.items()]
         made = f"`{self.conditions.get('command', '')}` made this with flockenv {__version__}."
         lines += ["", "## Comparison", "", made, ""]
@@ -178,6 +180,13 @@ class ComparisonReport:
         Console(file=printed, width=120).print(self.table())
         text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
         return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
+
+
+def titled(policy: Policy | Mapping[str, Policy]) -> str:
+    """Return the name of a policy, or those of the policies of leaders, in one line."""
+    if isinstance(policy, Policy):
+        return policy.name
+    return "; ".join(f"{leader}: {each.name}" for leader, each in policy.items())
 
 
 def _plus_minus(row: Mapping[str, Any]) -> str:

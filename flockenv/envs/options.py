@@ -124,6 +124,11 @@ class EnvOptions:
             given["target"] = target
         stepping = _physics(given)
         parameters = _parameters({**given, **stepping})
+        if parameters.n_leaders == 0:
+            raise ParameterError(
+                "n_leaders = 0 is not accepted: at least 1 in an environment; simulate runs flocks "
+                "without leaders"
+            )
         settings.setdefault("target", parameters.target)
         return cls(parameters, settings, own_reward)
 

@@ -1,19 +1,26 @@
 """What a policy is, and what those share that steer each leader by its own observation."""
 
+import copy
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv._io.arguments import number, real_numbers
+from flockenv import _core
+from flockenv._io.arguments import by_name, number, real_numbers, truth
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, refuse_unknown, shown
+
+Pool = str | tuple[float, float]
+"""A pool's name, or its outer and inner radius in cm."""
 
 
+@runtime_checkable
 class LeaderPolicy(Protocol):
     """Anything with the ``predict`` of a stable-baselines3 policy."""
 
@@ -48,48 +55,153 @@ class LeaderPolicy(Protocol):
 CONTROL_HZ: float = OPTIONS["control_hz"].default
 """Control steps per second, unless the environment or the policy has others."""
 
-
-def control_rate(policy: Any) -> float:
-    """Return the control steps per second that a policy is made for: 10 if it does not say."""
-    rate = getattr(policy, "control_hz", None)
-    return CONTROL_HZ if rate is None else _positive(rate, "control_hz")
+_LONGEST_NAME = 200
 
 
-def decision_rate(policy: Any) -> float:
-    """Return how often per second a policy decides: with each control step, if it has no period."""
-    period: float | None = getattr(policy, "decision_period_s", None)
-    return control_rate(policy) if period is None else 1.0 / _positive(period, "decision_period_s")
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Policy:
+    """How leaders steer: one checked type, whatever it was made of by `flockenv.policies.policy`.
+
+    Attributes
+    ----------
+    source
+        What acts: any object with ``predict``.
+    name
+        The name under which recordings hold it: the text of the source, or its class if the text is
+        no name, and then the source's ``digest``, if it has one.
+    control_hz
+        Control steps per second that it is made for; None: it steers at every substep, by the
+        paper's law.
+    pool
+        The pool that it was made for; None: any.
+    observation, mirror_to_target, action_mode, decision_period_s
+        The environments' options of those names that it is made for.
+    leaders
+        How many leaders it steers at once; 1: any number.
+    law
+        The core's law, if it is nothing else: the core then steers by it alone.
+    """
+
+    source: LeaderPolicy
+    name: str
+    control_hz: float | None = CONTROL_HZ
+    pool: Pool | None = None
+    observation: Mapping[str, Any] = field(default_factory=dict)
+    mirror_to_target: bool = False
+    action_mode: str = "rudder"
+    decision_period_s: float | None = None
+    leaders: int = 1
+    law: _core.Law | None = None
+
+    @classmethod
+    def from_source(
+        cls, source: LeaderPolicy, *, leaders: int = 1, law: _core.Law | None = None
+    ) -> Self:
+        """Return the policy that an object with ``predict`` is, by what its attributes say.
+
+        A TypeError or a ParameterError names an attribute that is none of an option's values.
+        """
+        mode = getattr(source, "action_mode", None) or "rudder"
+        refuse_unknown((mode,), _core.ACTION_MODES, "action_mode of a policy")
+        mirrors = getattr(source, "mirror_to_target", False)
+        rate = _positive(source, "control_hz")
+        return cls(
+            source=source,
+            name=_name_of(source),
+            control_hz=CONTROL_HZ if rate is None else rate,
+            pool=getattr(source, "pool", None),
+            observation=by_name(
+                getattr(source, "observation", None) or {}, "a policy's observation"
+            ),
+            mirror_to_target=truth(mirrors, "a policy's mirror_to_target"),
+            action_mode=mode,
+            decision_period_s=_positive(source, "decision_period_s"),
+            leaders=leaders,
+            law=law,
+        )
+
+    @property
+    def decisions_hz(self) -> float:
+        """How often per second it decides: with each control step, if it has no period."""
+        if self.decision_period_s is not None:
+            return 1.0 / self.decision_period_s
+        return CONTROL_HZ if self.control_hz is None else self.control_hz
+
+    def started(self) -> Self:
+        """Return the policy at the start of a run, which leaves this one as it is.
+
+        An object of a user's own, or a model, is the same object.
+        """
+        if not isinstance(self.source, RowPolicy):
+            return self
+        return replace(self, source=copy.deepcopy(self.source))
+
+    def check_pool(self, pool: Pool) -> None:
+        """Refuse another pool than the one that it was made for."""
+        if self.pool is not None and self.pool != pool:
+            raise ParameterError(
+                f"pool = {shown(pool)} is not accepted with {shown(self)}: it was made for "
+                f"pool = {self.pool!r}"
+            )
+
+    def check_action_mode(self, mode: str, where: str) -> None:
+        """Refuse another action mode than the one that its actions are for."""
+        if self.action_mode != mode:
+            raise ParameterError(
+                f"{shown(self)} gives actions of action_mode {self.action_mode!r}: not accepted "
+                f"{where}, which takes action_mode {mode!r}"
+            )
+
+    def check_leaders(self, n_leaders: int) -> None:
+        """Refuse a number of leaders that it cannot steer at once."""
+        if self.leaders not in (1, n_leaders):
+            raise ParameterError(
+                f"n_leaders = {n_leaders} is not accepted with {self!r}: it steers {self.leaders} "
+                "leaders at once; one that is trained on LeaderVecEnv steers any number"
+            )
+
+    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
+        """Return the source's actions for observations, as `LeaderPolicy`."""
+        if episode_start is None:
+            return self.source.predict(observation, state)
+        return self.source.predict(observation, state, episode_start)
+
+    def decide(
+        self, observation: NDArray[np.float32], state: object, leaders: int
+    ) -> tuple[NDArray[np.float64], object]:
+        """Return checked actions for observations of so many leaders, one after another."""
+        returned = self.source.predict(observation, state)
+        if not isinstance(returned, tuple) or len(returned) != 2:
+            raise ParameterError(
+                f"what a policy returns is not accepted: actions and a state, not {shown(returned)}"
+            )
+        actions, state = real_numbers(returned[0], "what a policy returns"), returned[1]
+        if np.ma.is_masked(actions):
+            raise ParameterError("what a policy returns is not accepted: numbers, none masked")
+        if actions.size != leaders:
+            raise ParameterError(
+                f"what a policy returns has shape {actions.shape}, expected a rudder for each of "
+                f"{leaders} leaders"
+            )
+        return np.asarray(actions, np.float64).reshape(-1), state
+
+    def __repr__(self) -> str:
+        return self.name if self.control_hz is None else repr(self.source)
 
 
-def _positive(value: Any, name: str) -> float:
-    if not 0.0 < number(value, name) < math.inf:
+def _positive(source: LeaderPolicy, name: str) -> float | None:
+    """Return a number above 0 that an attribute of an object has, if it has one."""
+    value = getattr(source, name, None)
+    if value is not None and not 0.0 < number(value, name) < math.inf:
         raise ParameterError(f"{name} = {shown(value)} of a policy is not accepted: above 0")
-    return float(value)
+    return None if value is None else float(value)
 
 
-def action_mode(policy: Any) -> str:
-    """Return what a policy's actions stand for, as in the environments' option of that name."""
-    return getattr(policy, "action_mode", None) or "rudder"
-
-
-def check_action_mode(policy: Any, mode: str, where: str) -> None:
-    """Refuse a policy whose actions are for another mode."""
-    own = action_mode(policy)
-    if own != mode:
-        raise ParameterError(
-            f"{shown(policy)} gives actions of action_mode {own!r}: not accepted {where}, which "
-            f"takes action_mode {mode!r}"
-        )
-
-
-def check_pool(policy: Any, pool: Any) -> None:
-    """Refuse a policy that was made for another pool than the flock's."""
-    own = getattr(policy, "pool", None)
-    if own is not None and own != pool:
-        raise ParameterError(
-            f"pool = {shown(pool)} is not accepted with {shown(policy)}: it was made for "
-            f"pool = {own!r}"
-        )
+def _name_of(source: LeaderPolicy) -> str:
+    kind = type(source)
+    text = repr(source) if kind.__repr__ is not object.__repr__ else ""
+    name = text if 0 < len(text) <= _LONGEST_NAME and text.isprintable() else kind.__qualname__
+    return f"{name} {getattr(source, 'digest', '')}".strip()
 
 
 def observed(observation: ArrayLike) -> NDArray[np.float32]:

@@ -18,7 +18,7 @@ from flockenv._io.atomic_write import write_text
 from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
-from flockenv.policies.base import CONTROL_HZ, RowPolicy, control_rate
+from flockenv.policies.base import CONTROL_HZ, RowPolicy
 from flockenv.policies.model import ModelPolicy
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 
@@ -280,7 +280,7 @@ class LeaningLaw(LawPolicy):
             (seen.action_mode != "lean", f"actions of action_mode {seen.action_mode!r}"),
             (entries != [*LEAN_FEATURES], f"{len(entries)} numbers observed"),
             (not seen.mirror_to_target, "a view that is not mirrored to the target"),
-            (control_rate(seen) != CONTROL_HZ, f"{control_rate(seen):g} control steps per second"),
+            (seen.control_hz != CONTROL_HZ, f"{seen.control_hz:g} control steps per second"),
             (seen.leaders != 1, f"{seen.leaders} leaders at once"),
             (normalized is not None, "VecNormalize around its environment"),
             (hidden or not hasattr(policy, "action_net"), "an actor of more than one layer"),

@@ -86,14 +86,6 @@ class ModelPolicy:
         self.decision_period_s: float | None = options["decision_period_s"]
         self._levels = _levels_of(model.action_space, self.leaders)
 
-    def check_leaders(self, n_leaders: int) -> None:
-        """Refuse another number of leaders than the model was trained to steer at once."""
-        if self.leaders not in (1, n_leaders):
-            raise ParameterError(
-                f"n_leaders = {n_leaders} is not accepted with {self!r}: it steers {self.leaders} "
-                "leaders at once; one that is trained on LeaderVecEnv steers any number"
-            )
-
     def predict(
         self,
         observation: ArrayLike | Mapping[Any, ArrayLike],

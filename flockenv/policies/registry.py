@@ -1,15 +1,18 @@
-"""Policies by name: laws, what is tuned or trained for a pool, and files."""
+"""Policies by name, by file, and of everything else that a policy may be given as."""
 
+import importlib
 import os
-from collections.abc import Callable, Mapping
+import re
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any
 
+from flockenv import _core
 from flockenv.errors import ParameterError, nearest, shown
-from flockenv.policies.base import LeaderPolicy, check_pool
+from flockenv.policies.base import LeaderPolicy, Policy, Pool
 from flockenv.policies.constant import RandomRudders, StraightAhead
-from flockenv.policies.laws import DampedLaw, LeaningLaw, NamedLaw, SteeringLaw
-from flockenv.policies.model import ModelPolicy, is_model_file, load_model
+from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, NamedLaw, SteeringLaw
+from flockenv.policies.model import ModelPolicy, as_policy, is_model_file, load_model
 from flockenv.policies.names import (
     DAMPED_LAW,
     EVERY_SUBSTEP,
@@ -20,19 +23,21 @@ from flockenv.policies.names import (
 )
 from flockenv.policies.network import NetworkPolicy
 
+Steering = Policy | LeaderPolicy | str | os.PathLike[str] | Callable[[], object] | None
+"""What a policy may be given as, wherever one is taken; see `policy`."""
+
 FILES = (".json", ".npz", ".zip")
 """How the files of policies end: laws, networks, and models of stable-baselines3."""
 
-POOL_POLICIES: Mapping[str, Callable[[Any], LeaderPolicy]] = {
+POOL_POLICIES: Mapping[str, Callable[[Pool | None], LeaderPolicy]] = {
     TUNED_LAW: lambda pool: DampedLaw.tuned(_named(pool)),
     LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
 }
 """Policies by name, each tuned or trained for a pool."""
 
-POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
+POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
     PAPERS_LAW: SteeringLaw,
     DAMPED_LAW: DampedLaw,
-    EVERY_SUBSTEP: lambda: EVERY_SUBSTEP,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
     # A law of the core without a class has a line there alone.
@@ -40,16 +45,131 @@ POLICIES: Mapping[str, Callable[[], LeaderPolicy | str]] = {
 }
 """Policies by name that are the same in every pool."""
 
-_LONGEST_NAME = 200
+NAMES = (EVERY_SUBSTEP, *POLICIES, *POOL_POLICIES)
+"""The names of all policies."""
+
+_ATTRIBUTE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 
-def _named(pool: Any) -> str:
+def _named(pool: Pool | None) -> str:
     if not isinstance(pool, str):
         raise ParameterError(
             f"pool = {shown(pool)} is not accepted: tuned and learned leaders are for pools with a "
             "name"
         )
     return pool
+
+
+def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) -> Policy:
+    """Return the policy that something is: the one way in, wherever a policy is taken.
+
+    Parameters
+    ----------
+    given
+        A name, such as "learned" or "damped law"; the path of a policy's file (see `load`); a model
+        of stable-baselines3; any object whose ``predict`` maps observations to actions; a function
+        or a class without arguments that returns one; ``"module:attribute"``, which names one of
+        these; or None for the paper's law at every substep. An object says by attributes what it
+        is made for: ``control_hz``, ``pool``, ``observation``, ``mirror_to_target``,
+        ``action_mode`` and ``decision_period_s``, each as in the environments' options.
+    pool
+        The pool of the flock, by name or as two radii; the laws that are tuned or learned for a
+        pool need it.
+    trust
+        Whether code may be executed: that of a module, and that in a model's ``.zip`` file.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be opened.
+    ParameterError
+        For unknown names, what `load` refuses, another pool than the policy was made for, and
+        everything that is no policy.
+    TypeError
+        For attributes of another kind than the options have.
+    """
+    found = given if isinstance(given, Policy) else _made(given, pool, trust)
+    if pool is not None:
+        found.check_pool(pool)
+    return found
+
+
+def _made(given: Steering, pool: Pool | None, trust: bool) -> Policy:
+    if given is None or (isinstance(given, str) and given == EVERY_SUBSTEP):
+        law = _core.Law.named(EVERY_SUBSTEP)
+        return Policy(source=SteeringLaw(), name=EVERY_SUBSTEP, control_hz=None, law=law)
+    if isinstance(given, str):
+        return _by_name(given, pool, trust)
+    if isinstance(given, os.PathLike):
+        return _of_source(load(given, trust=trust))
+    return _by_object(given)
+
+
+def _by_object(given: object) -> Policy:
+    if isinstance(given, type) or (callable(given) and not hasattr(given, "predict")):
+        try:
+            given = given()
+        except TypeError as error:
+            raise _no_policy(given) from error
+    found = as_policy(given)
+    if isinstance(found, Policy):
+        return found
+    if isinstance(found, type) or not isinstance(found, LeaderPolicy):
+        raise _no_policy(found)
+    return _of_source(found)
+
+
+def _of_source(source: LeaderPolicy) -> Policy:
+    law = source.law if isinstance(source, LawPolicy) else None
+    leaders = source.leaders if isinstance(source, ModelPolicy) else 1
+    return Policy.from_source(source, leaders=leaders, law=law)
+
+
+def _no_policy(found: object) -> ParameterError:
+    words = "a policy's name or file, an object with predict, or a function that returns one"
+    if hasattr(found, "state_dict"):
+        words += "; a network of torch becomes one by NetworkPolicy.from_module"
+    return ParameterError(f"policy = {shown(found)} is not accepted: {words}")
+
+
+def _by_name(name: str, pool: Pool | None, trust: bool) -> Policy:
+    if name in POLICIES:
+        return _of_source(POLICIES[name]())
+    if name in POOL_POLICIES:
+        return _of_source(POOL_POLICIES[name](pool))
+    if name.endswith(FILES):
+        return _of_source(load(name, trust=trust))
+    if _ATTRIBUTE.fullmatch(name):
+        return _by_object(_attribute(name, trust))
+    parts = [part.strip() for part in name.split(",")]
+    near = nearest(name, NAMES)
+    if len(parts) > 1 and set(parts) <= {*NAMES}:
+        hint = "policies are named one by one (on the command line, repeat the option)"
+    else:
+        hint = f"did you mean {near!r}?" if near else f"there are {quoted(NAMES)}"
+    raise ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
+
+
+def _attribute(name: str, trust: bool) -> object:
+    """Return what ``"module:attribute"`` names, also of a module in the working directory."""
+    if not trust:
+        raise ParameterError(
+            f"{name} names code, and importing it executes it: if you know where it comes from, "
+            "say so with trust=True (on the command line --trust)"
+        )
+    module, _, attribute = name.partition(":")
+    # As `python -m` does, which scripts in an environment's folder do not.
+    path, folder = [*sys.path], os.getcwd()
+    sys.path.insert(0, folder)
+    try:
+        found: object = importlib.import_module(module)
+        for part in attribute.split("."):
+            found = getattr(found, part)
+    except Exception as error:  # The module's own code may raise anything.
+        raise ParameterError(f"{name} is not accepted: {type(error).__name__}: {error}") from error
+    finally:
+        sys.path[:] = path
+    return found
 
 
 def load(
@@ -102,45 +222,6 @@ def load(
     return NetworkPolicy.load(path)
 
 
-def named_policy(name: str, pool: Any, *, trust: bool = False) -> Callable[[], LeaderPolicy | str]:
-    """Return a function that returns a policy, given its name or the path of its file; see `load`.
-
-    Names are those in `POLICIES` and `POOL_POLICIES`; the latter need the flock's pool. Unknown
-    names, files that are no policy and pools that a policy is not made for are refused.
-    """
-    if name in POLICIES:
-        return POLICIES[name]
-    if name in POOL_POLICIES:
-        found = POOL_POLICIES[name](pool)
-        return lambda: found
-    if name.endswith(FILES):
-        read = load(name, trust=trust)
-        check_pool(read, pool)
-        return lambda: read
-    names = [*POLICIES, *POOL_POLICIES]
-    parts = [part.strip() for part in name.split(",")]
-    near = nearest(name, names)
-    if len(parts) > 1 and set(parts) <= {*names}:
-        hint = "policies are named one by one (on the command line, repeat the option)"
-    else:
-        hint = f"did you mean {near!r}?" if near else f"there are {quoted(names)}"
-    raise ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
-
-
-def policy_name(policy: LeaderPolicy | str | None) -> str:
-    """Return the name under which recordings hold a policy.
-
-    Without a policy it is `EVERY_SUBSTEP`. Otherwise it is the policy's text, or its class if the
-    text is no name, and then the policy's ``digest``, if it has one.
-    """
-    if policy is None or isinstance(policy, str):
-        return policy or EVERY_SUBSTEP
-    kind = type(policy)
-    shown = repr(policy) if kind.__repr__ is not object.__repr__ else ""
-    name = shown if 0 < len(shown) <= _LONGEST_NAME and shown.isprintable() else kind.__qualname__
-    return f"{name} {getattr(policy, 'digest', '')}".strip()
-
-
-def quoted(names: list[str]) -> str:
+def quoted(names: Iterable[str]) -> str:
     """Return names in a row, each in quotes: some hold spaces."""
     return ", ".join(map(repr, names))

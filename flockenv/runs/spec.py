@@ -4,7 +4,6 @@ import hashlib
 import json
 from dataclasses import dataclass, fields, replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -12,23 +11,25 @@ from flockenv._io.arguments import number
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
+from flockenv.policies.base import Pool
 from flockenv.policies.names import EVERY_SUBSTEP
-from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy
+from flockenv.policies.registry import NAMES, policy
 from flockenv.recording import Recording
 from flockenv.recording.checks import check_seed
 from flockenv.simulation import simulate
 
 _DEFAULTS = FlockParameters().to_dict()
 
+
+@cache
+def _check_policy(name: str, pool: Pool) -> None:
+    """Refuse a pool that a policy is not made for."""
+    policy(name, pool)
+
+
 KEEP = ("window", "order", "poses")
 """What can be stored of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""
-
-
-@cache
-def _check_pool(policy: str, pool: Any) -> None:
-    """Refuse a pool that a policy is not made for."""
-    named_policy(policy, pool)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,9 +64,8 @@ class RunSpec:
     def __post_init__(self) -> None:
         if not isinstance(self.parameters, FlockParameters):
             raise TypeError(f"parameters must be FlockParameters, not {shown(self.parameters)}")
-        refuse_unknown((self.policy,), [*POLICIES, *POOL_POLICIES], "policy of a run")
-        if self.policy in POOL_POLICIES:
-            _check_pool(self.policy, self.parameters.pool)
+        refuse_unknown((self.policy,), NAMES, "policy of a run")
+        _check_policy(self.policy, self.parameters.pool)
         if self.policy != EVERY_SUBSTEP and self.parameters.n_leaders == 0:
             raise ParameterError(
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"

@@ -14,7 +14,7 @@ from flockenv._io.arguments import check_function, items, whole
 from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
-from flockenv.policies.registry import named_policy, policy_name
+from flockenv.policies.registry import policy
 from flockenv.recording import LayoutError, Recording
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
@@ -106,7 +106,7 @@ class RunStore:
 
 def _difference(run: Recording, spec: RunSpec) -> str | None:
     """Return in what a recording is not the run of a spec, None if it is that run."""
-    policy = named_policy(spec.policy, spec.parameters.pool)()
+    title = policy(spec.policy, spec.parameters.pool).name
     step_s, kept = 1.0 / spec.sample_hz, spec.keep
     gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
     # In a shorter window there may be no two samples that follow each other.
@@ -118,7 +118,7 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
         "other parameters": run.parameters != spec.parameters,
         f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,
         f"{run.duration_s:g} s, not {spec.duration_s:g} s": run.duration_s != spec.duration_s,
-        f"a policy {run.policy}, not {spec.policy}": run.policy != policy_name(policy),
+        f"a policy {run.policy}, not {spec.policy}": run.policy != title,
         f"other samples than {spec.sample_hz:g} per second": not is_sampled,
         f"not what {kept!r} keeps": run.has_poses != (kept == "poses")
         or not (is_whole and (kept != "window" or run.in_analysis_window.all())),

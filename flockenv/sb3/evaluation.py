@@ -18,8 +18,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 from flockenv._io.arguments import whole
 from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
 from flockenv.errors import ParameterError, shown
-from flockenv.policies import ModelPolicy
-from flockenv.policies.base import check_action_mode, check_pool
+from flockenv.policies import ModelPolicy, Policy
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.statistics import mean_interval
 
@@ -155,13 +154,14 @@ def _follow(training: VecNormalize, flocks: VecEnv) -> None:
 def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     """Refuse a model that was trained on observations or actions of another meaning."""
     model = model.model if isinstance(model, ModelPolicy) else model
-    check_pool(model, leaders._batch.parameters(0).pool)
+    own_policy = Policy.from_source(model)
+    own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, here = getattr(model, "observation_space", None), leaders.observation_space
     options = here.options
     if isinstance(space, ObservationSpace):
         said = space.policy_options()
     else:
-        check_action_mode(model, leaders.action_mode, "in this evaluation")
+        own_policy.check_action_mode(leaders.action_mode, "in this evaluation")
         said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
         said = {name: value for name, value in said.items() if value is not None}
         # What a policy does not say it does not depend on.

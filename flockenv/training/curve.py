@@ -8,9 +8,7 @@ from stable_baselines3.common.monitor import load_results
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.comparison import compare_leaders
-from flockenv.policies import SteeringLaw
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
-from flockenv.policies.registry import named_policy
 from flockenv.training.settings import TrainingSettings
 
 if TYPE_CHECKING:
@@ -88,9 +86,9 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
         As of `flockenv.comparison.compare_leaders`.
     """
     policies = {
-        PAPERS_LAW: SteeringLaw,
-        TUNED_LAW: named_policy(TUNED_LAW, settings.pool),
-        TRAINED: lambda: model,
+        PAPERS_LAW: PAPERS_LAW,
+        TUNED_LAW: TUNED_LAW,
+        TRAINED: model,
     }
     seeds = range(episodes)
     return compare_leaders(settings.held_out(), [settings.n_leaders], policies, seeds, _EPISODE_S)

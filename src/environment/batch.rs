@@ -2,6 +2,7 @@
 //! it is in nor on the number of threads.
 
 use super::flock_env::StoredEnv;
+use super::observation::ObservationLayout;
 use super::{EnvSettings, FlockEnv, ResetRequest, Upcoming};
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
@@ -33,7 +34,7 @@ pub struct EnvBatch {
 /// One flock's part of a step.
 struct Share<'a> {
     env: &'a mut FlockEnv,
-    actions: &'a [f64],
+    actions: Option<&'a [f64]>,
     observations: &'a mut [f32],
     rewards: &'a mut [f64],
     truncated: &'a mut bool,
@@ -89,16 +90,18 @@ impl EnvBatch {
     ///
     /// # Errors
     /// [`FlockError::Shape`], [`FlockError::Parameter`] or [`FlockError::Episode`].
-    pub fn check_step(&self, actions: &[f64]) -> Result<()> {
-        if actions.len() != self.rows {
-            return Err(FlockError::Shape {
-                field: "actions",
-                found: format!("({},)", actions.len()),
-                expected: format!("({},), one per leader", self.rows),
-            });
-        }
-        for &action in actions {
-            self.settings.check_action(action)?;
+    pub fn check_step(&self, actions: Option<&[f64]>) -> Result<()> {
+        if let Some(actions) = actions {
+            if actions.len() != self.rows {
+                return Err(FlockError::Shape {
+                    field: "actions",
+                    found: format!("({},)", actions.len()),
+                    expected: format!("({},), one per leader", self.rows),
+                });
+            }
+            for &action in actions {
+                self.settings.check_action(action)?;
+            }
         }
         self.envs
             .iter()
@@ -106,6 +109,7 @@ impl EnvBatch {
     }
 
     /// One decision of every flock, held over its control steps, or the start of its next episode where one is due.
+    /// Without actions the leaders follow the steering law at every substep.
     ///
     /// # Errors
     /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of a
@@ -114,7 +118,7 @@ impl EnvBatch {
     ///
     /// # Panics
     /// If the rows have other lengths than the batch.
-    pub fn step(&mut self, actions: &[f64], out: BatchRows) -> Result<()> {
+    pub fn step(&mut self, actions: Option<&[f64]>, out: BatchRows) -> Result<()> {
         self.step_while(&|| true, actions, out)
     }
 
@@ -128,7 +132,7 @@ impl EnvBatch {
     pub fn step_while(
         &mut self,
         keep_going: KeepGoing,
-        actions: &[f64],
+        actions: Option<&[f64]>,
         out: BatchRows,
     ) -> Result<()> {
         self.check_step(actions)?;
@@ -254,6 +258,23 @@ impl EnvBatch {
         }
     }
 
+    /// Writes what leaders observe now in another layout, through the same cameras; zeros before the first reset.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a layout that a flock cannot have.
+    ///
+    /// # Panics
+    /// If `out` has another length than `rows × size of the layout`.
+    pub fn observe_in(&self, layout: ObservationLayout, out: &mut [f32]) -> Result<()> {
+        assert_eq!(out.len(), self.rows * layout.size(), "one row per leader");
+        let mut rest = out;
+        for env in &self.envs {
+            let own = rest.split_off_mut(..env.parameters().n_leaders * layout.size());
+            env.observe_in(layout, own.unwrap_or_default())?;
+        }
+        Ok(())
+    }
+
     /// The whole batch as bytes: settings, parameters and state.
     pub fn to_bytes(&self) -> Vec<u8> {
         let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
@@ -330,23 +351,20 @@ fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<(
 fn shares<'a>(
     envs: &'a mut [FlockEnv],
     size: usize,
-    mut actions: &'a [f64],
+    mut actions: Option<&'a [f64]>,
     out: BatchRows<'a>,
 ) -> Vec<Share<'a>> {
     let (mut observations, mut rewards) = (out.observations, out.rewards);
-    assert_eq!(
-        observations.len(),
-        actions.len() * size,
-        "one row per leader"
-    );
-    assert_eq!(rewards.len(), actions.len(), "one reward a leader");
+    let rows: usize = envs.iter().map(|env| env.parameters().n_leaders).sum();
+    assert_eq!(observations.len(), rows * size, "one row per leader");
+    assert_eq!(rewards.len(), rows, "one reward a leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
     let mut number = 0_usize;
     let share = |(env, truncated): (&'a mut FlockEnv, _)| {
         number += 1;
         let leaders = env.parameters().n_leaders;
         Share {
-            actions: actions.split_off(..leaders).unwrap_or_default(),
+            actions: actions.as_mut().and_then(|left| left.split_off(..leaders)),
             observations: observations
                 .split_off_mut(..leaders * size)
                 .unwrap_or_default(),

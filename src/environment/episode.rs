@@ -1,9 +1,12 @@
 //! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
 
 use super::credit::{ContactCredit, LeaderCredit};
-use super::observation::{Camera, CourseView, FlockFeatures, FlockView, Observer, StateObserver};
+use super::observation::{
+    Camera, CourseView, FlockFeatures, FlockView, ObservationLayout, Observer, StateObserver,
+};
 use super::reset::check_flock;
 use super::reward::stored_rows;
+use super::settings::observer;
 use super::statistics::EpisodeStatistics;
 use super::{EnvSettings, EpisodeSchedule, EpisodeSummary, Reward, RewardTerms, Servo, TERMS};
 use crate::analysis::OrderParameters;
@@ -188,6 +191,16 @@ impl Episode {
         self.state.statistics.count_clipped(clipped, out.len());
     }
 
+    /// Writes what leaders see now in another layout.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a layout that the flock cannot have.
+    pub(crate) fn observe_in(&self, layout: ObservationLayout, out: &mut [f32]) -> Result<()> {
+        let mut observer = observer(layout, self.state.flock.parameters())?;
+        observer.observe(&self.state.seen(), out);
+        Ok(())
+    }
+
     /// Writes the global state, which no camera stands before.
     pub(crate) fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
@@ -205,7 +218,7 @@ impl Episode {
     }
 
     /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end,
-    /// and writes the rewards, sums over them.
+    /// and writes the rewards, sums over them. Without actions leaders follow the steering law at every substep.
     ///
     /// # Errors
     /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stays where it was in that control step, and the
@@ -215,7 +228,7 @@ impl Episode {
         keep_going: KeepGoing,
         settings: &EnvSettings,
         servo: &Servo,
-        actions: &[f64],
+        actions: Option<&[f64]>,
         rewards: &mut [f64],
     ) -> Result<()> {
         // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
@@ -224,8 +237,11 @@ impl Episode {
         rewards.fill(0.0);
         let mut taken = 0;
         while taken == 0 || (taken < settings.period_steps() && !self.state.ended) {
-            self.command(settings, actions, mirror_to.as_ref());
-            let elapsed = self.advance(keep_going, settings, servo)?;
+            if let Some(actions) = actions {
+                self.command(settings, actions, mirror_to.as_ref());
+                self.move_rudders(servo);
+            }
+            let elapsed = self.advance(keep_going, settings, actions.is_none())?;
             self.pay(settings, rewards);
             self.note_order(elapsed);
             self.advance_schedule()?;
@@ -258,21 +274,30 @@ impl Episode {
         self.commands = commands;
     }
 
-    /// Moves the flock through a control step; returns the time from the episode's start to its end.
+    /// Moves the rudders towards their commands.
+    fn move_rudders(&mut self, servo: &Servo) {
+        for (rudder, &command) in self.state.rudders.iter_mut().zip(&self.commands) {
+            *rudder = servo.moved(*rudder, command);
+        }
+    }
+
+    /// Moves the flock through a control step, by the rudders or by the steering law; returns the time from the episode's
+    /// start to its end.
     fn advance(
         &mut self,
         keep_going: KeepGoing,
         settings: &EnvSettings,
-        servo: &Servo,
+        follows_law: bool,
     ) -> Result<Ticks> {
         let state = &mut self.state;
-        for (rudder, &command) in state.rudders.iter_mut().zip(&self.commands) {
-            *rudder = servo.moved(*rudder, command);
-        }
         let [before, elapsed] =
             [state.schedule.step, state.schedule.step + 1].map(|step| settings.time_of(step));
         let end = state.flock.time() + elapsed - before;
-        let steering = Steering::Held(&state.rudders);
+        let steering = if follows_law {
+            Steering::Law
+        } else {
+            Steering::Held(&state.rudders)
+        };
         let advanced = match &mut state.credit {
             None => state.flock.advance_while(keep_going, end, steering),
             Some(credit) => {
@@ -285,6 +310,10 @@ impl Episode {
         if let Err(error) = advanced {
             state.ended = true;
             return Err(error);
+        }
+        if follows_law {
+            let law = (0..state.rudders.len()).map(|leader| state.flock.steering_law(leader));
+            state.rudders = law.collect();
         }
         if let Some(credit) = &mut state.credit {
             credit.remember(&state.flock.integrator, 1.0 / settings.control_hz);

@@ -1,7 +1,7 @@
 //! One flock as an environment: an episode after another, each seeded.
 
 use super::episode::EpisodeState;
-use super::observation::{FlockFeatures, StateObserver};
+use super::observation::{FlockFeatures, ObservationLayout, StateObserver};
 use super::{
     Autoreset, EnvSettings, Episode, EpisodeSeeds, EpisodeSummary, ResetRequest, Servo, Upcoming,
 };
@@ -148,8 +148,8 @@ impl FlockEnv {
         Err(FlockError::Episode(message.to_owned()))
     }
 
-    /// One decision with checked actions, held over its control steps, or the start of the next episode where one is due. Writes
-    /// observations and rewards of the leaders and returns whether the episode was truncated.
+    /// One decision with checked actions, held over its control steps, or the start of the next episode where one is due;
+    /// without actions leaders follow the steering law at every substep. Writes observations and rewards of the leaders and returns whether the episode was truncated.
     ///
     /// # Errors
     /// [`FlockError::Solver`], [`FlockError::Placement`], [`FlockError::Interrupted`]; the episode is over then.
@@ -157,7 +157,7 @@ impl FlockEnv {
         &mut self,
         keep_going: KeepGoing,
         settings: &EnvSettings,
-        actions: &[f64],
+        actions: Option<&[f64]>,
         observations: &mut [f32],
         rewards: &mut [f64],
     ) -> Result<bool> {
@@ -213,6 +213,20 @@ impl FlockEnv {
                 episode.observe(out);
             }
             None => out.fill(0.0),
+        }
+    }
+
+    /// Writes what leaders observe now in another layout, zeros before the first reset.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a layout that the flock cannot have.
+    pub(crate) fn observe_in(&self, layout: ObservationLayout, out: &mut [f32]) -> Result<()> {
+        match &self.episode {
+            Some(episode) => episode.observe_in(layout, out),
+            None => {
+                out.fill(0.0);
+                Ok(())
+            }
         }
     }
 

@@ -61,14 +61,30 @@ declare_fields! {
     autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";
 }
 
+/// What observes flocks with these parameters in a layout.
+///
+/// # Errors
+/// [`FlockError::Parameter`] for a layout that they cannot have.
+pub(super) fn observer(
+    layout: ObservationLayout,
+    parameters: &FlockParameters,
+) -> Result<Observer> {
+    let observer = Observer::new(layout, parameters)?;
+    for block in [Block::Order, Block::LeanFeatures] {
+        let has_normal = parameters.n_leaders < parameters.n_boats;
+        let accepted = "order parameters need a normal boat: n_boats > n_leaders";
+        let is_met = has_normal || !layout.has(block);
+        FlockError::unless(is_met, block.option(), true, accepted)?;
+    }
+    Ok(observer)
+}
+
 impl EnvSettings {
     /// Checks the settings for flocks with these checked parameters.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names the first setting that is not accepted.
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
-        let accepted = "at least 1 in an environment; simulate runs flocks without leaders";
-        FlockError::unless(parameters.n_leaders > 0, "n_leaders", 0, accepted)?;
         Self::FIELDS
             .iter()
             .try_for_each(|field| field.check(self))?;
@@ -91,13 +107,7 @@ impl EnvSettings {
             let (name, steps) = ("decision_period_s", "control steps");
             whole_steps(name, period, self.control_hz, steps)?;
         }
-        Observer::new(self.layout(), parameters)?;
-        for block in [Block::Order, Block::LeanFeatures] {
-            let has_normal = parameters.n_leaders < parameters.n_boats;
-            let accepted = "order parameters need a normal boat: n_boats > n_leaders";
-            let is_met = has_normal || !self.observation.has(block);
-            FlockError::unless(is_met, block.option(), true, accepted)?;
-        }
+        observer(self.layout(), parameters)?;
         self.reward.check(parameters)
     }
 

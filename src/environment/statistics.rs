@@ -108,7 +108,7 @@ impl EpisodeStatistics {
             averages: Averages(self.averages.0.map(|sum| sum / window)),
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
-            clip_rate: self.clipped as f64 / self.observed as f64,
+            clip_rate: self.clipped as f64 / self.observed.max(1) as f64,
         }
     }
 }
@@ -154,6 +154,6 @@ pub struct EpisodeSummary {
     /// Ordering time (eq. 7) in s since the episode started, with the angle as printed, π/20, and with
     /// π/4; infinite if the flock did not order.
     pub ordering_times_s: [f64; 2],
-    /// Part of the observed numbers that were clipped at their bounds.
+    /// Part of the observed numbers that were clipped at their bounds; 0 without leaders.
     pub clip_rate: f64,
 }

@@ -3,62 +3,14 @@
 use super::LeaningLaw;
 use crate::boat::{Course, DampedLaw, steering_law};
 use crate::error::{FlockError, Result};
-use crate::parameters::{Value, named_choice};
+use crate::parameters::Value;
 
-named_choice! {
-    /// What leaders follow, by the name that commands, recordings, pictures and pages have for it.
-    pub enum LawName ("law") {
-        /// The paper's law, eq. (10), at every substep, from the flock itself.
-        EverySubstep = "paper's law at every substep",
-        /// The paper's law at every decision, from what a leader observes, as all that follow.
-        Paper = "paper's law",
-        /// The damped law with its default gains.
-        Damped = "damped law",
-        /// The damped law with the gains tuned in the pool.
-        Tuned = "tuned law",
-        /// The pretrained leaders of the pool.
-        Learned = "learned",
-    }
-}
-
-impl LawName {
-    /// The color that it has in every picture: one of Okabe and Ito's, which every kind of eye distinguishes; `None`: the
-    /// next that is free.
-    pub fn color(self) -> Option<&'static str> {
-        match self {
-            Self::Paper => Some("#0072b2"),
-            Self::Tuned => Some("#e69f00"),
-            Self::Learned => Some("#009e73"),
-            Self::EverySubstep | Self::Damped => None,
-        }
-    }
-
-    /// Whether it is another law in each pool.
-    pub fn is_of_pool(self) -> bool {
-        match self {
-            Self::Tuned | Self::Learned => true,
-            Self::EverySubstep | Self::Paper | Self::Damped => false,
-        }
-    }
-
-    /// What is declared of it by name.
-    pub fn named(self) -> Value {
-        let (name, doc) = (self.name(), self.doc());
-        let (color, is_of_pool) = (self.color(), self.is_of_pool());
-        let each = [
-            ("name", Value::from(name)),
-            ("doc", doc.into()),
-            ("color", color.into()),
-            ("is_of_pool", is_of_pool.into()),
-        ];
-        each.into_iter().collect()
-    }
-}
-
-/// A law that leaders can follow, each by what it sees.
+/// How leaders steer by themselves. One more law is a variant, a line of [`Law::NAMED`] and a rudder in [`Law::rudder`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
-    /// The paper's law, eq. (10).
+    /// The paper's law, eq. (10), at every substep, from the flock itself.
+    EverySubstep,
+    /// The paper's law at every decision, by what a leader sees, as all that follow.
     Paper,
     /// The damped law with these gains; the tuned law is the one with the gains tuned in the pool.
     Damped(DampedLaw),
@@ -66,32 +18,127 @@ pub enum Law {
     Leaning(Box<LeaningLaw>),
 }
 
-impl Law {
-    /// The law of a name. Two of them are others in each pool, which is given by its name, if it has one.
+/// A law that commands, recordings, pictures and pages know by its name.
+#[derive(Debug, Clone, Copy)]
+pub struct NamedLaw {
+    /// The name.
+    pub name: &'static str,
+    /// For documentation.
+    pub doc: &'static str,
+    /// The color that it has in every picture: one of Okabe and Ito's, which every kind of eye distinguishes; `None`: the
+    /// next that is free.
+    pub color: Option<&'static str>,
+    origin: Origin,
+}
+
+/// Where a law that has a name comes from.
+#[derive(Debug, Clone, Copy)]
+enum Origin {
+    /// It is the same in every pool.
+    Everywhere(fn() -> Law),
+    /// It is another one in each pool, which is given by its name, if it has one.
+    OfPool(fn(Option<&str>) -> Result<Law>),
+}
+
+impl NamedLaw {
+    /// Whether it is another law in each pool.
+    pub fn is_of_pool(&self) -> bool {
+        matches!(self.origin, Origin::OfPool(_))
+    }
+
+    /// The law itself, in a pool of this name, if the pool has one.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for other names, for the law at every substep, which a flock follows by itself, and for
-    /// pools in which a law has not been tuned or learned.
-    pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
-        match name.parse()? {
-            LawName::EverySubstep => {
-                let accepted = "a law that reads observations";
-                Err(FlockError::parameter("law", name, accepted))
-            }
-            LawName::Paper => Ok(Self::Paper),
-            LawName::Damped => Ok(Self::Damped(DampedLaw::default())),
-            LawName::Tuned => DampedLaw::tuned("law", name, pool).map(Self::Damped),
-            LawName::Learned => LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law))),
+    /// [`FlockError::Parameter`] for pools in which the law has not been tuned or learned.
+    pub fn law(&self, pool: Option<&str>) -> Result<Law> {
+        match self.origin {
+            Origin::Everywhere(law) => Ok(law()),
+            Origin::OfPool(law) => law(pool),
         }
+    }
+
+    /// What is declared of it by name.
+    pub fn named(&self) -> Value {
+        let each = [
+            ("name", Value::from(self.name)),
+            ("doc", self.doc.into()),
+            ("color", self.color.into()),
+            ("is_of_pool", self.is_of_pool().into()),
+        ];
+        each.into_iter().collect()
+    }
+}
+
+impl Law {
+    /// The name of the law at every substep.
+    pub const EVERY_SUBSTEP: &'static str = "paper's law at every substep";
+
+    /// The laws that have a name, in the order of documentation.
+    pub const NAMED: &'static [NamedLaw] = &[
+        NamedLaw {
+            name: Self::EVERY_SUBSTEP,
+            doc: "The paper's law, eq. (10), at every substep, from the flock itself.",
+            color: None,
+            origin: Origin::Everywhere(|| Self::EverySubstep),
+        },
+        NamedLaw {
+            name: "paper's law",
+            doc: "The paper's law at every decision, from what a leader observes, as all that follow.",
+            color: Some("#0072b2"),
+            origin: Origin::Everywhere(|| Self::Paper),
+        },
+        NamedLaw {
+            name: "damped law",
+            doc: "The damped law with its default gains.",
+            color: None,
+            origin: Origin::Everywhere(|| Self::Damped(DampedLaw::default())),
+        },
+        NamedLaw {
+            name: "tuned law",
+            doc: "The damped law with the gains tuned in the pool.",
+            color: Some("#e69f00"),
+            origin: Origin::OfPool(|pool| {
+                DampedLaw::tuned("law", "tuned law", pool).map(Self::Damped)
+            }),
+        },
+        NamedLaw {
+            name: "learned",
+            doc: "The pretrained leaders of the pool.",
+            color: Some("#009e73"),
+            origin: Origin::OfPool(|pool| {
+                LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law)))
+            }),
+        },
+    ];
+
+    /// The law of a name, in a pool of this name, if the pool has one.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for other names, and as for [`NamedLaw::law`].
+    pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
+        let found = Self::NAMED.iter().find(|each| each.name == name);
+        let names = || {
+            let names = Self::NAMED.iter().map(|each| format!("{:?}", each.name));
+            format!("one of {}", names.collect::<Vec<_>>().join(", "))
+        };
+        let unknown = || FlockError::parameter("law", format!("{name:?}"), names());
+        found.ok_or_else(unknown)?.law(pool)
+    }
+
+    /// Refuses the law at every substep, which no leader follows by what it sees.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub(super) fn check_reads_observations(&self) -> Result<()> {
+        let reads = *self != Self::EverySubstep;
+        let accepted = "a law that reads observations";
+        FlockError::unless(reads, "law", Self::EVERY_SUBSTEP, accepted)
     }
 
     /// Names and values of its gains.
     pub fn gains(&self) -> Vec<(&'static str, f64)> {
-        match self {
-            Self::Paper => Vec::new(),
-            Self::Damped(law) => law.gains().to_vec(),
-            Self::Leaning(law) => law.gains.gains().to_vec(),
-        }
+        self.damped()
+            .map_or_else(Vec::new, |law| law.gains().to_vec())
     }
 
     /// A leaning law as a JSON text.
@@ -109,10 +156,15 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`].
     pub fn check(&self) -> Result<()> {
+        self.damped().map_or(Ok(()), DampedLaw::check)?;
+        self.leaning().map_or(Ok(()), LeaningLaw::check)
+    }
+
+    /// The damped law that it steers by, if it does.
+    fn damped(&self) -> Option<&DampedLaw> {
         match self {
-            Self::Paper => Ok(()),
-            Self::Damped(law) => law.check(),
-            Self::Leaning(law) => law.check(),
+            Self::Damped(law) => Some(law),
+            _ => self.leaning().map(|law| &law.gains),
         }
     }
 
@@ -120,7 +172,7 @@ impl Law {
     pub(super) fn leaning(&self) -> Option<&LeaningLaw> {
         match self {
             Self::Leaning(law) => Some(law),
-            Self::Paper | Self::Damped(_) => None,
+            _ => None,
         }
     }
 
@@ -128,7 +180,7 @@ impl Law {
     /// actions.
     pub(super) fn rudder(&self, course: &Course) -> f64 {
         let rudder = match self {
-            Self::Paper => steering_law(course.misalignment),
+            Self::EverySubstep | Self::Paper => steering_law(course.misalignment),
             Self::Damped(law) => law.rudder(course),
             Self::Leaning(law) => law.gains.rudder(course),
         };

@@ -6,7 +6,7 @@ mod leaning;
 mod observed;
 mod pilot;
 
-pub use law::{Law, LawName};
+pub use law::{Law, NamedLaw};
 pub use leaning::{Bound, Judged, LeaningLaw};
 pub use observed::ObservedLaw;
 pub use pilot::Pilot;

@@ -20,8 +20,10 @@ impl ObservedLaw {
     /// A law for observations of a checked layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if a block that the law reads is switched off.
+    /// [`FlockError::Parameter`] if a block that the law reads is switched off, and for the law at every substep, which
+    /// reads no observations.
     pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
+        law.check_reads_observations()?;
         law.check()?;
         let features = layout.offset(Block::LeanFeatures);
         let is_met = features.is_some() || law.leaning().is_none();

@@ -46,9 +46,10 @@ impl Pilot {
     /// For a flock with these checked parameters that has so many control steps per second.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, or whose decisions are no whole number of
-    /// control steps apart.
+    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are no whole number of
+    /// control steps apart, or that has no decisions, as at every substep.
     pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
+        law.check_reads_observations()?;
         law.check()?;
         let period = law.leaning().and_then(|law| law.decision_period_s);
         let period = period

@@ -3,6 +3,7 @@
 use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
+use super::observation::layout_from;
 use super::parameters::PyParameters;
 use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
 use crate::analysis::quantities::RECORDED;
@@ -107,10 +108,17 @@ impl PyEnvBatch {
     }
 
     /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.
-    fn step<'py>(&self, py: Python<'py>, actions: &Bound<'py, PyAny>) -> PyResult<Step<'py>> {
+    /// `None`: leaders follow the steering law at every substep.
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        actions: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Step<'py>> {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
-        let actions = floats(actions, "actions", &[batch.rows()])?;
+        let rows = [batch.rows()];
+        let actions = actions.map(|actions| floats(actions, "actions", &rows));
+        let actions = actions.transpose()?;
         let size = batch.observation_size();
         let mut observations = vec![0.0; batch.rows() * size];
         let mut rewards = vec![0.0; batch.rows()];
@@ -121,7 +129,7 @@ impl PyEnvBatch {
             truncated: &mut truncated,
         };
         interruptible(py, |keep_going| {
-            batch.step_while(keep_going, &actions, rows)
+            batch.step_while(keep_going, actions.as_deref(), rows)
         })?;
         Ok((
             rows_of(py, observations, size)?,
@@ -179,6 +187,29 @@ impl PyEnvBatch {
         let size = batch.observation_size();
         let observations = filled(batch.rows() * size, |out| batch.observe(out));
         rows_of(py, observations, size)
+    }
+
+    /// What leaders observe now in another layout: (rows, size).
+    fn observe_in<'py>(
+        &self,
+        py: Python<'py>,
+        blocks: &Bound<'py, PyAny>,
+        mirror_to_target: bool,
+    ) -> Rows<'py, f32> {
+        let batch = self.0.read()?;
+        let layout = layout_from(blocks, mirror_to_target)?;
+        let mut observations = vec![0.0; batch.rows() * layout.size()];
+        batch.observe_in(layout, &mut observations)?;
+        rows_of(py, observations, layout.size())
+    }
+
+    /// The signs of the leaders' targets now: (rows, 1), 1 for clockwise.
+    fn target_signs<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
+        self.gathered(py, 1, |env, episode| {
+            let leaders = 0..env.parameters().n_leaders;
+            let signs = leaders.map(|leader| episode.targets().of(leader).sign());
+            signs.collect()
+        })
     }
 
     /// The observations that the last episode ended with: (leaders, size).

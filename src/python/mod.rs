@@ -29,7 +29,7 @@ mod _core {
     };
     use crate::integrator::Phase;
     use crate::parameters::{Field, FlockParameters, Preset, Value};
-    use crate::policies::LawName;
+    use crate::policies::{Law, NamedLaw};
 
     #[pymodule_export]
     use super::analysis::{
@@ -63,7 +63,7 @@ mod _core {
         module.add("ACTION_MODES", ActionMode::names())?;
         module.add("STYLE_SHEET", style_sheet())?;
         module.add("COLLECTIVE_STATES", CollectiveState::names())?;
-        let laws = LawName::ALL.iter().map(|law| law.named());
+        let laws = Law::NAMED.iter().map(NamedLaw::named);
         module.add("LAWS", Value::List(laws.collect()))?;
         module.add("LEAN_FEATURES", LeanFeatures::names().collect::<Vec<_>>())?;
         module.add("PHASES", Phase::names())?;

@@ -25,20 +25,20 @@ pub(super) struct Plan<'py> {
     contacts: bool,
     /// Times in s from the start of the run and what changes then: a target or parameters.
     changes: Vec<(f64, Bound<'py, PyAny>)>,
-    /// `None`: leaders follow the steering law at every substep.
-    control: Option<Control<'py>>,
+    control: Control<'py>,
     /// Called now and then with the seconds since the last call.
     progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What steers at every control step: a law, or a function of the signs of the leaders' targets (k,) and their
-/// observations (k, size), one for each layout, that returns rudders (k,).
+/// What steers: a law, or a function of the signs of the leaders' targets (k,) and their observations (k, size), one for
+/// each layout, that returns rudders (k,). It does so at every control step, or without a rate at every substep, which only
+/// the law for it can.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(super) struct Control<'py> {
     steer: Bound<'py, PyAny>,
     layouts: Vec<(Bound<'py, PyAny>, bool)>,
-    control_hz: Bound<'py, PyAny>,
+    control_hz: Option<Bound<'py, PyAny>>,
 }
 
 /// Records a run from where a flock is, which stays there: the columns of a `flockenv.Recording` that a run fills.
@@ -83,13 +83,13 @@ fn recorded<'py, T: Real + Element>(
         recorder = recorder.with_contacts();
     }
     let (mut layouts, mut pilot) = (Vec::new(), None);
-    if let Some(control) = &plan.control {
-        let hz = given(&control.control_hz, "control_hz")?;
+    if let Some(hz) = &plan.control.control_hz {
+        let hz = given(hz, "control_hz")?;
         recorder = recorder.with_control(hz)?;
-        for (blocks, is_mirrored) in &control.layouts {
+        for (blocks, is_mirrored) in &plan.control.layouts {
             layouts.push(layout_from(blocks, *is_mirrored)?);
         }
-        if let Ok(law) = control.steer.cast::<PyLaw>() {
+        if let Ok(law) = plan.control.steer.cast::<PyLaw>() {
             let law = law.get().0.clone();
             pilot = Some(Pilot::new(law, recorder.flock().parameters(), hz)?);
         }
@@ -115,10 +115,10 @@ fn run<T: Real>(
             Some(pilot) => pilot.run(recorder, keep_going, BOAT_SUBSTEPS_A_PIECE),
             None => recorder.run(keep_going, BOAT_SUBSTEPS_A_PIECE),
         })?;
-        match (pause, &plan.control) {
-            (Pause::End, _) => return Ok(()),
-            (Pause::Control, Some(control)) => steer(py, recorder, &control.steer, layouts)?,
-            _ => py.check_signals()?,
+        match pause {
+            Pause::End => return Ok(()),
+            Pause::Control => steer(py, recorder, &plan.control.steer, layouts)?,
+            Pause::Work => py.check_signals()?,
         }
         let since_s = recorder.elapsed_s() - reported_s;
         if pause == Pause::Work || since_s >= REPORTED_EVERY_S {

@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 
 import flockenv
-from flockenv.policies.registry import named_policy
 from studies.claim import Claims, Interval, bca, fall, judging, mean, unknown
 from studies.density.noise_makes_motion import SETS, order_row
 from studies.flocks import one_jam, rotating
@@ -96,7 +95,7 @@ def measure(row: Row) -> Row:
         60.0 * row["minutes"],
         4.0,
         dtype=np.float32,
-        policy=named_policy(row["policy"], row["pool"])() if named else None,
+        policy=row["policy"] if named else None,
         start=None if start is None else start(parameters, seed).snapshot(),
     )
     found = {}

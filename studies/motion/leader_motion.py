@@ -13,7 +13,6 @@ from matplotlib.patches import Circle
 
 import flockenv
 from flockenv import FlockParameters
-from flockenv.policies.registry import named_policy
 from flockenv.statistics import mean_interval
 from studies.study import run, write_table
 
@@ -31,8 +30,7 @@ def flock(pool: str) -> flockenv.FlockParameters:
 
 def leaders(pool: str, policy: str, seed: int) -> flockenv.Recording:
     """Return an episode."""
-    steers = named_policy(policy, pool)()
-    return flockenv.simulate(flock(pool), seed, EPISODE_S, sample_hz=SAMPLE_HZ, policy=steers)
+    return flockenv.simulate(flock(pool), seed, EPISODE_S, sample_hz=SAMPLE_HZ, policy=policy)
 
 
 def motion(run: flockenv.Recording, outer_cm: float) -> dict[str, float]:

@@ -32,7 +32,6 @@ import pandas as pd
 
 import flockenv
 from flockenv.policies import LeaningLaw, StraightAhead
-from flockenv.policies.registry import named_policy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 from studies.study import run, write_table
@@ -59,7 +58,7 @@ def policy_of(name: str, pool: str, **layout: Any) -> Any:
     try:
         return Constant(float(name), **layout)
     except ValueError:
-        return named_policy(name, pool)()
+        return flockenv.policies.policy(name, pool)
 
 
 def episode(env: Any, policies: Any, options: Any, random: Any, seeds: Any) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from flockenv.comparison import ComparisonReport
 from flockenv.comparison.suite import REFERENCE, tasks_named
 from flockenv.envs.observation import observation_entries
-from flockenv.policies.registry import named_policy
+from flockenv.policies import policy
 
 _TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
 
@@ -46,7 +46,7 @@ class Signed:
 
 def main() -> None:
     """Print the order with the pair, and with the tuned law for both leaders."""
-    law = named_policy(REFERENCE, TASK.parameters.pool)()
+    law = policy(REFERENCE, TASK.parameters.pool)
     policies = {
         "pair": {"leader_0": law, "leader_1": Signed(law, -1.0)},
         REFERENCE: law,

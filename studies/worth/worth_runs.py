@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 import flockenv
-from flockenv.policies.registry import named_policy
 from studies.study import FIRST_SEED, Row, Study, flock
 
 RUNS, MORE_RUNS = 64, 256  # Seeds of every line, and of those of 27 boats.
@@ -68,7 +67,7 @@ def measure(row: Row) -> Row:
         pool="wide" if row["n_boats"] == DENSITY_BOATS else (180.0 * scale, 97.0 * scale),
     )
     by_law = row["policy"] == LAW or not sides
-    policy: Any = None if by_law else named_policy(row["policy"], "wide")()
+    policy: Any = None if by_law else flockenv.policies.policy(row["policy"], "wide").source
     if isinstance(policy, flockenv.policies.LeaningLaw) and row["n_boats"] != DENSITY_BOATS:
         policy.pool = None  # It refuses other pools than its own, also those of the same shape.
     if policy is not None and row["against"]:

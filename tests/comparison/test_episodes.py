@@ -10,10 +10,9 @@ import flockenv
 from flockenv.comparison import NO_LEADERS, Case, compare_leaders, run_episodes
 from flockenv.comparison.suite import tasks_named
 from flockenv.policies import load
-from flockenv.policies.registry import POLICIES
 from flockenv.runs.seeds import POLICY_SEEDS
 
-LAW = {"paper's law": POLICIES["paper's law"]}
+LAW = {"paper's law": "paper's law"}
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +39,7 @@ def test_results_belong_to_the_seed(parameters: flockenv.FlockParameters) -> Non
 
 
 @pytest.mark.parametrize(
-    ("leaders", "policies"), [(0, {}), (2, {"every": POLICIES["paper's law at every substep"]})]
+    ("leaders", "policies"), [(0, {}), (2, {"every": "paper's law at every substep"})]
 )
 def test_runs_outside_the_environment_are_those_of_simulate(
     parameters: flockenv.FlockParameters, leaders: int, policies: dict[str, Any]
@@ -56,11 +55,37 @@ def test_runs_outside_the_environment_are_those_of_simulate(
     assert runs["signed_order"].item() == pytest.approx(towards[late].mean(), abs=1e-6)
 
 
+def test_flocks_that_nobody_steers_in_steps_have_the_targets_of_the_others(parameters) -> None:
+    """A target that alternates is that of the order, with and without leaders; so is a noise."""
+    changes = {"target": "alternate", "bw_s": (0.1, 0.9)}
+    laws = {"every": "paper's law at every substep", "law": "paper's law"}
+    runs = compare_leaders(parameters, [0, 2], laws, range(3), 240.0, environment=changes)
+    orders = {name: own["signed_order"].to_numpy() for name, own in runs.groupby("policy")}
+    assert np.abs(orders["every"] - orders["law"]).max() < 0.5, "much the same law"
+    fixed = compare_leaders(parameters, [0], {}, range(3), 240.0)["signed_order"].to_numpy()
+    assert np.abs(fixed - orders[NO_LEADERS]).max() > 0.01
+    law = run_episodes(parameters.replace(n_leaders=2), None, [1], 60.0, options={"target": "ccw"})
+    ccw = parameters.replace(n_leaders=2, target="ccw")
+    assert law == run_episodes(ccw, None, [1], 60.0)
+
+
+def test_a_camera_that_misses_boats_is_that_of_each_leader(parameters) -> None:
+    """Policies given leader by leader see what they see as one for all."""
+    law = load("learned", pool="wide")
+    wide = parameters.replace(n_leaders=2, pool="wide")
+    for options in ({"dropout_rate": 0.3, "target": "alternate"}, {"control_hz": 5.0}):
+        both = {"leader_0": law, "leader_1": law}
+        one, each = (run_episodes(wide, it, [1, 2], 60.0, options=options) for it in (law, both))
+        assert each["signed_order"] == pytest.approx(one["signed_order"], abs=1e-9)
+        clear = run_episodes(wide, law, [1, 2], 60.0)["signed_order"]
+        assert (one["signed_order"] != clear).all()
+
+
 def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters) -> None:
     """A flock that goes around clockwise has the opposite order towards the other target."""
     led = parameters.replace(n_leaders=2)
     opposed = (("cw", "ccw"), ("ccw", "cw"))
-    straight = {"straight ahead": POLICIES["straight ahead"]}
+    straight = {"straight ahead": "straight ahead"}
     orders = []
     for targets in (opposed, opposed[::-1]):
         case = Case(
@@ -75,7 +100,10 @@ def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters
     ("leaders", "name", "environment", "words"),
     [
         ([1, 9], "straight ahead", {}, "9 leaders among n_boats = 9 .* --n-leaders"),
-        ([1], "paper's law at every substep", {"target": "alternate"}, "outside"),
+        ([1], "paper's law at every substep", {"dropout_rate": 0.1}, "options dropout_rate"),
+        ([0, 1], "straight ahead", {"dropout_rate": 0.1}, "'no leaders' .* options dropout_rate"),
+        ([1], "straight ahead", {"dropout": 0.1}, "did you mean 'dropout_rate'"),
+        ([1], "straight ahead", {"dropout_rate": 2.0}, "dropout_rate = 2"),
         ([], "straight ahead", {}, "nothing to compare"),
         ([1], "straight ahead", {"n_boats": 9}, "n_boats = 9 is not accepted .* the flock says it"),
         ([1], "straight ahead", {"bw_s": 0.9}, "bw_s = 0.9 is not accepted"),
@@ -96,7 +124,7 @@ def test_what_cannot_be_compared_is_refused_first(
     words: str,
 ) -> None:
     seconds: list[float] = []
-    policies = {"damped law": POLICIES["damped law"], name: POLICIES[name]}
+    policies = {"damped law": "damped law", name: name}
     with pytest.raises(flockenv.ParameterError, match=words):
         compare_leaders(parameters, leaders, policies, [1], 5.0, seconds.append, environment)
     assert seconds == []
@@ -115,6 +143,21 @@ def test_noises_may_be_drawn_from_a_range(parameters: flockenv.FlockParameters) 
         parameters, [1], {"law": "paper's law"}, [1, 2], 5.0, environment={"bw_s": (0.1, 0.9)}
     )
     assert len(drawn) == 2
+
+
+class Shrinks:
+    """Actions of another shape in the middle of an episode."""
+
+    def predict(self, observation, state=None):
+        calls = (state or 0) + 1
+        return np.zeros(len(observation) if calls < 20 else 1), calls
+
+
+def test_actions_of_another_shape_are_named(parameters) -> None:
+    seconds: list[float] = []
+    with pytest.raises(flockenv.ParameterError, match=r"has shape \(1,\), expected a rudder for"):
+        compare_leaders(parameters, [1], {"mine": Shrinks()}, [1, 2], 5.0, seconds.append)
+    assert len(seconds) == 19
 
 
 @pytest.mark.parametrize("policy", [5, {"leader_0": 5}, lambda: 5, np])
@@ -151,7 +194,7 @@ def test_training_seeds_are_refused(parameters: flockenv.FlockParameters) -> Non
 
 def test_a_policy_for_each_leader(parameters: flockenv.FlockParameters) -> None:
     """Leaders of which each has the same law move as with that law; others do not."""
-    both = {"leader_0": "damped law", "leader_1": POLICIES["damped law"]}
+    both = {"leader_0": "damped law", "leader_1": "damped law"}
     policies = {"one": "damped law", "both": both, "pair": {**both, "leader_1": "straight ahead"}}
     runs = compare_leaders(parameters, [1, 2], policies, [1, 2], 30.0)
     orders = {name: own["signed_order"].tolist() for name, own in runs.groupby("policy")}

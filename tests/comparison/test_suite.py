@@ -23,7 +23,7 @@ from flockenv.comparison.suite import (
     tasks_named,
 )
 from flockenv.errors import ParameterError
-from flockenv.policies.registry import named_policy
+from flockenv.policies import policy
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 
 FIELDS = ("n_boats", "n_leaders", "pool", "bw_s", "target", "scheme", "noise_scheme", "dt_s")
@@ -55,7 +55,7 @@ def test_an_id_gives_what_the_suite_scores(name: str, env_id: str) -> None:
     (task,) = tasks_named("v2", [name])
     seeds, targets = task.seeds[:2], task.targets or (task.parameters.target,) * 2
     scored = replace(task, seeds=seeds).run({REFERENCE: REFERENCE})["signed_order"].tolist()
-    law = named_policy(REFERENCE, task.parameters.pool)()
+    law = policy(REFERENCE, task.parameters.pool)
 
     env = gymnasium.make(env_id)
     options = {"target": targets[0], **task.environment, "episode_s": task.episode_s}

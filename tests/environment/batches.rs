@@ -1,7 +1,9 @@
 //! A flock's bits depend neither on the batch that it is in nor on the number of threads; a step or a
 //! reset happens as a whole or not at all.
 
-use crate::support::{batch, changed, flock, parameters, requested, seeded, settings, step};
+use crate::support::{
+    batch, changed, flock, parameters, requested, seeded, settings, step, step_by,
+};
 use flockenv::FlockError;
 use flockenv::environment::{
     Autoreset, Drawn, EnvBatch, FlockEnv, ResetRequest, Start, TargetChoice, Upcoming,
@@ -199,4 +201,27 @@ fn what_is_upcoming_holds_from_the_next_episode_on() {
         assert!(matches!(refused, Err(FlockError::Parameter { .. })));
         assert_eq!(before, batch.to_bytes());
     }
+}
+
+/// Leaders, of which there may be none, that nobody gives actions.
+#[test]
+fn without_actions_flocks_move_by_the_steering_law() {
+    let mut batch = batch(settings(30), &[0, 2], 4);
+    let mut alone: Vec<_> = [0, 1].map(|place| flock(&batch, place).clone()).into();
+    for step in 1..=30 {
+        let written = step_by(&mut batch, None).unwrap();
+        assert_eq!(written.truncated, [step == 30; 2]);
+        for (place, own) in alone.iter_mut().enumerate() {
+            own.advance(0.1, None).unwrap();
+            let there = batch.envs()[place].episode().unwrap();
+            assert_eq!(there.flock().poses(), own.poses());
+            let law: Vec<_> = (0..there.rudders().len())
+                .map(|k| own.steering_law(k))
+                .collect();
+            assert_eq!(there.rudders(), law);
+        }
+    }
+    let summary = batch.envs()[0].finished().unwrap();
+    assert_eq!((summary.total_reward, summary.clip_rate), (0.0, 0.0));
+    assert_eq!(batch.rows(), 2);
 }

@@ -4,7 +4,7 @@ use crate::support::{flock, parameters, seeded, step};
 use flockenv::environment::observation::{Block, ObservationLayout};
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, TargetChoice};
 use flockenv::parameters::{Target, Targets};
-use flockenv::policies::{Law, LawName, LeaningLaw, ObservedLaw, Pilot};
+use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
 
 /// The learned leaders of the other pool, as a law of this one.
 fn learned() -> LeaningLaw {
@@ -25,7 +25,7 @@ fn holding(period_s: f64) -> Law {
 }
 
 fn laws() -> Vec<(Law, Option<f64>)> {
-    let named = LawName::names().into_iter().skip(1);
+    let named = Law::NAMED.iter().map(|each| each.name).skip(1);
     let mut laws: Vec<_> = named
         .filter(|name| *name != "learned")
         .map(|name| (Law::named(name, Some("narrow")).unwrap(), None))

@@ -62,6 +62,11 @@ pub struct Written {
 
 /// Steps and returns what was written.
 pub fn step(batch: &mut EnvBatch, actions: &[f64]) -> flockenv::Result<Written> {
+    step_by(batch, Some(actions))
+}
+
+/// As [`step`]; without actions leaders follow the steering law.
+pub fn step_by(batch: &mut EnvBatch, actions: Option<&[f64]>) -> flockenv::Result<Written> {
     let mut written = Written {
         observations: vec![f32::NAN; batch.rows() * batch.observation_size()],
         rewards: vec![f64::NAN; batch.rows()],

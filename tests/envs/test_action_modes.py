@@ -139,7 +139,7 @@ def lean_policy(period=0.5):
 
 
 def test_policies_of_another_action_mode_are_refused_by_name(tmp_path):
-    from flockenv.comparison.episodes import compare_leaders
+    from flockenv.comparison import compare_leaders
 
     parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
     policy = lean_policy()
@@ -157,7 +157,7 @@ def test_policies_of_another_action_mode_are_refused_by_name(tmp_path):
 
 
 def test_a_leaning_policy_is_compared_in_its_own_action_mode(tmp_path):
-    from flockenv.comparison.episodes import run_episodes
+    from flockenv.comparison import run_episodes
 
     parameters = flockenv.FlockParameters(n_boats=6, n_leaders=1, pool="narrow")
     lean_policy().save(tmp_path / "lean.npz")

@@ -11,25 +11,25 @@ from flockenv import _core
 from flockenv.comparison.figure import COLORS
 from flockenv.policies import names
 from flockenv.policies.names import LAWS
-from flockenv.policies.registry import POLICIES, POOL_POLICIES, named_policy, quoted
+from flockenv.policies.registry import NAMES, POOL_POLICIES, policy, quoted
 
 REPOSITORY = Path(__file__).parents[2]
 PARAMETERS = flockenv.FlockParameters(n_boats=6, n_leaders=2, pool="narrow")
 RUN = {"seed": 3, "duration_s": 5.0}
 
 
-@pytest.mark.parametrize("name", [*POLICIES, *POOL_POLICIES])
+@pytest.mark.parametrize("name", [*NAMES])
 def test_names_steer_as_the_policies_they_stand_for(name: str) -> None:
     parameters = PARAMETERS.replace(pool="wide")
-    policy = named_policy(name, "wide")()
+    named = policy(name, "wide")
     assert flockenv.simulate(parameters, policy=name, **RUN) == flockenv.simulate(
-        parameters, policy=policy, **RUN
+        parameters, policy=named, **RUN
     )
 
 
 def test_learned_leaders_are_loaded_by_name_and_by_file() -> None:
     named = flockenv.policies.load("learned", pool="wide")
-    assert named.law == named_policy("learned", "wide")().law
+    assert named.law == policy("learned", "wide").law
     file = REPOSITORY / "src" / "policies" / "learned" / "wide.json"
     assert named.to_json() == flockenv.policies.load(file).to_json()
 
@@ -55,18 +55,18 @@ def test_a_pool_without_learned_leaders_says_which_have_some() -> None:
         ("papers law", 'did you mean "paper\'s law"'),
         ("damped law, learned", "one by one"),
         ("paper's law at every substep, learned", "one by one"),
-        ("nobody", quoted([*POLICIES, *POOL_POLICIES])),
+        ("nobody", quoted([*NAMES])),
     ],
 )
 def test_unknown_names_are_reported_with_what_there_is(name: str, words: str) -> None:
     with pytest.raises(flockenv.ParameterError) as reported:
-        named_policy(name, "narrow")
+        policy(name, "narrow")
     assert words in str(reported.value)
 
 
 def test_names_of_laws_and_their_colors_stand_in_the_core_alone():
     assert [*LAWS] == [each["name"] for each in _core.LAWS]
-    assert {*LAWS} <= {*POLICIES, *POOL_POLICIES}
+    assert {*LAWS} <= {*NAMES}
     assert {name for name, law in LAWS.items() if law["is_of_pool"]} == {*POOL_POLICIES}
     assert {name: law["color"] for name, law in LAWS.items() if law["color"]} == COLORS
     folder = Path(flockenv.__file__).parent

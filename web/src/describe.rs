@@ -8,7 +8,7 @@ use flockenv::environment::observation::ObservationLayout;
 use flockenv::geometry::Hull;
 use flockenv::integrator::Phase;
 use flockenv::parameters::{Field, FlockParameters, Kind};
-use flockenv::policies::LawName;
+use flockenv::policies::{Law, NamedLaw};
 use serde_json::{Value as Json, json};
 
 fn kind_name(kind: Kind) -> &'static str {
@@ -38,7 +38,7 @@ pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
     json!({
-        "laws": LawName::ALL.iter().map(|law| written(&law.named())).collect::<Json>(),
+        "laws": Law::NAMED.iter().map(NamedLaw::named).map(|law| written(&law)).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
         "quantities": quantities().map(|each| written(&Quantity::named(each))).collect::<Json>(),

@@ -1,13 +1,14 @@
 //! How leaders steer on the page: one policy for all, one that the visitor steers, or a policy for each.
 
+use flockenv::boat::DampedLaw;
 use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
 use flockenv::parameters::FlockParameters;
-use flockenv::policies::{Law, LawName, ObservedLaw, Pilot};
+use flockenv::policies::{Law, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The paper's law at every substep, by the name that the command line has for it.
-pub(crate) const EVERY_SUBSTEP: &str = LawName::EverySubstep.name();
+pub(crate) const EVERY_SUBSTEP: &str = Law::EVERY_SUBSTEP;
 
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
@@ -44,12 +45,10 @@ impl Leaders {
             "you" if parameters.n_leaders == 0 => {
                 Err(refused(name, "at least one leader, whom you steer"))
             }
-            "you" => Pilot::new(
-                law(LawName::Damped.name(), parameters)?,
-                parameters,
-                CONTROL_HZ,
-            )
-            .map(Self::You),
+            "you" => {
+                let damped = Law::Damped(DampedLaw::default());
+                Pilot::new(damped, parameters, CONTROL_HZ).map(Self::You)
+            }
             _ => Pilot::new(law(name, parameters)?, parameters, CONTROL_HZ).map(Self::Law),
         }
     }
@@ -117,7 +116,7 @@ fn refused(name: &str, accepted: &str) -> FlockError {
 
 /// The law of a name, which acts at every decision.
 fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
-    let names = LawName::names();
+    let names: Vec<_> = Law::NAMED.iter().map(|each| each.name).collect();
     if name == EVERY_SUBSTEP || !names.contains(&name) {
         return Err(refused(name, &format!("{}, you", names.join(", "))));
     }

@@ -1,0 +1,209 @@
+"""`Comparison`: policies and numbers of leaders on the same seeds, order by number of leaders."""
+
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Self
+
+from flockenv._io.arguments import by_name, check_function, items, whole
+from flockenv._io.extras import require
+from flockenv.comparison.episodes import (
+    NO_LEADERS,
+    Episodes,
+    Progress,
+    no_progress,
+    seeds_of_episodes,
+)
+from flockenv.errors import ParameterError, shown
+from flockenv.parameters import FlockParameters
+from flockenv.policies.registry import Steering
+from flockenv.runs.seeds import check_evaluation_seeds
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Finished = Callable[["pd.DataFrame"], object]
+"""Called with the rows of a policy and a number of leaders."""
+
+_SAID_BY = {
+    **dict.fromkeys({each.name for each in fields(FlockParameters)} - {"target"}, "the flock"),
+    **dict.fromkeys(("preset", "params"), "the flock"),
+    **dict.fromkeys(("observation", "mirror_to_target"), "a policy"),
+    "episode_s": "duration_s",
+    **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
+    **dict.fromkeys(("num_envs", "reward", "reward_horizon_s"), "the comparison"),
+}
+"""What says options of environments that a comparison does not take."""
+
+
+def nothing_finished(rows: "pd.DataFrame") -> None:
+    """Do nothing with rows that are there."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A row of a comparison: a policy, a number of leaders and their episodes."""
+
+    policy: str
+    leaders: int
+    episodes: Episodes
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What is compared, checked by `parse` before anything runs."""
+
+    entries: Sequence[Entry]
+
+    @classmethod
+    def parse(
+        cls,
+        parameters: FlockParameters,
+        leaders: Iterable[int],
+        policies: Mapping[str, Steering | Mapping[str, Steering]],
+        seeds: Iterable[int],
+        duration_s: float,
+        environment: Mapping[str, object],
+    ) -> Self:
+        """Return the comparison that `compare_leaders` describes, and raise what it raises."""
+        options = _environment(environment)
+        seeds = _evaluation_seeds(seeds)
+        steers = _policies(policies)
+        counts = _counts(leaders, parameters, steers)
+        entries = []
+        for name, policy in ({NO_LEADERS: None} | steers).items():
+            for k in (k for k in counts if (k == 0) == (name == NO_LEADERS)):
+                flock, own = parameters.replace(n_leaders=k), policy
+                if isinstance(own, Mapping) and k < max(counts):
+                    # With fewer leaders the first ones.
+                    own = dict(itertools.islice(own.items(), k))
+                found = Episodes.parse(flock, own, seeds, duration_s, options)
+                entries.append(Entry(name, k, found))
+        if not entries:
+            raise ParameterError("nothing to compare: leaders and policies name no flocks")
+        return cls(tuple(entries))
+
+    def run(self, progress: Progress, finished: Finished) -> "pd.DataFrame":
+        """Run all episodes; return what `compare_leaders` returns."""
+        pandas = require("pandas", "plot")
+        tables = []
+        for each in self.entries:
+            measured = each.episodes.measure(progress)
+            names = {"policy": each.policy, "leaders": each.leaders, "seed": each.episodes.seeds}
+            tables.append(pandas.DataFrame(names | measured))
+            finished(tables[-1])
+        runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
+        return runs
+
+
+def _environment(options: Mapping[str, object]) -> dict[str, object]:
+    """Return options, or refuse those that would contradict another argument or overrule it."""
+    found = by_name(options, "environment")
+    for name, value in found.items():
+        # A range of noises is no parameter of one flock.
+        if name in _SAID_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
+            raise ParameterError(
+                f"{name} = {shown(value)} is not accepted in the environment of a comparison: "
+                f"{_SAID_BY[name]} says it"
+            )
+    return found
+
+
+def _evaluation_seeds(seeds: Iterable[int]) -> Sequence[int]:
+    found = seeds_of_episodes(seeds)
+    check_evaluation_seeds(found)
+    if len(set(found)) < len(found):
+        raise ParameterError("seeds holds a seed more than once, which would count twice")
+    return found
+
+
+def _policies(
+    policies: Mapping[str, Steering | Mapping[str, Steering]],
+) -> dict[str, Steering | Mapping[str, Steering]]:
+    found = by_name(policies, "policies")
+    if NO_LEADERS in found:
+        raise ParameterError(
+            f"{NO_LEADERS!r} is no name for a policy: it names flocks without leaders"
+        )
+    return found
+
+
+def _counts(
+    leaders: Iterable[int], flock: FlockParameters, policies: Mapping[str, object]
+) -> list[int]:
+    """Return the different numbers of leaders of a flock, or refuse those that it cannot have."""
+    if not isinstance(flock, FlockParameters):
+        raise TypeError(f"parameters must be FlockParameters, not {shown(flock)}")
+    found = list(dict.fromkeys(whole(k, "leaders") for k in items(leaders, "leaders")))
+    most = max(found, default=0)
+    if most >= flock.n_boats:
+        raise ParameterError(
+            f"{most} leaders among n_boats = {flock.n_boats} are not accepted: the order is "
+            "measured of normal boats (on the command line --n-leaders and --n-boats)"
+        )
+    if policies and found and most == 0:
+        raise ParameterError(
+            f"leaders = {shown(leaders)} are not accepted with policies: they have nobody to steer"
+        )
+    return found
+
+
+def compare_leaders(
+    parameters: FlockParameters,
+    leaders: Iterable[int],
+    policies: Mapping[str, Steering | Mapping[str, Steering]],
+    seeds: Iterable[int],
+    duration_s: float,
+    progress: Progress = no_progress,
+    environment: Mapping[str, object] | None = None,
+    finished: Finished = nothing_finished,
+) -> "pd.DataFrame":
+    """Run seeded episodes for every policy and number of leaders.
+
+    All flocks are stepped in the core's batch of environments, each with the observation of its
+    policy. Seed i gives the same initial placement and the same noise whatever the leaders do.
+
+    Parameters
+    ----------
+    parameters
+        Of the flock; its number of leaders is replaced.
+    leaders
+        Numbers of leaders; 0 is run once, whatever the policies, as the policy `NO_LEADERS`.
+    policies
+        How leaders steer, by the name in the table, such as ``{"mine": model, "paper's law":
+        "paper's law"}``: each as `flockenv.policies.policy` takes it, or a dictionary with one for
+        each of ``"leader_0"``, ``"leader_1"`` and so on. A function makes a policy for each number
+        of leaders; all else is one object for all of them.
+    seeds
+        One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
+    duration_s
+        Length of an episode in s.
+    progress
+        Called with flock-seconds as they are simulated.
+    environment
+        Options of the environment that differ from its defaults, such as ``target="alternate"`` or
+        ``dropout_rate=0.003``. Flocks without leaders and under the paper's law at every substep
+        decide nothing in it: with other options than ``target``, ``bw_s`` and ``physics`` they are
+        refused.
+    finished
+        Called with the rows of each policy and number of leaders, as soon as they are there.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per episode: ``policy``, ``leaders``, ``seed``, the `QUANTITIES` and the
+        `ORDERING_TIMES`; NaN if an episode has no frame in the analysis window.
+
+    Raises
+    ------
+    ParameterError
+        For parameters, options, names and durations out of range, for options that another
+        argument or a policy says, for training seeds and seeds given twice, for policies that steer
+        another number of leaders, and for policies of another action mode than that of
+        `environment`.
+    """
+    require("pandas", "plot")
+    check_function(progress, "progress")
+    check_function(finished, "finished")
+    found = Comparison.parse(parameters, leaders, policies, seeds, duration_s, environment or {})
+    return found.run(progress, finished)

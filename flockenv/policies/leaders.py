@@ -1,0 +1,199 @@
+"""`Leaders`: who steers the leaders of a flock, one policy for all of them or several."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv.errors import ParameterError, shown
+from flockenv.parameters import FlockParameters
+from flockenv.policies.base import Policy, Pool
+from flockenv.policies.names import PAPERS_LAW
+from flockenv.policies.registry import Steering, policy
+
+_FASTEST_HZ = 1000
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A policy with the leaders that it steers."""
+
+    policy: Policy
+    leaders: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Leaders:
+    """The policies of a flock's leaders, checked.
+
+    Attributes
+    ----------
+    seats
+        Each policy with its leaders; together these are all leaders.
+    is_each
+        Whether they were given leader by leader.
+    """
+
+    seats: tuple[Seat, ...]
+    is_each: bool = False
+
+    @classmethod
+    def of(cls, given: Steering | Mapping[str, Steering], flock: FlockParameters) -> Self:
+        """Return who steers a flock's leaders, given as a policy or as one for each leader.
+
+        Raises what `policy` raises; a ParameterError refuses policies that have nobody to steer or
+        another number of leaders, and dictionaries that do not name the leaders.
+        """
+        k = flock.n_leaders
+        if isinstance(given, Mapping) and (given or k > 0):
+            found = cls(_seats(given, flock), is_each=True)
+            for seat in found.seats:
+                seat.policy.check_action_mode("rudder", "leader by leader")
+        else:
+            alone = None if isinstance(given, Mapping) else given
+            found = cls((Seat(policy(alone, flock.pool), (*range(k),)),))
+        for seat in found.seats:
+            if k == 0 and seat.policy.control_hz is not None:
+                raise ParameterError(
+                    f"policy = {shown(given)} is not accepted: with n_leaders = 0 it steers nobody"
+                )
+            if k > 0:
+                seat.policy.check_leaders(len(seat.leaders))
+        return found
+
+    @property
+    def title(self) -> str:
+        """The name under which recordings hold the policies."""
+        if not self.is_each:
+            return self.seats[0].policy.name
+        return "; ".join(
+            f"{', '.join(f'leader_{leader}' for leader in seat.leaders)}: {seat.policy.name}"
+            for seat in self.seats
+        )
+
+    @property
+    def law(self) -> _core.Law | None:
+        """The core's law, if all leaders follow it and it was given alone."""
+        return None if self.is_each else self.seats[0].policy.law
+
+    def check_pool(self, pool: Pool) -> None:
+        """Refuse another pool than one that a policy was made for."""
+        for seat in self.seats:
+            seat.policy.check_pool(pool)
+
+    def decisions(self, control_hz: float | None = None) -> "Decisions":
+        """Return the decisions of a run, at this rate or at those of the policies."""
+        return Decisions(self.seats, control_hz)
+
+
+def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat, ...]:
+    names = [f"leader_{leader}" for leader in range(flock.n_leaders)]
+    if given.keys() != set(names):
+        accepted = ", ".join(names) or "none, since n_leaders = 0"
+        raise ParameterError(
+            f"policy = {shown(dict(given))} is not accepted: a policy for each of {accepted}"
+        )
+    # Leaders with one policy are steered at once, as a model of several leaders needs it.
+    found: dict[object, tuple[Policy, list[int]]] = {}
+    for leader, each in enumerate(given[name] for name in names):
+        key = each if isinstance(each, str) else id(each)
+        if key not in found:
+            own = policy(each, flock.pool)
+            # Beside others the law acts at every control step.
+            found[key] = policy(PAPERS_LAW) if own.control_hz is None else own, []
+        found[key][1].append(leader)
+    return tuple(Seat(own, tuple(leaders)) for own, leaders in found.values())
+
+
+class Decisions:
+    """The rudders that policies decide in one run, of one flock or of several that are alike.
+
+    Parameters
+    ----------
+    seats
+        Who steers whom; policies start as they were given.
+    control_hz
+        How often per second all of them decide; None: each at its own rate.
+    """
+
+    def __init__(self, seats: Sequence[Seat], control_hz: float | None = None) -> None:
+        self._seats = [_Deciding(seat.policy.started(), list(seat.leaders)) for seat in seats]
+        #: The rate at which `rudders` is to be asked.
+        self.control_hz = _common_rate(self._seats) if control_hz is None else control_hz
+        #: What each policy observes, and whether its view is mirrored.
+        self.layouts = [
+            (dict(each.policy.observation), each.policy.mirror_to_target) for each in self._seats
+        ]
+
+    def rudders(
+        self, signs: NDArray[np.float64], *observations: NDArray[np.float32]
+    ) -> NDArray[np.float64]:
+        """Return the rudders of all leaders, flock after flock.
+
+        Parameters
+        ----------
+        signs
+            Shape (leaders,): of their targets, 1 for clockwise.
+        observations
+            For each layout shape (leaders, size): what they observe.
+        """
+        leaders = sum(len(each.leaders) for each in self._seats)
+        rudders = np.zeros((len(signs) // leaders, leaders))
+        for each, observed in zip(self._seats, observations, strict=True):
+            rudders[:, each.leaders] = each.rudders(
+                observed.reshape(len(rudders), leaders, -1), signs.reshape(rudders.shape)
+            )
+        return rudders.ravel()
+
+
+@dataclass
+class _Deciding:
+    """A policy in a run, with its leaders, and its state if it is recurrent."""
+
+    policy: Policy
+    leaders: list[int]
+    state: object = None
+    #: Control steps from one decision to the next, and until the next one.
+    period: int = 1
+    wait: int = 0
+    held: NDArray[np.float64] | None = None
+
+    def rudders(
+        self, observed: NDArray[np.float32], signs: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return rudders of its leaders, shape (flocks, leaders), of what all leaders see."""
+        if self.held is not None and self.wait > 0:
+            self.wait -= 1
+            return self.held
+        self.wait = self.period - 1
+        rows = observed[:, self.leaders].reshape(-1, observed.shape[-1])
+        actions, self.state = self.policy.decide(rows, self.state, len(rows))
+        rudders = np.clip(actions, -1.0, 1.0).reshape(-1, len(self.leaders))
+        # A mirrored policy steers as if every target were clockwise.
+        mirrored = signs[:, self.leaders] if self.policy.mirror_to_target else 1.0
+        self.held = mirrored * rudders
+        return self.held
+
+
+def _common_rate(seats: Sequence[_Deciding]) -> float:
+    """Return the lowest rate of which every seat's is a whole part, and set how long each holds."""
+    rates = [seat.policy.decisions_hz for seat in seats]
+    if len(set(rates)) == 1:
+        return rates[0]
+    exact = [Fraction(rate).limit_denominator(1000) for rate in rates]
+    numerators, denominators = zip(*(each.as_integer_ratio() for each in exact), strict=True)
+    common = Fraction(math.lcm(*numerators), math.gcd(*denominators))
+    if common > _FASTEST_HZ:
+        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        raise ParameterError(
+            f"the policies decide {given} times per second, and have no common multiple up to "
+            f"{_FASTEST_HZ}: give control_hz"
+        )
+    for seat, rate in zip(seats, exact, strict=True):
+        seat.period = int(common / rate)
+    return float(common)
