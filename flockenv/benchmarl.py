@@ -201,6 +201,7 @@ def network_policy(
         networks[0].mlp.get_stateful_net(),
         env.observation_space,
         squashed=getattr(algorithm, "use_tanh_normal", False),
+        has_spread=len(next(reversed([*networks[0].parameters()]))) == 2,
         provenance=provenance,
     )
 

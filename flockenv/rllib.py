@@ -23,7 +23,6 @@ from ray.rllib.core.rl_module.torch import TorchRLModule
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies import NetworkPolicy
-from flockenv.policies.network import ACTIVATIONS
 
 _DEFAULTS = {"hidden": (64, 64), "activation": "tanh", "first_log_std": -1.0}
 _LAYERS = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU}
@@ -40,7 +39,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
     ``RLModuleSpec(LeadersModule, model_config={"hidden": (64, 64)})``
 
     ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
-    ``activation`` (a name in `flockenv.policies.network.ACTIVATIONS`) and ``first_log_std`` (the
+    ``activation`` ("tanh" or "relu") and ``first_log_std`` (the
     logarithm of the first standard deviation of an action, shared by all leaders and learned). A
     ParameterError names unknown entries of ``model_config``, and refuses spaces of other
     environments.
@@ -53,7 +52,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         of_rllib = {each.name for each in fields(DefaultModelConfig)}
         refuse_unknown(given.keys() - of_rllib, _DEFAULTS, "entry of model_config")
         config = {**_DEFAULTS, **given}
-        refuse_unknown((config["activation"],), ACTIVATIONS, "activation")
+        refuse_unknown((config["activation"],), _LAYERS, "activation")
         space, actions = self.observation_space, self.action_space
         if not isinstance(space, ObservationSpace) or not isinstance(actions, gymnasium.spaces.Box):
             raise ParameterError(

@@ -5,6 +5,7 @@ import json
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
@@ -12,31 +13,68 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import items, real_numbers
+from flockenv._io.arguments import items, number, real_numbers
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION
 from flockenv.errors import ParameterError, refuse_unknown, shown
 from flockenv.policies.base import RowPolicy
+from flockenv.policies.torch_module import read_module
 
 if TYPE_CHECKING:
     import gymnasium
 
-FORMAT = "flockenv policy 1"
+FORMAT = "flockenv policy 2"
 """First entry of every network's file."""
 
 _LARGEST_FILE = 5 << 20
 _HEADER = (
     *("format", "observation_version", "observation", "mirror_to_target", "action_mode"),
-    *("decision_period_s", "activation", "made"),
+    *("decision_period_s", "activations", "norms", "made"),
 )
 _OPTIONS = ("observation", "mirror_to_target", "action_mode", "decision_period_s")
+
+
+def _elu(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    zero = np.float32(0.0)
+    return np.asarray(np.maximum(values, zero) + np.expm1(np.minimum(values, zero)), np.float32)
+
+
+def _gelu(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    share = np.vectorize(math.erf, [float])(values / math.sqrt(2.0))
+    return (0.5 * values * (1.0 + share)).astype(np.float32)
 
 
 ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
     "tanh": np.tanh,
     "relu": partial(np.maximum, np.float32(0.0)),
+    "elu": _elu,
+    "gelu": _gelu,
+    "identity": lambda values: values,
 }
-"""What may stand between two layers."""
+"""What may follow a layer; "identity" is nothing."""
+
+Norm = tuple[ArrayLike, ArrayLike, float]
+"""A layer's normalization, as torch's ``LayerNorm``: scale, shift, and what is added to the
+variance."""
+
+
+@dataclass(frozen=True)
+class _Layer:
+    """A linear layer, with what follows it."""
+
+    weight: NDArray[np.float32]
+    bias: NDArray[np.float32]
+    norm: tuple[NDArray[np.float32], NDArray[np.float32], float] | None
+    activation: str
+
+    def __call__(self, values: NDArray[np.float32]) -> NDArray[np.float32]:
+        values = _core.linear(values, self.weight, self.bias)
+        if self.norm is not None:
+            scale, shift, epsilon = self.norm
+            centered = values - values.mean(axis=1, keepdims=True)
+            variance = np.square(centered).mean(axis=1, keepdims=True)
+            values = centered / np.sqrt(variance + np.float32(epsilon)) * scale + shift
+        return ACTIVATIONS[self.activation](values)
 
 
 class NetworkPolicy(RowPolicy):
@@ -51,7 +89,11 @@ class NetworkPolicy(RowPolicy):
     biases
         One vector a layer, shape (outputs,), float32.
     activation
-        A name in `ACTIVATIONS`, between the layers; the last layer's output is clipped to [-1, 1].
+        A name in `ACTIVATIONS`, between the layers; or one for each layer, which follows it, the
+        last one too. The output is clipped to [-1, 1].
+    norms
+        For each layer its normalization before the activation, scale and shift, shape (outputs,),
+        and what is added to the variance, as of torch's ``LayerNorm``; or None.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names; the weights have
         to fit it.
@@ -72,8 +114,9 @@ class NetworkPolicy(RowPolicy):
         self,
         weights: Iterable[ArrayLike],
         biases: Iterable[ArrayLike],
-        activation: str = "tanh",
+        activation: str | Sequence[str] = "tanh",
         *,
+        norms: Sequence[Norm | None] | None = None,
         observation: Mapping[str, Any] | None = None,
         mirror_to_target: bool = False,
         action_mode: str = "rudder",
@@ -82,17 +125,15 @@ class NetworkPolicy(RowPolicy):
     ) -> None:
         super().__init__(observation=observation, mirror_to_target=mirror_to_target)
         refuse_unknown((action_mode,), _core.ACTION_MODES, "action mode")
-        refuse_unknown((activation,), ACTIVATIONS, "activation")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
             raise ParameterError(
                 f"decision_period_s = {shown(decision_period_s)} is not accepted: a time in s"
             )
         self.action_mode = action_mode
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
-        self.activation = activation
         self.provenance = {str(name): str(text) for name, text in dict(provenance or {}).items()}
         matrices, vectors = items(weights, "weights"), items(biases, "biases")
-        self._layers = _checked_layers(matrices, vectors, self._size)
+        self._layers = _checked_layers(matrices, vectors, norms, activation, self._size)
 
     @classmethod
     def from_module(
@@ -101,6 +142,7 @@ class NetworkPolicy(RowPolicy):
         space: "gymnasium.Space[Any]",
         *,
         squashed: bool = False,
+        has_spread: bool = False,
         provenance: Mapping[str, str] | None = None,
     ) -> Self:
         """Return a torch network as a policy that needs no torch.
@@ -109,16 +151,20 @@ class NetworkPolicy(RowPolicy):
         ----------
         module
             A ``torch.nn.Module`` from one leader's observation to its rudder: linear layers in the
-            order in which they follow each other, with one of `ACTIVATIONS` between them. If the
-            last layer has two outputs, the mean and the spread of a distribution, the mean is the
-            rudder. Layers that change nothing (``Identity``, TorchRL's ``NormalParamExtractor``)
-            are passed over.
+            order in which they follow each other, after each of them a ``LayerNorm`` and one of
+            Tanh, ReLU, ELU and GELU, or none. Layers that change nothing (``Identity``, and
+            ``Dropout``, which acts in training alone) are passed over. The module is run on a few
+            observations: one that computes something else than its layers in this order, such as a
+            function in its ``forward``, is refused.
         space
             The space of the observations that it was trained on, of one leader or of several: it
             holds the options that a policy depends on.
         squashed
             Whether the distribution puts the mean through a hyperbolic tangent, as TorchRL's
-            ``TanhNormal``. The activation has to be "tanh" then.
+            ``TanhNormal``.
+        has_spread
+            Whether the last layer has two outputs, the mean and the spread of a distribution. The
+            mean is the rudder. A last ``NormalParamExtractor`` of TorchRL says the same.
         provenance
             As of `NetworkPolicy`.
 
@@ -134,53 +180,58 @@ class NetworkPolicy(RowPolicy):
                 f"space = {shown(space)} is not accepted: the space of observations of an "
                 "environment here"
             )
-        layers, activation = _module_layers(module)
-        weights, biases = (list(each) for each in zip(*layers, strict=True))
-        if len(biases[-1]) == 2:
-            weights[-1], biases[-1] = weights[-1][:, :1], biases[-1][:1]
+        layers = read_module(module, has_spread=has_spread)
+        activations = [layer.activation for layer in layers]
+        if squashed and activations[-1] != "identity":
+            raise ParameterError(
+                f"squashed = True is not accepted: {activations[-1]} follows the last layer already"
+            )
         if squashed:
-            if activation != "tanh":
-                raise ParameterError(
-                    f"activation = {activation!r} is not accepted with a squashed mean: 'tanh'"
-                )
-            weights.append(np.ones((1, 1), np.float32))
-            biases.append(np.zeros(1, np.float32))
+            activations[-1] = "tanh"
         options = space.policy_options()
         blocks = options["observation"]
         names = ("mirror_to_target", "action_mode", "decision_period_s")
         return cls(
-            weights,
-            biases,
-            activation,
+            [layer.weight for layer in layers],
+            [layer.bias for layer in layers],
+            activations,
+            norms=[layer.norm for layer in layers],
             observation={name: block for name, block in blocks.items() if block != BLOCKS[name]},
             **{name: options[name] for name in names},
             provenance=provenance,
         )
 
     @property
+    def activations(self) -> list[str]:
+        """What follows each layer."""
+        return [layer.activation for layer in self._layers]
+
+    @property
     def weights(self) -> list[NDArray[np.float32]]:
         """Copies of the layers' matrices, shape (inputs, outputs)."""
-        return [weight.copy() for weight, _ in self._layers]
+        return [layer.weight.copy() for layer in self._layers]
 
     @property
     def biases(self) -> list[NDArray[np.float32]]:
         """Copies of the layers' biases, shape (outputs,)."""
-        return [bias.copy() for _, bias in self._layers]
+        return [layer.bias.copy() for layer in self._layers]
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        between, values = ACTIVATIONS[self.activation], rows
-        for place, (weight, bias) in enumerate(self._layers):
-            values = _core.linear(values, weight, bias)
-            if place < len(self._layers) - 1:
-                values = between(values)
+        values = rows
+        for layer in self._layers:
+            values = layer(values)
         return np.clip(values, -1.0, 1.0)[:, 0]
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Return the header of a file, without the provenance, and its arrays."""
-        header = {name: getattr(self, name) for name in (*_OPTIONS, "activation")}
+        norms = [None if layer.norm is None else layer.norm[2] for layer in self._layers]
+        header = {name: getattr(self, name) for name in _OPTIONS}
+        header |= {"activations": self.activations, "norms": norms}
         arrays: dict[str, NDArray[Any]] = {}
-        for place, (weight, bias) in enumerate(self._layers):
-            arrays |= {f"weight_{place}": weight, f"bias_{place}": bias}
+        for place, layer in enumerate(self._layers):
+            arrays |= {f"weight_{place}": layer.weight, f"bias_{place}": layer.bias}
+            if layer.norm is not None:
+                arrays |= {f"scale_{place}": layer.norm[0], f"shift_{place}": layer.norm[1]}
         return header, arrays
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -221,41 +272,71 @@ class NetworkPolicy(RowPolicy):
                     f"it was made for version {shown(version)} of the observation, not "
                     f"{OBSERVATION_VERSION}: train it again"
                 )
-            places = range(len(arrays) // 2)
-            layers = [f"{kind}_{place}" for place in places for kind in ("weight", "bias")]
-            refuse_unknown(arrays, layers, "array of a network")
+            activations, epsilons = header["activations"], header["norms"]
+            places = range(len(items(activations, "activations")))
+            has_norm = [place for place in places if epsilons[place] is not None]
+            names = [f"{kind}_{place}" for place in places for kind in ("weight", "bias")]
+            names += [f"{kind}_{place}" for place in has_norm for kind in ("scale", "shift")]
+            refuse_unknown(arrays, names, "array of a network")
+            norms = [
+                (arrays[f"scale_{place}"], arrays[f"shift_{place}"], epsilons[place])
+                if place in has_norm
+                else None
+                for place in places
+            ]
             # An option that is younger than the file has its default.
             options = {name: header[name] for name in _OPTIONS if name in header}
             return cls(
                 [arrays[f"weight_{place}"] for place in places],
                 [arrays[f"bias_{place}"] for place in places],
-                header["activation"],
+                activations,
+                norms=norms,
                 provenance=header["made"],
                 **options,
             )
         except KeyError as error:
             raise ParameterError(f"{path} is no whole policy: it has no {error}") from error
         # Also of JSON that is nested without end.
-        except (TypeError, ValueError, RecursionError) as error:
+        except (TypeError, ValueError, IndexError, RecursionError) as error:
             raise ParameterError(f"{path} is no whole policy: {error}") from error
 
     def __repr__(self) -> str:
-        sizes = [self._size, *(len(bias) for _, bias in self._layers)]
-        return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {self.activation})"
+        sizes = [self._size, *(len(layer.bias) for layer in self._layers)]
+        *between, last = self.activations
+        words = ", ".join(dict.fromkeys(between)) or "linear"
+        words += "" if last == "identity" else f", then {last}"
+        return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {words})"
 
 
 def _checked_layers(
-    weights: Sequence[ArrayLike], biases: Sequence[ArrayLike], size: int
-) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+    weights: Sequence[ArrayLike],
+    biases: Sequence[ArrayLike],
+    norms: Sequence[Norm | None] | None,
+    activation: str | Sequence[str],
+    size: int,
+) -> list[_Layer]:
     """Return layers from so many inputs to one output, as float32."""
-    if len(weights) != len(biases) or len(weights) == 0:
+    count = len(weights)
+    if count != len(biases) or count == 0:
         raise ParameterError(
-            f"{len(weights)} weights and {len(biases)} biases are not accepted: one of each a layer"
+            f"{count} weights and {len(biases)} biases are not accepted: one of each a layer"
+        )
+    each: Sequence[Norm | None] = [None] * count if norms is None else items(norms, "norms")
+    if isinstance(activation, str):
+        named: Sequence[str] = [*[activation] * (count - 1), "identity"]
+        refuse_unknown((activation,), ACTIVATIONS, "activation")
+    else:
+        named = items(activation, "activation")
+        refuse_unknown(named, ACTIVATIONS, "activation")
+    if (len(each), len(named)) != (count, count):
+        raise ParameterError(
+            f"{len(each)} norms and {len(named)} activations are not accepted: one of each for "
+            f"{count} layers"
         )
     layers, inputs = [], size
     for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix, vector = (_singles(each, f"layer {place}") for each in (weight, bias))
-        wanted = 1 if place == len(weights) - 1 else vector.size
+        matrix, vector = (_singles(one, f"layer {place}") for one in (weight, bias))
+        wanted = 1 if place == count - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             raise ParameterError(
                 f"layer {place} has weights {matrix.shape} and biases {vector.shape}, but needs "
@@ -263,9 +344,29 @@ def _checked_layers(
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
             raise ParameterError(f"layer {place} holds numbers that are not finite")
-        layers.append((matrix, vector))
+        norm = _checked_norm(each[place], wanted, f"the norm of layer {place}")
+        layers.append(_Layer(matrix, vector, norm, named[place]))
         inputs = wanted
     return layers
+
+
+def _checked_norm(
+    given: Norm | None, size: int, name: str
+) -> tuple[NDArray[np.float32], NDArray[np.float32], float] | None:
+    if given is None:
+        return None
+    if len(items(given, name)) != 3:
+        raise ParameterError(f"{name} is not accepted: scale, shift and a number")
+    scale, shift = (_singles(one, name) for one in given[:2])
+    epsilon = float(number(given[2], name))
+    if not (scale.shape == shift.shape == (size,) and 0.0 <= epsilon < math.inf):
+        raise ParameterError(
+            f"{name} has scales {scale.shape}, shifts {shift.shape} and {epsilon:g}, but needs "
+            f"({size},), ({size},) and a number of at least 0"
+        )
+    if not (np.isfinite(scale).all() and np.isfinite(shift).all()):
+        raise ParameterError(f"{name} holds numbers that are not finite")
+    return scale, shift, epsilon
 
 
 def _singles(values: ArrayLike, name: str) -> NDArray[np.float32]:
@@ -275,36 +376,3 @@ def _singles(values: ArrayLike, name: str) -> NDArray[np.float32]:
         raise ParameterError(f"{name} is not accepted: real numbers, all of them")
     with np.errstate(over="ignore"):
         return np.array(found, np.float32)
-
-
-#: Names of torch's activations, and of layers that leave the mean as it is.
-_MODULE_ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu"}
-_PASSED_OVER = ("Identity", "NormalParamExtractor")
-
-
-def _module_layers(
-    module: Any,
-) -> tuple[list[tuple[NDArray[np.float32], NDArray[np.float32]]], str]:
-    """Return the matrices and biases of a torch module, and what stands between them."""
-    layers: list[tuple[NDArray[np.float32], NDArray[np.float32]]] = []
-    between: list[str] = []
-    for layer in module.modules():
-        kind = type(layer).__name__
-        if next(layer.children(), None) is not None or kind in _PASSED_OVER:
-            continue
-        if kind == "Linear" and len(layers) == len(between) and layer.bias is not None:
-            weight, bias = (each.detach().cpu().numpy() for each in (layer.weight, layer.bias))
-            layers.append((weight.T, bias))
-        elif kind in _MODULE_ACTIVATIONS and len(layers) == len(between) + 1:
-            between.append(_MODULE_ACTIVATIONS[kind])
-        else:
-            raise ParameterError(
-                f"a module with the layer {shown(layer)} at this place is not accepted: linear "
-                f"layers with biases and one of {', '.join(_MODULE_ACTIVATIONS)} between them"
-            )
-    if len(layers) != len(between) + 1 or len(set(between)) > 1:
-        raise ParameterError(
-            f"a module with {len(layers)} linear layers and the activations {between} is not "
-            "accepted: one and the same activation between each two layers"
-        )
-    return layers, between[0] if between else "tanh"

@@ -54,7 +54,9 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
     module = torch_network(activation, outputs)
     options = {"observation": {}, "mirror_to_target": True, "action_mode": "lean"}
     space = ObservationSpace({**DEFAULTS, **options, "decision_period_s": 2.0})
-    policy = NetworkPolicy.from_module(module, space, squashed=bool(squashed))
+    policy = NetworkPolicy.from_module(
+        module, space, squashed=bool(squashed), has_spread=outputs == 2
+    )
     policy.save(tmp_path / "policy.npz")
     loaded = load(tmp_path / "policy.npz")
     assert loaded.digest == policy.digest
@@ -71,22 +73,34 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
 @pytest.mark.parametrize(
     ("layers", "options", "message"),
     [
-        (lambda nn: [nn.Linear(SIZE, 4), nn.GELU(), nn.Linear(4, 1)], {}, "GELU"),
-        (lambda nn: [nn.Linear(SIZE, 4), nn.Linear(4, 1)], {}, "out_features=1"),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.SiLU(), nn.Linear(4, 1)], {}, "SiLU"),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.ELU(0.5), nn.Linear(4, 1)], {}, "alpha = 0.5 of ELU"),
+        (lambda nn: [nn.Linear(SIZE, 1), nn.GELU("tanh")], {}, "approximate = 'tanh' of GELU"),
+        (
+            lambda nn: [nn.Linear(SIZE, 4), nn.Linear(4, 1)],
+            {},
+            "linear layer with 1 outputs follows one with 4 and nothing stands between",
+        ),
+        (lambda nn: [nn.Linear(SIZE, 1), nn.Tanh(), nn.LayerNorm(1)], {}, "LayerNorm"),
+        (lambda nn: [nn.Linear(SIZE, 1), nn.Tanh(), nn.Tanh()], {}, "Tanh"),
+        (lambda nn: [nn.Linear(SIZE, 2)], {}, "2 outputs is not accepted: one, the rudder"),
+        (lambda nn: [nn.Linear(SIZE, 1)], {"has_spread": True}, "1 outputs is not accepted with a"),
+        (
+            lambda nn: [nn.Linear(SIZE, 2), nn.Tanh()],
+            {"has_spread": True},
+            "2 outputs is not accepted with a spread: .* nothing after them",
+        ),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.Tanh(), nn.Linear(3, 1)], {}, "do not fit each other"),
         (lambda nn: [nn.Linear(SIZE, 4, bias=False)], {}, "bias=False"),
-        (lambda nn: [nn.Linear(SIZE, 4), nn.Tanh()], {}, "1 linear layers and"),
+        (lambda nn: [nn.Linear(SIZE, 4), nn.Tanh()], {}, r"layer 0 has weights \(67, 4\)"),
         (lambda nn: [], {}, r"Sequential\(\)"),
+        (lambda nn: [nn.Identity()], {}, "no linear layer"),
         (lambda nn: [nn.Linear(SIZE, 3)], {}, r"layer 0 has weights \(67, 3\)"),
         (lambda nn: [nn.Linear(5, 1)], {}, r"layer 0 has weights \(5, 1\)"),
         (
-            lambda nn: [nn.Linear(SIZE, 4), nn.Tanh(), nn.Linear(4, 4), nn.ReLU(), nn.Linear(4, 1)],
-            {},
-            "one and the same activation",
-        ),
-        (
-            lambda nn: [nn.Linear(SIZE, 4), nn.ReLU(), nn.Linear(4, 1)],
+            lambda nn: [nn.Linear(SIZE, 1), nn.Tanh()],
             {"squashed": True},
-            "'relu' is not accepted with a squashed mean",
+            "squashed = True is not accepted: tanh follows",
         ),
     ],
 )
@@ -97,12 +111,107 @@ def test_other_torch_networks_are_refused(layers, options, message):
         NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS), **options)
 
 
+NETWORKS = {
+    "actor of TD3": lambda nn: [
+        *(nn.Linear(SIZE, 9), nn.ReLU(), nn.Linear(9, 7), nn.ReLU()),
+        *(nn.Linear(7, 1), nn.Tanh()),
+    ],
+    "ELU": lambda nn: [nn.Linear(SIZE, 9), nn.ELU(), nn.Linear(9, 1)],
+    "GELU": lambda nn: [nn.Linear(SIZE, 9), nn.GELU(), nn.Linear(9, 1), nn.Tanh()],
+    "LayerNorm": lambda nn: [
+        *(nn.Linear(SIZE, 9), nn.LayerNorm(9), nn.ELU(), nn.Linear(9, 7), nn.LayerNorm(7)),
+        *(nn.Linear(7, 1), nn.Identity()),
+    ],
+    "LayerNorm without weights": lambda nn: [
+        *(nn.Linear(SIZE, 9), nn.LayerNorm(9, elementwise_affine=False), nn.Tanh()),
+        *(nn.Dropout(0.5), nn.Linear(9, 1)),
+    ],
+}
+
+
+@pytest.mark.parametrize("made", NETWORKS.values(), ids=NETWORKS)
+def test_networks_of_other_learners_become_policies(made, tmp_path):
+    """The same to 2e-6, also from the file, and for each row whatever the others are."""
+    torch = pytest.importorskip("torch")
+    torch.manual_seed(5)
+    module = torch.nn.Sequential(*made(torch.nn))
+    with torch.no_grad():
+        for each in module.parameters():
+            each.add_(0.2 * torch.randn_like(each))
+    NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS)).save(tmp_path / "policy.npz")
+    loaded = load(tmp_path / "policy.npz")
+    assert module.training, "as it was"
+    rows = np.random.default_rng(1).uniform(-2, 2, (200, SIZE)).astype(np.float32)
+    with torch.no_grad():
+        expected = module.eval()(torch.from_numpy(rows)).clamp(-1, 1).numpy()
+    assert expected.std() > 0.05
+    actions = loaded.predict(rows)[0]
+    np.testing.assert_allclose(actions, expected, atol=2e-6)
+    assert actions.tolist() == [loaded.predict(each)[0].tolist() for each in rows]
+
+
+def own_modules():
+    """Modules with a forward of their own, and the words that refuse them; None: taken."""
+    nn = pytest.importorskip("torch").nn
+    functional = nn.functional
+
+    class Two(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.first, self.last = nn.Linear(SIZE, 4), nn.Linear(4, 1)
+
+    class Functions(Two):
+        def forward(self, rows):
+            return self.last(functional.relu(self.first(rows)))
+
+    class Doubles(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.last = nn.Linear(SIZE, 1)
+
+        def forward(self, rows):
+            return 2.0 * self.last(rows)
+
+    class TwoHeads(Doubles):
+        def forward(self, rows):
+            return self.last(rows), self.last(rows)
+
+    class Registered(Two):
+        def __init__(self):
+            super().__init__()
+            self.between = nn.Tanh()
+
+        def forward(self, rows):
+            return self.last(self.between(self.first(rows)))
+
+    class Plain(Doubles):
+        def forward(self, rows):
+            return self.last(rows)
+
+    return [
+        (Functions, "activations that forward calls as functions are not seen"),
+        (Doubles, "computes something else than its 1 linear layers"),
+        (TwoHeads, "computes something else than its 1 linear layers"),
+        (Registered, "nothing stands between them"),
+        (Plain, None),
+    ]
+
+
+def test_a_module_of_ones_own_is_what_it_computes():
+    for made, words in own_modules():
+        if words is None:
+            NetworkPolicy.from_module(made(), ObservationSpace(DEFAULTS))
+            continue
+        with pytest.raises(flockenv.ParameterError, match=words):
+            NetworkPolicy.from_module(made(), ObservationSpace(DEFAULTS))
+
+
 def test_a_torch_network_of_all_leaders_at_once_is_refused():
     torch = pytest.importorskip("torch")
     two = flockenv.LeadersVectorEnv(1, n_leaders=2).single_observation_space
     assert NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), two).weights[0].shape == (SIZE, 1)
-    layers = torch.nn.Linear(2 * SIZE, 2), torch.nn.Tanh(), torch.nn.Linear(2, 2)
-    with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 2\)"):
+    layers = torch.nn.Linear(2 * SIZE, 3), torch.nn.Tanh(), torch.nn.Linear(3, 3)
+    with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 3\)"):
         NetworkPolicy.from_module(torch.nn.Sequential(*layers), two)
     two.options["new_option"] = 3
     with pytest.raises(flockenv.ParameterError, match="'new_option' is no option that a policy"):
@@ -141,7 +250,7 @@ def test_a_file_keeps_every_bit(tmp_path):
     np.testing.assert_array_equal(again.predict(observations)[0], policy.predict(observations)[0])
     assert again.mirror_to_target
     assert again.provenance == {"command": "train", "seed": "1"}
-    assert again.activation == "relu"
+    assert again.activations == ["relu", "relu", "identity"]
 
 
 def changed(policy, tmp_path, **entries):
@@ -168,8 +277,13 @@ def changed(policy, tmp_path, **entries):
         ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
         ({"other": np.zeros(3), "another": np.zeros(3)}, "'other' is no array of a network"),
         ({"pools": "wide"}, "'pools' is no entry of a network's header"),
-        ({"activation": "exec"}, "tanh, relu"),
-        ({"activation": ["tanh"]}, r"\['tanh'\] is no activation"),
+        ({"activations": ["exec", "tanh", "tanh"]}, "'exec' is no activation"),
+        ({"activations": [["tanh"]] * 3}, r"\['tanh'\] is no activation"),
+        ({"activations": "tanh"}, "activations must be a sequence"),
+        ({"activations": ["tanh"]}, "'bias_1' is no array of a network|'weight_1' is no array"),
+        ({"norms": [1.0, None, None]}, "it has no 'scale_0'"),
+        ({"norms": [None]}, "no whole policy"),
+        ({"norms": 3}, "no whole policy"),
         ({"observation": {"neighbor": 3}}, "neighbor"),
         ({"observation": {"neighbors": 3}}, "layer 0"),
         ({"observation": 3}, "observation = 3 is not accepted: blocks by name"),
@@ -193,7 +307,7 @@ def test_an_option_that_a_file_lacks_has_its_default(tmp_path):
     policy.save(tmp_path / "policy.npz")
     arrays = read_arrays(tmp_path / "policy.npz")
     whole = json.loads(str(arrays["header"]))
-    for name, reads in (("decision_period_s", True), ("activation", False), ("made", False)):
+    for name, reads in (("decision_period_s", True), ("activations", False), ("made", False)):
         header = {each: value for each, value in whole.items() if each != name}
         write_arrays(tmp_path / "less.npz", {**arrays, "header": np.array(json.dumps(header))})
         if reads:

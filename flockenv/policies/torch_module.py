@@ -1,0 +1,166 @@
+"""Networks of torch read layer by layer, so that they need no torch afterwards."""
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv.errors import ParameterError, shown
+
+#: Names of torch's activations, with the settings that each is read with.
+_ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
+    "Tanh": ("tanh", {}),
+    "ReLU": ("relu", {}),
+    "ELU": ("elu", {"alpha": 1.0}),
+    "GELU": ("gelu", {"approximate": "none"}),
+}
+_PASSED_OVER = ("Identity", "Dropout", "NormalParamExtractor")
+_ACCEPTED = (
+    "linear layers with biases, after each of them a LayerNorm or none, and then one of "
+    f"{', '.join(_ACTIVATIONS)} or none"
+)
+#: How many observations a module is tried on, and how far its output may be from its layers'.
+_TRIED, _AS_NEAR_AS = 16, 1e-4
+
+
+@dataclass
+class ModuleLayer:
+    """A linear layer, with what follows it."""
+
+    weight: NDArray[np.float32]
+    bias: NDArray[np.float32]
+    norm: tuple[NDArray[np.float32], NDArray[np.float32], float] | None = None
+    activation: str = "identity"
+
+
+def read_module(module: Any, *, has_spread: bool = False) -> list[ModuleLayer]:
+    """Return the layers of a ``torch.nn.Module``, or refuse what is something else.
+
+    With `has_spread`, or if a ``NormalParamExtractor`` ends it, the last of two outputs is left
+    out: the spread of a distribution.
+    """
+    own = [each for each in module.modules() if next(each.children(), None) is None]
+    layers: list[ModuleLayer] = []
+    for layer in own:
+        if type(layer).__name__ not in _PASSED_OVER:
+            _add(layers, layer)
+    if not layers:
+        raise ParameterError(f"a module with no linear layer is not accepted: {_ACCEPTED}")
+    _check_between(layers)
+    _check_computes(module, layers)
+    last = layers[-1]
+    if has_spread or type(own[-1]).__name__ == "NormalParamExtractor":
+        if len(last.bias) != 2 or last.norm is not None or last.activation != "identity":
+            raise ParameterError(
+                f"a last layer with {len(last.bias)} outputs is not accepted with a spread: two, a "
+                "mean and a spread, and nothing after them"
+            )
+        last.weight, last.bias = last.weight[:, :1], last.bias[:1]
+    elif len(last.bias) == 2:
+        raise ParameterError(
+            "a last layer with 2 outputs is not accepted: one, the rudder of a leader; if they are "
+            "the mean and the spread of a distribution, say so with has_spread=True"
+        )
+    return layers
+
+
+def _numbers(tensor: Any) -> NDArray[np.float32]:
+    found: NDArray[np.float32] = tensor.detach().cpu().numpy()
+    return found
+
+
+def _add(layers: list[ModuleLayer], layer: Any) -> None:
+    """Add a layer to those before it."""
+    kind, last = type(layer).__name__, layers[-1] if layers else None
+    is_free = last is not None and last.activation == "identity"
+    if kind == "Linear" and layer.bias is not None:
+        layers.append(ModuleLayer(_numbers(layer.weight).T, _numbers(layer.bias)))
+    elif kind == "LayerNorm" and last is not None and is_free and last.norm is None:
+        size = len(last.bias)
+        scale, shift = np.ones(size, np.float32), np.zeros(size, np.float32)
+        if layer.weight is not None:
+            scale = _numbers(layer.weight)
+        if layer.bias is not None:
+            shift = _numbers(layer.bias)
+        last.norm = (scale, shift, float(layer.eps))
+    elif kind in _ACTIVATIONS and last is not None and is_free:
+        name, settings = _ACTIVATIONS[kind]
+        for setting, accepted in settings.items():
+            if (found := getattr(layer, setting)) != accepted:
+                raise ParameterError(
+                    f"{setting} = {found!r} of {kind} is not accepted: {accepted!r}"
+                )
+        last.activation = name
+    else:
+        raise ParameterError(
+            f"a module with the layer {shown(layer)} at this place is not accepted: {_ACCEPTED}"
+        )
+
+
+def _check_between(layers: list[ModuleLayer]) -> None:
+    for first, second in itertools.pairwise(layers):
+        if first.activation == "identity" and first.norm is None:
+            raise ParameterError(
+                f"a module is not accepted in which a linear layer with {len(second.bias)} outputs "
+                f"follows one with {len(first.bias)} and nothing stands between them: activations "
+                "that forward calls as functions are not seen, so write them as layers in "
+                "torch.nn.Sequential"
+            )
+
+
+def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
+    """Refuse a module whose output is not that of its layers one after another."""
+    import torch
+
+    size = len(layers[0].weight)
+    rows = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, size)).astype(np.float32)
+    was_training = module.training
+    module.eval()
+    try:
+        with torch.no_grad():
+            found = module(torch.from_numpy(rows).to(next(module.parameters())))
+            expected = torch.from_numpy(rows)
+            for layer in layers:
+                expected = _computed(torch, layer, expected)
+    except RuntimeError as error:  # Of shapes that do not follow each other.
+        raise ParameterError(
+            f"a module is not accepted whose layers do not fit each other in their order: {error}"
+        ) from error
+    finally:
+        module.train(was_training)
+    outputs = list(_tensors(found))
+    joined = torch.cat([torch.empty(_TRIED, 0), *(each.float().cpu() for each in outputs)], dim=-1)
+    # A distribution's spread is made positive after the last layer.
+    columns = 1 if len(outputs) == 2 else expected.shape[1]
+    own, ours = (each[:, :columns] for each in (joined, expected))
+    if joined.shape != expected.shape or not torch.allclose(own, ours, atol=_AS_NEAR_AS):
+        raise ParameterError(
+            f"a module is not accepted that computes something else than its {len(layers)} linear "
+            f"layers one after another, {_ACCEPTED}: write it as torch.nn.Sequential, or take an "
+            "object with predict"
+        )
+
+
+def _tensors(found: Any) -> Iterator[Any]:
+    """Yield the tensors of an output, such as those of a distribution."""
+    if isinstance(found, tuple | list):
+        for each in found:
+            yield from _tensors(each)
+    elif hasattr(found, "detach"):
+        yield found
+
+
+def _computed(torch: Any, layer: ModuleLayer, values: Any) -> Any:
+    """Return what torch computes of a layer."""
+    functions = torch.nn.functional
+    values = functions.linear(values, *map(torch.tensor, (layer.weight.T.copy(), layer.bias)))
+    if layer.norm is not None:
+        scale, shift, epsilon = layer.norm
+        norm = map(torch.tensor, (scale, shift))
+        values = functions.layer_norm(values, (len(scale),), *norm, epsilon)
+    if layer.activation == "identity":
+        return values
+    return getattr(functions, layer.activation, torch.tanh)(values)
