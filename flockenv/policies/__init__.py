@@ -6,6 +6,7 @@ from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, SteeringLaw
 from flockenv.policies.model import ModelPolicy
 from flockenv.policies.network import NetworkPolicy
 from flockenv.policies.registry import load, policy
+from flockenv.policies.wrapped import WrappedPolicy
 
 __all__ = [
     "DampedLaw",
@@ -18,6 +19,7 @@ __all__ = [
     "RandomRudders",
     "SteeringLaw",
     "StraightAhead",
+    "WrappedPolicy",
     "load",
     "policy",
 ]

@@ -23,6 +23,8 @@ from flockenv.policies.base import leaders_observed, observed
 if TYPE_CHECKING:
     import gymnasium
 
+    from flockenv.envs.spaces import ObservationSpace
+
 _WEIGHTS = "policy.pth"
 _NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
 
@@ -68,14 +70,25 @@ class ModelPolicy:
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
         from flockenv.envs.spaces import ObservationSpace
 
-        self.model = model
-        self.provenance = dict(provenance or {})
         space = getattr(model, "observation_space", None)
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
                 f"a model with the observation space {space} is not accepted: it was trained on "
-                "another environment, or a wrapper changes what it sees"
+                "another environment, or a wrapper changes what it sees; WrappedPolicy takes it "
+                "with the wrapper"
             )
+        self._take(model, space, model.action_space, provenance)
+
+    def _take(
+        self,
+        model: Any,
+        space: "ObservationSpace",
+        actions: "gymnasium.Space[Any]",
+        provenance: Mapping[str, str] | None,
+    ) -> None:
+        """Take a model that is for environments with these spaces."""
+        self.model = model
+        self.provenance = dict(provenance or {})
         self.leaders = space.leaders
         self._size = space.shape[0] // space.leaders
         options = space.policy_options()
@@ -84,7 +97,7 @@ class ModelPolicy:
         self.control_hz: float = options["control_hz"]
         self.action_mode: str = options["action_mode"]
         self.decision_period_s: float | None = options["decision_period_s"]
-        self._levels = _levels_of(model.action_space, self.leaders)
+        self._levels = _levels_of(actions, self.leaders)
 
     def predict(
         self,
@@ -115,19 +128,30 @@ class ModelPolicy:
                 "at once"
             )
         items = array.reshape(rows // self.leaders, -1)
-        normalizing = getattr(self.model, "get_vec_normalize_env", lambda: None)()
-        if normalizing is not None:
-            items = normalizing.normalize_obs(items)
         if episode_start is not None:
             starts = np.ravel(episode_start)
             episode_start = np.repeat(starts, len(items) // len(starts))
-        with _each_alone():
-            actions, state = self.model.predict(items, state, episode_start, deterministic)
+        actions, state = self._decided(items, state, episode_start, deterministic)
         given = np.asarray(actions, np.float64).reshape(rows)
         if self._levels is not None:
             given = np.array(_core.rudders_of_levels(given.tolist(), self._levels))
         rudders = np.clip(given, -1.0, 1.0).astype(np.float32)
         return rudders.reshape(*array.shape[:-1], leaders), state
+
+    def _decided(
+        self,
+        items: NDArray[np.float32],
+        state: Any,
+        episode_start: NDArray[np.bool_] | None,
+        deterministic: bool,
+    ) -> tuple[Any, Any]:
+        """Return what the model does, each item being what it observes at once."""
+        normalizes = normalizing(self.model)
+        if normalizes is not None:
+            items = normalizes.normalize_obs(items)
+        with one_by_one():
+            found: tuple[Any, Any] = self.model.predict(items, state, episode_start, deterministic)
+        return found
 
     def __repr__(self) -> str:
         name = self.provenance.get("file", type(self.model).__name__)
@@ -135,7 +159,12 @@ class ModelPolicy:
         return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
 
 
-def _each_alone() -> AbstractContextManager[Any]:
+def normalizing(model: Any) -> Any:
+    """Return the ``VecNormalize`` of a model's environment, if it has one."""
+    return getattr(model, "get_vec_normalize_env", lambda: None)()
+
+
+def one_by_one() -> AbstractContextManager[Any]:
     """Return a mode of torch in which no row of a linear layer depends on the others."""
     torch = sys.modules.get("torch")
     return _mode_of(torch)() if torch else nullcontext()

@@ -41,7 +41,7 @@ def _elu(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def _gelu(values: NDArray[np.float32]) -> NDArray[np.float32]:
     share = np.vectorize(math.erf, [float])(values / math.sqrt(2.0))
-    return (0.5 * values * (1.0 + share)).astype(np.float32)
+    return np.asarray(0.5 * values * (1.0 + share), np.float32)
 
 
 ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {

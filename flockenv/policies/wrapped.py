@@ -1,0 +1,192 @@
+"""`WrappedPolicy`: a model together with the wrapper that made what it observes."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv._io.arguments import check_function
+from flockenv._io.extras import require
+from flockenv.envs.spaces import ObservationSpace
+from flockenv.errors import ParameterError, shown
+from flockenv.policies.model import ModelPolicy, normalizing, one_by_one
+
+if TYPE_CHECKING:
+    import gymnasium
+
+Wrap = Callable[[Any], Any]
+"""A function that returns an environment in a wrapper, or in several."""
+
+
+class WrappedPolicy(ModelPolicy):
+    """A model that was trained in a wrapper of an environment, with the wrapper.
+
+    The wrapper changes what leaders observe: it may cut, scale, stack or remember. It is made again
+    for each run, around a stand-in of the environment that has its spaces and gives it the
+    observations of the flock, and nothing else: no rewards, no infos, no attributes.
+
+    Parameters
+    ----------
+    model
+        A model of stable-baselines3 such as ``PPO``, or any object with its ``predict``.
+    wrapper
+        A function that puts an environment into the wrapper or wrappers, such as
+        ``lambda venv: VecFrameStack(venv, 4)``. A `VecNormalize` of the model's own environment is
+        left out here: what the wrapper returns is normalized as there.
+    env
+        What was wrapped for the training: a `LeaderVecEnv`, or ``flockenv/Leaders-v0``. Its options
+        are those that the model is for.
+    provenance
+        As of `ModelPolicy`.
+
+    Raises
+    ------
+    ParameterError
+        For other environments, and for wrappers that change what actions are.
+    TypeError
+        If the wrapper is no function.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        wrapper: Wrap,
+        env: Any,
+        *,
+        provenance: Mapping[str, str] | None = None,
+    ) -> None:
+        check_function(wrapper, "wrapper")
+        unwrapped = getattr(env, "unwrapped", env)
+        space = getattr(unwrapped, "observation_space", None)
+        is_single = not hasattr(unwrapped, "num_envs")
+        if not isinstance(space, ObservationSpace):
+            raise ParameterError(
+                f"env = {shown(env)} is not accepted: a LeaderVecEnv or flockenv/Leaders-v0 as it "
+                "was before it was wrapped"
+            )
+        self._wrapper, self._is_each = wrapper, is_single
+        self._space, self._actions = space, unwrapped.action_space
+        self._take(model, space, self._actions, provenance)
+        made = self._made(space.low[None]).action_space
+        if made != self._actions:
+            raise ParameterError(
+                f"a wrapper that makes the action space {made} is not accepted: it may change what "
+                f"leaders observe, and not their actions, {self._actions}"
+            )
+
+    def _made(self, items: NDArray[np.float32]) -> Any:
+        """Return the wrapper around stand-ins that give these observations."""
+        if self._is_each:
+            return self._wrapper(_stand_in(self._space, self._actions, items[0]))
+        return self._wrapper(_vector_stand_in(self._space, self._actions, items))
+
+    def _decided(
+        self,
+        items: NDArray[np.float32],
+        state: Any,
+        episode_start: NDArray[np.bool_] | None,
+        deterministic: bool,
+    ) -> tuple[Any, Any]:
+        starts = state is None
+        if episode_start is not None and episode_start.any():
+            if not episode_start.all():
+                raise ParameterError(
+                    "episode_start of some flocks is not accepted: what a wrapper remembers starts "
+                    "again for all of them"
+                )
+            starts = True
+        run = _Run(self, items) if starts else state
+        seen = run.observed(items)
+        normalizes = normalizing(self.model)
+        if normalizes is not None:
+            seen = normalizes.normalize_obs(seen)
+        with one_by_one():
+            actions, run.state = self.model.predict(seen, run.state, None, deterministic)
+        run.actions = actions
+        return actions, run
+
+
+class _Run:
+    """What wrappers remember of a run, and what the model does."""
+
+    def __init__(self, policy: WrappedPolicy, items: NDArray[np.float32]) -> None:
+        self.is_each = policy._is_each
+        count = len(items) if self.is_each else 1
+        self.wrapped = [policy._made(items[place:]) for place in range(count)]
+        self.state: Any = None
+        self.actions: Any = None
+
+    def observed(self, items: NDArray[np.float32]) -> Any:
+        """Return what the wrappers make of observations."""
+        for place, each in enumerate(self.wrapped):
+            each.unwrapped.given = items[place] if self.is_each else items
+        starts = self.actions is None
+        if not self.is_each:
+            (venv,) = self.wrapped
+            return venv.reset() if starts else venv.step(self.actions)[0]
+        seen = [
+            each.reset()[0] if starts else each.step(self.actions[place])[0]
+            for place, each in enumerate(self.wrapped)
+        ]
+        return np.stack([np.asarray(each) for each in seen])
+
+
+def _stand_in(
+    space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
+) -> Any:
+    """Return an environment of Gymnasium whose observations are given to it."""
+    import gymnasium
+
+    class StandIn(gymnasium.Env[Any, Any]):
+        observation_space, action_space = space, actions
+
+        def __init__(self) -> None:
+            self.given = given
+
+        def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, Any]:
+            return self.given, {}
+
+        def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+            return self.given, 0.0, False, False, {}
+
+    return StandIn()
+
+
+def _vector_stand_in(
+    space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
+) -> Any:
+    """Return a vector environment of stable-baselines3 whose observations are given to it."""
+    vec_env = require("stable_baselines3.common.vec_env", "train")
+
+    class StandIn(vec_env.VecEnv):  # type: ignore[misc,name-defined]
+        def __init__(self) -> None:
+            self.given, self.render_mode = given, None
+            super().__init__(len(given), space, actions)
+
+        def reset(self) -> Any:
+            return self.given
+
+        def step_async(self, actions: Any) -> None:
+            pass
+
+        def step_wait(self) -> tuple[Any, ...]:
+            count = self.num_envs
+            return self.given, np.zeros(count), np.zeros(count, bool), [{} for _ in range(count)]
+
+        def close(self) -> None:
+            pass
+
+        def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+            return [getattr(self, attr_name)] * self.num_envs
+
+        def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+            raise AttributeError(attr_name)
+
+        def env_method(self, method_name: str, *arguments: Any, **options: Any) -> list[Any]:
+            raise AttributeError(method_name)
+
+        def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+            return [False] * self.num_envs
+
+    return StandIn()
