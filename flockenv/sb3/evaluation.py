@@ -3,7 +3,8 @@
 import copy
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -142,6 +143,20 @@ class _AsTrained:
         return found
 
 
+@contextmanager
+def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
+    """Let no `VecNormalize` learn from an evaluation, which may be on the training's own flocks."""
+    layers = [each for each in _layers(flocks) if isinstance(each, VecNormalize)]
+    learned = [each.training for each in layers]
+    for each in layers:
+        each.training = False
+    try:
+        yield
+    finally:
+        for each, training in zip(layers, learned, strict=True):
+            each.training = training
+
+
 def _follow(training: VecNormalize, flocks: VecEnv) -> None:
     """Give the flocks' `VecNormalize` the statistics of the training's."""
     for each in _layers(flocks):
@@ -263,15 +278,16 @@ def _evaluated(
         if step["done"]:
             orders.append(step["info"]["episode_summary"].get("signed_order", np.nan))
 
-    returns, lengths = evaluate_policy(
-        cast(Any, model),
-        flocks,
-        episodes,
-        deterministic,
-        render,
-        callback=kept,
-        return_episode_rewards=True,
-    )
+    with _unchanged_statistics(flocks):
+        returns, lengths = evaluate_policy(
+            cast(Any, model),
+            flocks,
+            episodes,
+            deterministic,
+            render,
+            callback=kept,
+            return_episode_rewards=True,
+        )
     return FlockEvaluation(np.array(orders), np.array(returns), np.array(lengths))
 
 

@@ -311,3 +311,35 @@ def test_stored_states_with_a_forged_seal(env, data):
         pass
     finally:
         env.set_state(before)
+
+
+@FUZZ
+@given(st.one_of(st.sampled_from(NAMES), st.from_regex(r"[a-z][a-z0-9_]{0,11}", fullmatch=True)))
+def test_a_subclass_keeps_attributes_of_any_name(name):
+    assume(
+        name not in {*dir(flockenv.LeadersEnv), *flockenv.LeadersEnv._kept} - {"state", "episode"}
+    )
+
+    class Mine(flockenv.LeadersEnv):
+        def __init__(self, **options):
+            setattr(self, name, 0)
+            super().__init__(**options)
+
+    env = Mine(**SMALL)
+    a_short_episode(env)
+    assert getattr(env, name) == getattr(env.clone(), name) == 0
+
+
+@FUZZ
+@given(st.integers(0, 12), st.integers(0, 2**53), st.sampled_from([float, np.float64, np.array]))
+def test_a_whole_number_is_the_same_in_every_type(count, seed, kind):
+    whole = {"n_boats": count + 3, "n_leaders": 2}
+    assert flockenv.FlockParameters(
+        **{name: kind(value) for name, value in whole.items()}
+    ) == flockenv.FlockParameters(**whole)
+    poses = []
+    for each in (seed, kind(seed)):
+        env = flockenv.parallel_env(**SMALL)
+        env.reset(seed=each)
+        poses.append(env.flock.pose)
+    np.testing.assert_array_equal(*poses)

@@ -38,6 +38,8 @@ import flockenv
 found = sorted({{name.replace("-", "_") for name in {sorted(OPTIONAL)}}} | {{"pygame"}})
 print([name for name in found if name in sys.modules])
 """
+#: 200 random scenes; a line for each.
+SCENES = Path(__file__).with_name("scenes.py")
 SIMULATION = """
 import numpy as np
 import flockenv
@@ -129,10 +131,12 @@ def test_a_wheel_uses_avx2_where_it_can_and_gives_the_same_bits(tmp_path):
     look = "import flockenv; print(flockenv._core.USES_AVX2)"
     (fast,) = tmp_path.rglob("_core_avx2.abi3.so")
     assert installed.run("python", "-I", "-c", look) == "True\n"
-    with_avx2 = installed.run("python", "-I", "-c", SIMULATION)
+    simulated = ("python", "-I", "-c", SIMULATION), ("python", "-I", str(SCENES))
+    with_avx2 = [installed.run(*each) for each in simulated]
+    assert len(with_avx2[1].splitlines()) == 200
     fast.unlink()
     assert installed.run("python", "-I", "-c", look) == "False\n"
-    assert installed.run("python", "-I", "-c", SIMULATION) == with_avx2
+    assert [installed.run(*each) for each in simulated] == with_avx2
     # What was added is in the list of files: without it the wheel would not be uninstalled.
     installed.run("python", "-m", "pip", "uninstall", "--quiet", "--yes", "flockenv")
     assert not [*tmp_path.rglob("flockenv/*.so")]

@@ -133,6 +133,18 @@ def test_a_callback_judges_on_normalized_observations(look):
     np.testing.assert_allclose(callback.evaluation.returns, judged[-1], rtol=1e-5)
 
 
+def test_an_evaluation_teaches_no_statistics():
+    """Also on the flocks of the training: what the model sees would drift while it is judged."""
+    training = VecNormalize(make(**EFFORT), gamma=0.9)
+    model = ppo(training).learn(96)
+    mean, count = training.obs_rms.mean.copy(), training.obs_rms.count
+    for flocks in (training, VecNormalize(PerFlock(make(**EFFORT)))):
+        evaluate_flocks(model, flocks, 4, seed=7)
+        assert flocks.training
+        np.testing.assert_array_equal(flocks.obs_rms.mean, mean)
+        assert flocks.obs_rms.count == count
+
+
 def test_normalized_flocks_judge_no_model_that_saw_plain_ones():
     with pytest.raises(ParameterError, match="evaluate it without VecNormalize"):
         evaluate_flocks(ppo(make()), VecNormalize(PerFlock(make())), 4)
