@@ -85,8 +85,8 @@ def constant(path: Path, name: str) -> str:
 def expected_orders() -> list[dict[str, object]]:
     """Return mean order against the backward duration, of the paper's leaderless flocks."""
     orders = defaultdict(list)
-    results = ROOT / "studies" / "section4" / "results" / "section4.csv"
-    with results.open(encoding="utf-8") as file:
+    results = ROOT / "studies" / "section4" / "results" / "section4.csv.gz"
+    with gzip.open(results, "rt", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if row["preset"] == "experiment" and row["n_leaders"] == "0":
                 orders[float(row["bw_s"])].append(float(row["psi_o"]))

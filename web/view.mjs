@@ -120,7 +120,7 @@ export class View {
     this.map.draw(this.palette);
     if (!isPlaying || !(now - this.#worded < WORDS_EVERY)) {
       this.#worded = now;
-      this.#showWords(time, rate);
+      this.#showWords(time, rate, isPlaying);
     }
   }
 
@@ -128,7 +128,7 @@ export class View {
     return this.#quantities.find((each) => each.key === key);
   }
 
-  #showWords(time, rate) {
+  #showWords(time, rate, isPlaying) {
     const { runs } = this.#flocks;
     // While a flock plays, the time above its picture runs ahead of words that are written more rarely.
     byId("clock").textContent = rate || `${fixed(time, 1)} s`;
@@ -138,7 +138,7 @@ export class View {
       byId(key).previousElementSibling.replaceChildren(...legendOf(chart.runs, this.#quantity(key), time));
     }
     this.#scores.forEach((score, place) => { score.replaceChildren(...this.#score(place, time)); });
-    this.#tellWhatIsDone(time);
+    this.#tellWhatIsDone(time, isPlaying);
     this.#showObserved();
   }
 
@@ -166,13 +166,14 @@ export class View {
   }
 
   /** What the flocks do, for those who do not see it: the pictures' names, and a sentence that is read now and then. */
-  #tellWhatIsDone(time) {
+  #tellWhatIsDone(time, isPlaying) {
     const told = this.panels.map(({ canvas, run }) => {
       const words = doing(run, run.sampleAt(time), this.palette);
       canvas.setAttribute("aria-label", words);
       return this.panels.length > 1 ? `${run.name}: ${words}` : words;
     }).join(" ");
-    if (told !== byId("doing").textContent && performance.now() - this.#told > TELL_EVERY) {
+    const isDue = !isPlaying || performance.now() - this.#told > TELL_EVERY;
+    if (isDue && told !== byId("doing").textContent) {
       this.#told = performance.now();
       byId("doing").textContent = told;
     }

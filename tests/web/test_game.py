@@ -22,6 +22,6 @@ def scores(answer_of_node, wasm) -> dict[str, np.ndarray]:
 def test_who_leads_well_wins_most_rounds_and_nobody_else_does(scores):
     law = scores.pop("the law")
     won = {hand: int((score > law).sum()) for hand, score in scores.items()}
-    assert won.pop("of a person") >= 0.75 * ROUNDS, won
+    assert won.pop("of a person") >= 0.7 * ROUNDS, won
     # Hands that do nothing, or hold a key down.
     assert max(won.values()) <= 0.1 * ROUNDS, won
