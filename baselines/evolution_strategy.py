@@ -160,7 +160,7 @@ def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
 
 def search(options: argparse.Namespace, command: str) -> np.ndarray:
     """Search, write the policy and the learning curve, and return the weights."""
-    env, start = environment(options.task, 2 * options.pairs), time.perf_counter()
+    env, start = environment(options.task, 2 * options.pairs), time.process_time()
     size = env.single_observation_space.shape[0] // env.num_leaders
     free = ("out", "flock_hours", "episodes")
     identity = json.dumps({k: v for k, v in vars(options).items() if k not in free})
@@ -185,7 +185,7 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
         command,
         seed=options.seed,
         samples=round(generations * hours * 3600 * env.num_leaders * decisions_hz),
-        wall_s=time.perf_counter() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=generations * hours,
     )
     save(options, env, state["average"], provenance)

@@ -204,7 +204,7 @@ def main(arguments: list[str] | None = None) -> None:
         shlex.join(["python", "baselines/group_relative.py", *given]),
         seed=options.seed,
         samples=round(hours * 3600 * 3),
-        wall_s=time.process_time() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=hours,
     )
     folder = options.out / str(options.seed)

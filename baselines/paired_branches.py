@@ -173,7 +173,7 @@ def main(arguments: list[str] | None = None) -> None:
         shlex.join(["python", "baselines/paired_branches.py", *given]),
         seed=options.seed,
         samples=round(len(curve) * hours * 3600 * 3),
-        wall_s=time.process_time() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=len(curve) * hours,
     )
     law(options.pool, weights, provenance).save(folder / "policy.json")

@@ -131,7 +131,7 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
         command,
         seed=seed,
         samples=model.num_timesteps,
-        wall_s=time.process_time() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=model.num_timesteps / env.num_envs * given.num_flocks / 3600.0,
     )
     return every_step(LeaningLaw.from_model(model, "wide"), made)
@@ -148,7 +148,7 @@ def search_narrow(given: Settings, seed: int, folder: Path, command: str) -> Lea
         command,
         seed=seed,
         samples=round(hours * 3600 * 3),
-        wall_s=time.process_time() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=hours,
     )
     return paired_branches.law("narrow", weights, made)
@@ -177,7 +177,7 @@ def made_by(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]
         "seed": ", ".join(own["seed"] for own in each),
         **{
             name: f"{sum(float(own[name]) for own in each):.10g}"
-            for name in ("samples", "flock_hours", "wall_s")
+            for name in ("samples", "flock_hours", "cpu_s")
         },
     }
 

@@ -29,7 +29,7 @@ def commit() -> str:
 
 
 def provenance_of(
-    command: str, *, seed: int, samples: int, wall_s: float, flock_hours: float | None = None
+    command: str, *, seed: int, samples: int, cpu_s: float, flock_hours: float | None = None
 ) -> dict[str, str]:
     """Return the provenance of a policy's file as short texts.
 
@@ -41,8 +41,8 @@ def provenance_of(
         Of the training.
     samples
         Decisions of leaders that the training saw.
-    wall_s
-        Time that it took in s.
+    cpu_s
+        Processor time that it took in s, on all cores together.
     flock_hours
         Simulated hours of flocks that it saw.
 
@@ -60,5 +60,5 @@ def provenance_of(
         "seed": str(seed),
         "samples": str(samples),
         **hours,
-        "wall_s": f"{wall_s:.0f}",
+        "cpu_s": f"{cpu_s:.0f}",
     }

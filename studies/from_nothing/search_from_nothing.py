@@ -124,7 +124,7 @@ def search(pool: str, seed: int, folder: Path) -> None:
         command = shlex.join(
             ["python", "-m", "studies.from_nothing.search_from_nothing", pool, str(seed)]
         )
-        made = provenance_of(command, seed=seed, samples=samples, wall_s=cpu_s, flock_hours=hours)
+        made = provenance_of(command, seed=seed, samples=samples, cpu_s=cpu_s, flock_hours=hours)
         found = network(of_length(np.mean(means[len(means) // 2 :], axis=0)), made)
         found.save(folder / "policy.npz")
         point = {"stage": 1, "flock_hours": hours, "cpu_s": cpu_s}

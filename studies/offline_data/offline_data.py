@@ -94,7 +94,7 @@ def episodes(policy: Any, seeds: range, episode_s: float) -> list[EpisodeBuffer]
 
 def make(name: str, flock_hours: float, episode_s: float, command: str) -> minari.MinariDataset:
     """Write the data set of a policy, block after block of flocks."""
-    start, count = time.perf_counter(), max(1, round(flock_hours * 3600.0 / episode_s))
+    start, count = time.process_time(), max(1, round(flock_hours * 3600.0 / episode_s))
     dataset = None
     for first in range(0, count, BLOCK):
         seeds = POLICY_SEEDS["offline data"].seeds(min(BLOCK, count - first), start=first)
@@ -121,7 +121,7 @@ def make(name: str, flock_hours: float, episode_s: float, command: str) -> minar
         command,
         seed=0,
         samples=3 * dataset.total_steps,
-        wall_s=time.perf_counter() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=count * episode_s / 3600.0,
     )
     dataset.storage.update_metadata({"results_version": RESULTS_VERSION, **made})

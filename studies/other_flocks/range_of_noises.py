@@ -44,7 +44,7 @@ def trained(seed: int, flock_hours: float, flocks: int, command: str) -> Leaning
         command,
         seed=seed,
         samples=model.num_timesteps,
-        wall_s=time.process_time() - start,
+        cpu_s=time.process_time() - start,
         flock_hours=model.num_timesteps / env.num_envs * flocks / 3600.0,
     )
     law = LeaningLaw.from_model(model, "wide")
@@ -65,7 +65,7 @@ def mean_of(laws: list[LeaningLaw], command: str) -> LeaningLaw:
         "seed": ", ".join(own["seed"] for own in made),
         **{
             name: f"{sum(float(own[name]) for own in made):.10g}"
-            for name in ("samples", "flock_hours", "wall_s")
+            for name in ("samples", "flock_hours", "cpu_s")
         },
     }
     bias = float(np.mean([each.bias for each in laws]))

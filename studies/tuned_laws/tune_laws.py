@@ -137,7 +137,7 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("generations, episodes, searches and flocks are at least 1")
     given = sys.argv[1:] if arguments is None else arguments
     command = shlex.join(["python", "-m", "studies.tuned_laws.tune_laws", *given])
-    start = time.perf_counter()
+    start = time.process_time()
     options.out.mkdir(parents=True, exist_ok=True)
     cells = [(p, k) for p in options.pool or POOLS for k in options.leaders or (1, 2, 3, 4)]
     rows = []
@@ -147,8 +147,8 @@ def main(arguments: list[str] | None = None) -> None:
             scores = judged(pool, leaders, gains, options.flocks)
             rows.append({"pool": pool, "leaders": leaders, **gains, **scores})
             write_table(options.out / "gains.csv", pd.DataFrame(rows).round(4), "%.6g")
-    wall_s = time.perf_counter() - start
-    provenance = provenance_of(command, seed=options.seed, samples=0, wall_s=wall_s)
+    cpu_s = time.process_time() - start
+    provenance = provenance_of(command, seed=options.seed, samples=0, cpu_s=cpu_s)
     (options.out / "gains.toml").write_text(tomli_w.dumps(provenance), encoding="utf-8")
     print(pd.DataFrame(rows).round(3).to_string(index=False))
     print(f"written to {options.out}")
