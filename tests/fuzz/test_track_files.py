@@ -87,6 +87,32 @@ HEADINGS = {
         table.assign(heading=table["heading"] + 360 * (table["frame"] // 20)),
         layout,
     ),
+    "whole turns as said": lambda table, layout: (
+        table.assign(heading=table["heading"] + 360 * (table["frame"] // 20)),
+        dataclasses.replace(layout, wrapped=False),
+    ),
+    "quaternion": lambda table, layout: (
+        _quaternions(table),
+        dataclasses.replace(layout, quaternion=("qx", "qy", "qz", "qw"), heading_turns="ccw"),
+    ),
+    "part of a quaternion": lambda table, layout: (
+        _quaternions(table),
+        dataclasses.replace(layout, heading="qz", heading_unit="rad"),
+    ),
+}
+
+
+def _quaternions(table):
+    half = -np.radians(table["heading"]) / 2
+    return table.assign(qx=0.0, qy=0.0, qz=np.sin(half), qw=np.cos(half))
+
+
+ORDERS = {
+    "as it was": lambda table, seed: table,
+    "by boat": lambda table, seed: table.sort_values(["id", "t"], kind="stable"),
+    "shuffled": lambda table, seed: table.sample(frac=1.0, random_state=seed),
+    "newest first": lambda table, seed: table[::-1],
+    "blocks": lambda table, seed: pd.concat([table[seed:], table[:seed]]),
 }
 SECONDS = dataclasses.replace(LAYOUT, fps=None)
 CLOCKS = {
@@ -105,7 +131,20 @@ CLOCKS = {
     ),
     "stamps of each boat": lambda frame, number: (frame / 10 + number * 0.007, None),
     "set back": lambda frame, number: (frame % 200, 10.0),
+    "minutes": lambda frame, number: (frame / 600, 1 / 60),
+    "minutes without a word": lambda frame, number: (frame / 600, None),
+    "frames without a word": lambda frame, number: (frame, None),
 }
+HONEST = {
+    "lost": ("infinite", "empty", "dash", "absent"),
+    "headings": ("as said", "compass", "whole turns as said", "quaternion"),
+    "clocks": (
+        *("frames", "later frames", "every third frame", "seconds", "Unix time", "ms", "dates"),
+        *("stamps of each boat", "minutes"),
+    ),
+    "films": ("one", "rows twice", "unassigned"),
+}
+"""Habits of trackers that a table may have and must be read."""
 FILMS = ("one", "two in a row", "two in each other", "rows twice", "unassigned", "a second header")
 SPELLINGS = ((",", "."), (";", ","), (";", "."), ("\t", "."), ("|", ","))
 
@@ -127,6 +166,44 @@ def with_films(table, films):
 
 def quantities(found):
     return found.order.psi_o, found.order.psi_v
+
+
+def written(folder, table, layout, spelling, is_spelled):
+    """A file of a table, and the layout that may say how it is spelled."""
+    separator, decimal = spelling
+    path = Path(folder, "tracks.csv")
+    path.write_text(table.to_csv(index=False, sep=separator, decimal=decimal))
+    if is_spelled:
+        layout = dataclasses.replace(layout, separator=separator, decimal=decimal)
+    return path, layout
+
+
+@FUZZ
+@given(
+    st.sampled_from(HONEST["lost"]),
+    st.sampled_from(HONEST["headings"]),
+    st.sampled_from(HONEST["clocks"]),
+    st.sampled_from(HONEST["films"]),
+    st.sampled_from(sorted(ORDERS)),
+    st.sampled_from(SPELLINGS),
+    st.integers(0, 1000),
+)
+def test_honest_tables_are_never_refused(lost, heading, clock, films, order, spelling, seed):
+    rng = np.random.default_rng(seed)
+    boat, start = f"r{rng.integers(BOATS)}", rng.integers(10, 250)
+    table, layout = HEADINGS[heading](truth(), LAYOUT)
+    gone = (table["id"] == boat) & table["frame"].between(start, start + 40)
+    table, layout = LOST[lost](table, layout, gone)
+    times, fps = CLOCKS[clock](table["frame"], table["id"].str[1:].astype(int))
+    table = ORDERS[order](with_films(table.assign(t=times), films), seed)
+    with TemporaryDirectory() as folder:
+        layout = dataclasses.replace(layout, fps=fps, frame="t")
+        reports = []
+        found = read_tracks(*written(folder, table, layout, spelling, True), reports.append)
+    expected = read_tracks(truth()[~gone], LAYOUT)
+    assert reports[0].missing == gone.sum()
+    for values, known in zip(quantities(found), quantities(expected), strict=True):
+        assert np.nanmean(np.abs(values - known)) < 0.05 * np.nanmean(known)
 
 
 @FUZZ
