@@ -105,6 +105,25 @@ def test_the_readme_names_both_front_doors():
     assert "\nmake test " in readme
 
 
+def test_the_readme_is_cited_as_the_citation_file_says():
+    readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```bibtex\n(.*?)```", readme, re.DOTALL)
+    cited = dict(
+        re.findall(r"^  (\w+) = \{+(.*?)\}+,$", block.partition("@article")[0], re.MULTILINE)
+    )
+    paper = dict(
+        re.findall(r"^  (\w+) = \{(.*?)\},$", block.partition("@article")[2], re.MULTILINE)
+    )
+    file = (REPOSITORY / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {cited['version']}\n" in file
+    assert f"\ndate-released: {cited['year']}-" in file
+    assert f"name: {cited['author']}" in file
+    for field in ("title", "journal", "year", "pages", "doi"):
+        assert paper[field] in file
+    names = re.findall(r"family-names: (.+), given-names: (.+)\}", file)
+    assert paper["author"] == " and ".join(map(", ".join, names))
+
+
 def test_every_public_name_has_a_reference():
     reference = "".join(page.read_text() for page in (DOCS / "reference").glob("*.md"))
     documented = re.findall(r"\.\. auto(?:class|exception|function):: ([\w.]+)", reference)
