@@ -4,7 +4,7 @@
 
 Design, fixed before the runs. 128 states: flocks that the learned leaders have led for 4 minutes.
 From each, 16 joint offsets of the leans are tried: none first, and 15 with a normal offset for each
-leader (0.3 rad, or 0.6 rad in the second set), held for 16 s. Each meets the same 64 continuations
+leader (0.3 rad), held for 16 s. Each meets the same 64 continuations
 by fresh noise, which the flock itself does not meet. One half of the noises chooses the best offset
 by the mean order from 8 s after the branch to the horizon, the other half judges it against none;
 then the halves change places. The gain of a state is the mean of both. It would be 0 in the mean if
@@ -30,7 +30,7 @@ from studies.planning.plan_ahead import flocks, learned
 from studies.study import resumed, run, write_table
 
 STATES, OFFSETS, NOISES, BLOCK = 128, 16, 64, 4
-SIZES_RAD, HORIZONS_S, BEFORE_S, HELD_S, SKIPPED_S = (0.3, 0.6), (64, 96), 240, 16, 8
+SIZES_RAD, HORIZONS_S, BEFORE_S, HELD_S, SKIPPED_S = (0.3,), (64, 96), 240, 16, 8
 
 
 def states(count: int) -> tuple[list[bytes], list[str]]:

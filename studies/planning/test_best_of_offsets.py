@@ -40,4 +40,4 @@ def test_an_interrupted_command_resumes(script, monkeypatch, tmp_path) -> None:
     pd.read_csv(whole).iloc[:2].to_csv(parts, index=False)
     script.main(["--states", "2", "--noises", "2", "--out", str(parts)])
     pd.testing.assert_frame_equal(pd.read_csv(whole), pd.read_csv(parts))
-    assert len(pd.read_csv(whole)) == 2 * 2 * 2
+    assert len(pd.read_csv(whole)) == 2 * len(script.SIZES_RAD) * 2

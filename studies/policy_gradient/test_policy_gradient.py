@@ -6,33 +6,45 @@ import pytest
 
 
 @pytest.fixture
-def made() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def made(script) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Offsets, features of a normal distribution, and the slopes 0.3·f₀ − 0.4·f₁."""
     random = np.random.default_rng(1)
-    offsets, features = random.normal(size=(2000, 2, 3)), random.normal(size=(2000, 2, 3, 4))
+    offsets = random.normal(0.0, script.OFFSET_RAD, size=(20000, 2, 3))
+    features = random.normal(size=(20000, 2, 3, 4))
     slopes = features @ [0.3, -0.4, 0.0, 0.0]
     return offsets, features, (offsets * slopes).sum(axis=(1, 2))
 
 
 def test_slopes_are_found_through_noise(script, made) -> None:
+    """Features of unit variance: both metrics are the same."""
     offsets, features, y = made
     noisy = y + np.random.default_rng(2).normal(size=len(y))
-    even = np.arange(len(y)) % 2 == 0
-    value, scatter, p = script.squared_gradient(offsets, features, noisy, even, 200)
-    assert value == pytest.approx(0.3**2 + 0.4**2, abs=0.03)
-    assert scatter < 0.02
-    assert p == 0.0
+    found = script.squared_gradient(offsets, features, noisy, np.arange(len(y)) % 100, 200)
+    for value, spread, p in found.values():
+        assert value == pytest.approx(0.3**2 + 0.4**2, abs=0.03)
+        assert spread < 0.02
+        assert p == 0.0
+
+
+def test_a_feature_s_unit_counts_in_one_metric_alone(script, made) -> None:
+    offsets, features, y = made
+    large, flock = features * [10.0, 1.0, 1.0, 1.0], np.arange(len(y)) % 100
+    plain = script.squared_gradient(offsets, features, y, flock, 10)
+    found = script.squared_gradient(offsets, large, y, flock, 10)
+    assert found["lean"][0] == pytest.approx(plain["lean"][0], rel=1e-6)
+    assert found["weights"][0] == pytest.approx((10 * 0.3) ** 2 + 0.4**2, rel=0.1)
 
 
 def test_of_noise_alone_nothing_is_found(script, made) -> None:
-    offsets, features, _ = made
-    even, found = np.arange(len(offsets)) % 2 == 0, []
-    for seed in range(40):
+    """Nor of luck that all pairs of a flock share."""
+    offsets, features = made[0][:2000], made[1][:2000]
+    flock, found = np.arange(len(offsets)) % 100, []
+    for seed in range(30):
         y = np.random.default_rng(seed).normal(size=len(offsets))
-        found.append(script.squared_gradient(offsets, features, y, even, 50)[:2])
-    values, scatters = np.transpose(found)
-    assert abs(values.mean()) < 3.0 * values.std(ddof=1) / np.sqrt(40)
-    assert values.std(ddof=1) == pytest.approx(scatters.mean(), rel=0.5)
+        found.append([*script.squared_gradient(offsets, features, y, flock, 50).values()])
+    values, spreads, _ = np.array(found).transpose(2, 0, 1)
+    assert (abs(values.mean(0)) < 3.5 * values.std(0, ddof=1) / np.sqrt(30)).all()
+    assert values.std(0, ddof=1) == pytest.approx(spreads.mean(0), rel=0.5)
 
 
 def test_branches_without_offsets_are_the_same(script, monkeypatch) -> None:
@@ -48,7 +60,7 @@ def test_it_writes_every_case(script, monkeypatch, tmp_path) -> None:
     monkeypatch.setattr(script, "BEFORE_S", 2)
     script.main(["--flocks", "32", "--rounds", "2", "--out", str(tmp_path / "found.csv")])
     table = pd.read_csv(tmp_path / "found.csv")
-    assert list(zip(table["pool"], table["policy"], table["features"], strict=True)) == list(
-        script.CASES
-    )
+    cases = table[["pool", "policy", "features"]].drop_duplicates()
+    assert [tuple(row) for row in cases.to_numpy()] == list(script.CASES)
+    assert table["metric"].tolist() == ["lean", "weights"] * len(script.CASES)
     assert np.isfinite(table["squared_gradient"]).all()
