@@ -12,6 +12,7 @@ from scipy import stats
 
 from flockenv.statistics import (
     CONFIDENCE,
+    FEW,
     bootstrap_interval,
     critical_noise,
     loss_of_order,
@@ -21,14 +22,22 @@ from studies.study import Options, Study, write
 
 
 class Interval(tuple[float, float, float]):
-    """A value and the ends of its 95 % interval, which `runs` independent runs or seeds bear."""
+    """A value and the ends of its 95 % interval, which `runs` independent runs or seeds bear.
+
+    `digits` of them are printed: one of a bootstrap of few runs, whose draws are coarse.
+    """
 
     runs: int
+    digits: int
 
-    def __new__(cls, found: Iterable[float], runs: int) -> "Interval":
+    def __new__(cls, found: Iterable[float], runs: int, digits: int = 3) -> "Interval":
         interval = super().__new__(cls, found)
-        interval.runs = runs
+        interval.runs, interval.digits = runs, digits
         return interval
+
+    def texts(self) -> list[str]:
+        """Return the value and the ends as they are printed."""
+        return [f"{value:.{self.digits}g}" for value in self]
 
 
 def unknown(runs: int = 0) -> Interval:
@@ -54,7 +63,8 @@ def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
     """Return a statistic of groups of runs with its BCa interval, runs drawn in each group apart.
 
     Each group is an array of shape (runs, columns). The statistic takes arrays of shape
-    (..., runs, columns) and returns one of shape (...).
+    (..., runs, columns) and returns one of shape (...). Draws that tie, as those of few runs do,
+    must tie on every machine: the last digits of a logarithm differ.
     """
     arrays = [np.asarray(group, float) for group in groups]
     runs = sum(map(len, arrays))
@@ -62,21 +72,24 @@ def bca(groups: Sequence[Any], statistic: Callable[..., Any]) -> Interval:
         return unknown(runs)
 
     def of_places(*places: Any, axis: int) -> Any:
-        return statistic(*(g[np.asarray(p, int)] for g, p in zip(arrays, places, strict=True)))
+        drawn = (g[np.asarray(p, int)] for g, p in zip(arrays, places, strict=True))
+        return np.round(statistic(*drawn), _TIE)
 
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # Draws without spread.
         places = [np.arange(len(g)) for g in arrays]
-        return Interval(bootstrap_interval(places, of_places, paired=False), runs)
+        found = bootstrap_interval(places, of_places, paired=False)
+    return Interval(found, runs, 1 if min(map(len, arrays)) < FEW else 3)
 
 
+_TIE = 9  # Decimals to which draws are the same.
 HOLDS, FAILS, OPEN = "holds", "fails", "open"
 OCCURS = 0.05  # What happens at all happens in at least one run in twenty, whatever was found.
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, judged by runs.
+    """A statement, judged by runs.
 
     Attributes
     ----------
@@ -90,6 +103,8 @@ class Claim:
         The value and its interval, with the number of runs that bear it.
     least, most
         The range that the statement claims.
+    ours
+        Whether the paper says nothing of it: a noise, a density or a quantity of our own.
     """
 
     claim: str
@@ -99,6 +114,7 @@ class Claim:
     found: Interval
     least: float = -math.inf
     most: float = math.inf
+    ours: bool = False
 
     @property
     def verdict(self) -> str:
@@ -134,11 +150,11 @@ class Claim:
 
 
 class Claims(list[Claim]):
-    """Claims of one section about one reading."""
+    """Claims of one section about one reading, which may be changed between them."""
 
-    def __init__(self, section: str, reading: str) -> None:
+    def __init__(self, section: str, reading: str, *, ours: bool = False) -> None:
         super().__init__()
-        self.section, self.reading = section, reading
+        self.section, self.reading, self.ours = section, reading, ours
 
     def add(
         self,
@@ -149,10 +165,12 @@ class Claims(list[Claim]):
         least: float = -math.inf,
         most: float = math.inf,
         n: str = "",
+        ours: bool = False,
     ) -> None:
         """Add a claim; `n` is added to the reading."""
         reading = f"{self.reading}, n = {n}" if n else self.reading
-        self.append(Claim(claim, self.section, reading, quantity, found, least, most))
+        ours = ours or self.ours
+        self.append(Claim(claim, self.section, reading, quantity, found, least, most, ours))
 
     def exists(self, claim: str, quantity: str, count: int, runs: int, *, n: str = "") -> None:
         """Add the claim that something happens: in at least one run in twenty (`OCCURS`)."""
@@ -160,28 +178,33 @@ class Claims(list[Claim]):
 
 
 _COLUMNS = (
-    *("figure", "claim", "section", "reading", "quantity", "claimed"),
+    *("figure", "of", "claim", "section", "reading", "quantity", "claimed"),
     *("n_runs", "measured", "low", "high", "verdict", "runs_that_would_decide"),
 )
 
 
 def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None:
-    """Replace a figure's lines of ``claims.csv``."""
-    path = options.folder / "claims.csv"
+    """Replace a figure's lines of ``claims.csv``, and print them."""
+    path, claims = options.folder / "claims.csv", list(claims)
     lines = [
         [
-            *(figure, each.claim, each.section, each.reading, each.quantity, each.claimed),
-            *(each.found.runs, *(f"{value:.3g}" for value in each.found)),
+            *(figure, "ours" if each.ours else "paper", each.claim, each.section, each.reading),
+            *(each.quantity, each.claimed, each.found.runs, *each.found.texts()),
             *(each.verdict, each.would_decide),
         ]
         for each in claims
     ]
+    for each in claims:
+        value, low, high = each.found.texts()
+        print(f"{each.verdict:5}  {each.claim} [{each.reading}]")
+        print(f"       {each.quantity}: {value} ({low} to {high}), claimed {each.claimed}")
     table = pd.DataFrame(lines, columns=_COLUMNS, dtype=str)
     if path.exists():
         others = pd.read_csv(path, dtype=str, keep_default_na=False)
-        table = pd.concat([others[others["figure"] != figure], table])
+        table = pd.concat([others[others["figure"] != figure], table])[[*_COLUMNS]]
     text = table.sort_values("figure", kind="stable").to_csv(index=False, lineterminator="\n")
     write(path, text.encode())
+    print(f"{len(claims)} statements of {figure}: {path}")
 
 
 def judging(
@@ -199,6 +222,53 @@ def judging(
 
     script.__module__ = judge.__module__
     return script
+
+
+DISORDER = 0.3
+"""The paper calls a state disordered where Ψ_o is below this (figure 10)."""
+
+
+def crossing(x: Sequence[float], y: Any, level: Any) -> Any:
+    """Return the last x at which y falls through a level, one value for each draw.
+
+    y has shape (len(x), draws), and the level may differ between draws. NaN where y is below it
+    everywhere, and the last x where y ends above it.
+    """
+    draws = y.shape[1]
+    found = np.full(draws, math.nan)
+    for place, (each, at) in enumerate(zip(y.T, np.broadcast_to(level, draws), strict=True)):
+        above = np.flatnonzero(each >= at)
+        if len(above) and (last := above[-1]) == len(x) - 1:
+            found[place] = x[-1]
+        elif len(above):
+            share = (each[last] - at) / (each[last] - each[last + 1])
+            found[place] = x[last] + share * (x[last + 1] - x[last])
+    return found
+
+
+def disorder(
+    levels_s: Sequence[float], arms: Sequence[Sequence[Any]], signs: Sequence[float] = (1.0,)
+) -> Interval:
+    """Return the bw in s from which on mean Ψ_o is below 0.3, or a sum of several with signs.
+
+    An arm has a group of runs for each noise, of shape (runs, columns), Ψ_o first. Unlike the
+    middle between order and disorder, a level that is fixed does not move with what the ordered
+    level is, or where it ends. NaN if Ψ_o of an arm ends above it.
+    """
+    arrays = [[np.asarray(group, float) for group in arm] for arm in arms]
+    count, runs = len(levels_s), sum(len(group) for arm in arrays for group in arm)
+    if any(len(arm) != count or not arm[-1][:, 0].mean() < DISORDER for arm in arrays):
+        return unknown(runs)
+
+    def of(*drawn: Any) -> Any:
+        psi_o = np.stack(np.broadcast_arrays(*(each[..., 0].mean(-1) for each in drawn)))
+        found = [
+            sign * crossing(levels_s, own.reshape(count, -1), DISORDER)
+            for sign, own in zip(signs, np.split(psi_o, len(arrays)), strict=True)
+        ]
+        return np.sum(found, axis=0).reshape(psi_o.shape[1:])
+
+    return bca([group for arm in arrays for group in arm], of)
 
 
 def critical_bw(levels_s: Sequence[float], groups: Sequence[Any]) -> Interval:

@@ -440,7 +440,8 @@ def picture(
         yield figure
         file = io.BytesIO()
         figure.savefig(file, format="png", dpi=130, metadata={"Software": None})
-    write(options.folder / "pictures" / f"{name}.png", file.getvalue())
+    write(path := options.folder / "pictures" / f"{name}.png", file.getvalue())
+    print(f"Drawn: {path}")
 
 
 def curve(

@@ -56,7 +56,9 @@ STUDY = Study("current/water", design, measure)
 
 def judge(table: pd.DataFrame) -> Claims:
     """Compare the water's speed with that of the paper."""
-    claims = Claims("4.5", "experiment (leapfrog, white) with current_gain 0.32, narrow, n = 27")
+    claims = Claims(
+        "4.5", "experiment (leapfrog, white) with current_gain 0.32, narrow, n = 27", ours=True
+    )
     for bw_s, runs in table.groupby("bw_s"):
         ordered = runs[runs["ordered"] > 0.0]
         for name, column in (("mean", "mean_cm_s"), ("99th percentile", "most_cm_s")):

@@ -20,15 +20,15 @@ from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main
 from studies.study import simulated as run_of
 
 FIRST = 100  # Seeds that no other study of this folder has.
-LEAST_RISE, HULL_CM2 = 0.3, 128.5
+LEAST_RISE = 0.3
 NOISES_S = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
 SETS: dict[str, Row] = {
     "simulation": {"preset": "simulation"},
     "paper": {"preset": "paper"},
     "experiment": {"preset": "experiment"},
-    "measured current": {"preset": "experiment", **constants(CANDIDATE)},
+    "fitted": {"preset": "experiment", **constants(CANDIDATE)},
 }
-"""Constants by name; the last are the fitted ones that hold the measured current."""
+"""Constants by name; the last are those of `studies.current.fit`."""
 _NAMED = sorted({name for row in SETS.values() for name in row} - {"preset"})
 
 
@@ -68,10 +68,12 @@ def rise(runs: pd.DataFrame) -> Interval:
     return bca(groups, of)
 
 
-def covered(pool: str, n_boats: int) -> float:
-    """Return the share of the water that hulls cover."""
-    outer, inner = RADII_CM[pool]
-    return n_boats * HULL_CM2 / (math.pi * (outer**2 - inner**2))
+def coverage(pool: str, n_boats: int) -> float:
+    """Return the number of boats over those that fit in one row on the outer wall.
+
+    They face it side by side and touch at their sterns, which are 10 cm from it.
+    """
+    return n_boats * math.asin(5.0 / (RADII_CM[pool][0] - 10.0)) / math.pi
 
 
 def cells(options: Options) -> dict[tuple[str, str, int], pd.DataFrame]:
@@ -83,7 +85,7 @@ def cells(options: Options) -> dict[tuple[str, str, int], pd.DataFrame]:
     there = replace(options, runs=False)
     fitted = runs_of(there, (CANDIDATE,), LEVELS_S, HELD_OUT, optional=True)
     if len(fitted):
-        tables["measured current", "narrow", 27] = fitted[fitted["n_leaders"] == 0]
+        tables["fitted", "narrow", 27] = fitted[fitted["n_leaders"] == 0]
     others = SECTION5.results(replace(options, runs=options.trial), optional=True)
     for name in ("simulation", "paper"):
         for n, pool in itertools.product((20, 50), RADII_CM):
@@ -100,7 +102,10 @@ def cells(options: Options) -> dict[tuple[str, str, int], pd.DataFrame]:
 
 
 def judge_density(found: dict[tuple[str, str, int], pd.DataFrame]) -> Claims:
-    """Judge whether noise makes motion, in each pool and number of boats."""
+    """Judge whether the noise bw makes motion, in each pool and number of boats.
+
+    The paper simulated 20 and 50 boats in the pool that is called `wide` here.
+    """
     claims = Claims("6", "")
     for (name, pool, n), runs in found.items():
         claims.reading = f"{name}, {pool}"
@@ -111,27 +116,28 @@ def judge_density(found: dict[tuple[str, str, int], pd.DataFrame]) -> Claims:
             rise(runs),
             least=LEAST_RISE,
             n=str(n),
+            ours=name != "experiment" and (pool != "wide" or n not in (20, 50)),
         )
     return claims
 
 
 def draw_density(options: Options, found: dict[tuple[str, str, int], pd.DataFrame]) -> None:
-    """Draw the rise, and |m| without noise, against the share of the water under hulls."""
+    """Draw the rise, and |m| without backing, against the coverage of the outer wall."""
     with picture(options, "density", height_cm=7.0) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         for color, marker, name in zip(COLORS, "osD^", SETS, strict=False):
             own = sorted(key[1:] for key in found if key[0] == name)
-            shares = {100 * covered(*key): found[name, *key] for key in own}
+            walls = {coverage(*key): found[name, *key] for key in own}
             style = {"color": color, "marker": marker, "label": name, "linestyle": ""}
-            if shares:
-                curve(left, shares, [rise(runs) for runs in shares.values()], **style)
-                quiet = [mean(runs[runs["bw_s"] == 0.0]["abs_m"]) for runs in shares.values()]
-                curve(right, shares, quiet, **style)
+            if walls:
+                curve(left, walls, [rise(runs) for runs in walls.values()], **style)
+                quiet = [mean(runs[runs["bw_s"] == 0.0]["abs_m"]) for runs in walls.values()]
+                curve(right, walls, quiet, **style)
         left.axhline(LEAST_RISE, color="0.6", linestyle="--", linewidth=0.6)
-        left.set(ylabel="rise of mean |m| by noise", ylim=(-0.03, 1.0))
-        right.set(ylabel="mean |m| without noise")
+        left.set(ylabel="rise of mean |m| by backing (bw)", ylim=(-0.03, 1.0))
+        right.set(ylabel="mean |m| at bw = 0")
         for axes in (left, right):
-            axes.set_xlabel("water under hulls (%); wide: 4, 5, 9; narrow: 14, 19, 36")
+            axes.set_xlabel("boats over room on the wall; wide: 0.19, 0.25, 0.47")
         right.legend()
 
 

@@ -50,7 +50,7 @@ STUDY = Study("density/quiet", design, measure, lambda row: row["n_boats"] == 20
 
 def judge(table: pd.DataFrame) -> Claims:
     """Judge each flock, and whether c4 makes it rotate."""
-    claims = Claims("6", "")
+    claims = Claims("6", "", ours=True)
     for (preset, pool, n), runs in table.groupby(["preset", "pool", "n_boats"], sort=False):
         claims.reading = f"{preset}, {pool}"
         levels = dict(iter(runs.groupby("c4")))

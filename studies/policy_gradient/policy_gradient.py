@@ -25,7 +25,7 @@ Design, fixed before the runs:
   shipped leaders with the features of the whole flock beside them, and the tuned law in `narrow`.
 
 The first design regressed y on the features in two halves of the flocks, in the first metric alone;
-of it only the tuned law in `wide` was seen: 12 ± 5 times 10⁻⁶, p = 0.013.
+of it the cases in `wide` were seen: p = 0.013, 0.19 and 0.35.
 
 27 boats, three leaders, critical noise, physics of trainings. Seeds follow from the words "policy
 gradient".

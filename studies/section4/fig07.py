@@ -9,6 +9,7 @@ from studies.section4.section4 import READING
 from studies.study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
 
 NOISES_S = (1.8, 1.4)
+"""The paper's noise, and one near which the preset loses its order."""
 _SWITCHES = [(240.0, {"target": "cw"}), (480.0, {"target": "ccw"}), (720.0, {"target": "cw"})]
 
 
@@ -59,12 +60,14 @@ def judge(table: pd.DataFrame) -> Claims:
             "read as at least 0.9",
             mean((towards > 0.0).mean(axis=1)),
             least=0.9,
+            ours=bw_s != NOISES_S[0],
         )
         claims.add(
             "Correlations are higher with alternating leaders than without at the same noise",
             f"mean Ψ_o with leaders minus without, same seeds, {where}",
             mean((led["psi_o"] - free["psi_o"]).dropna()),
             least=0.0,
+            ours=bw_s != NOISES_S[0],
         )
     return claims
 

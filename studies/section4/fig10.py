@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.claim import Claims, bca, fall, judging, mean
+from studies.claim import DISORDER, Claims, bca, crossing, disorder, judging, mean
 from studies.section4.section4 import (
     CW,
     FREE,
@@ -56,6 +56,15 @@ def judge(table: pd.DataFrame) -> Claims:
             ),
             least=1.2,
         )
+        lost_s, noises = (1.4 if name == FREE else 2.0), sorted(runs["bw_s"].unique())
+        claims.add(
+            f"Ψ_o becomes that of disorder around bw = {lost_s} s",
+            f"bw (s) at which mean Ψ_o falls through {DISORDER:g}, {name}",
+            disorder(noises, [at(runs, "psi_o")]),
+            least=lost_s - 0.2,
+            most=lost_s + 0.2,
+            ours=True,
+        )
     for band, ends in _BANDS.items():
         claims.add(
             f"Leaders increase the order at {band} noise",
@@ -72,20 +81,32 @@ def judge(table: pd.DataFrame) -> Claims:
     noises = sorted(free["bw_s"].unique())
     claims.add(
         "Leaders are most efficient at the critical noise",
-        "bw of the largest gain of Ψ_o by 3 leaders minus the critical bw without leaders (s)",
+        "bw of the largest gain of Ψ_o by 3 leaders minus that at which mean Ψ_o without leaders "
+        f"falls through {DISORDER:g} (s)",
         bca(
-            [*at(free, "psi_o", "abs_m"), *at(led, "psi_o", "abs_m")],
-            lambda *drawn: _peak(noises, drawn) - fall(noises, drawn[: len(noises)]),
+            [*at(free, "psi_o"), *at(led, "psi_o")],
+            lambda *drawn: _after(noises, drawn),
         ),
         least=-0.2,
         most=0.2,
     )
+    claims.add(
+        "Leaders raise the noise at which Ψ_o becomes that of disorder",
+        f"bw (s) at which mean Ψ_o falls through {DISORDER:g}, with 3 clockwise leaders minus "
+        "without",
+        disorder(noises, [at(led, "psi_o"), at(free, "psi_o")], (1.0, -1.0)),
+        least=0.0,
+        ours=True,
+    )
     return claims
 
 
-def _peak(noises: list[float], drawn: Any) -> Any:
+def _after(noises: list[float], drawn: Any) -> Any:
+    """Return the noise of the largest gain minus that at which Ψ_o without leaders is lost."""
     psi_o = np.stack(np.broadcast_arrays(*(group[..., 0].mean(-1) for group in drawn)))
-    return np.array(noises)[(psi_o[len(noises) :] - psi_o[: len(noises)]).argmax(0)]
+    free, led = np.split(psi_o.reshape(len(drawn), -1), 2)
+    peak = np.array(noises)[(led - free).argmax(0)]
+    return (peak - crossing(noises, free, DISORDER)).reshape(psi_o.shape[1:])
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:

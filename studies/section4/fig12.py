@@ -48,6 +48,7 @@ def judge(table: pd.DataFrame) -> Claims:
             f"slope of mean Ψ_o against 0 to 4 leaders, bw = {bw_s:g} s",
             bca(groups, lambda *drawn, x=leaders: slope(x, [g[..., 0].mean(-1) for g in drawn])),
             least=0.0,
+            ours=bw_s != NOISES_S[0],
         )
     return claims
 

@@ -74,7 +74,7 @@ RULES = {
 
 def judge(table: pd.DataFrame, rule: str, suffix: str = "") -> Claims:
     """Judge a rule of transition.md, at each coverage and noise."""
-    claims = Claims("5.2, left open", "")
+    claims = Claims("5.2, left open", "", ours=True)
     lasts, counted = RULES[rule]
     by = ["coverage", "scheme", "c4", "dt_s"]
     for (coverage, scheme, c4, dt_s), group in table.groupby(by, sort=False):
@@ -134,7 +134,7 @@ def bistable(table: pd.DataFrame) -> Claims:
 
 def side_by_side(table: pd.DataFrame) -> Claims:
     """Judge whether jams last beside rotation in one flock, two hours after a split or longer."""
-    claims = Claims("5.2", "")
+    claims = Claims("5.2", "", ours=True)
     jams = table[table["start"] == "one-jam"]
     both = jams.assign(both=(abs(jams["m"]) >= 0.5) & (jams["in_jams"] >= 0.1))
     for (coverage, n), runs in both.groupby(["coverage", "n_boats"]):
@@ -153,23 +153,50 @@ def _in(table: pd.DataFrame, own: bool) -> pd.Series:
 
 
 def answers(found: Mapping[str, Claims]) -> pd.DataFrame:
-    """Return what each rule says of each noise and coverage: for, against or open."""
+    """Return a line for each noise and coverage: what each rule says of it, and by what numbers.
+
+    The numbers are the share of the runs of the largest flocks that keep their state, and the
+    factor of exits for each doubling, from both starts.
+    """
     lines: dict[str, dict[str, str]] = {}
     for rule, claims in found.items():
         cells: dict[str, list[Claim]] = {}
         for each in claims:
             cells.setdefault(each.reading.partition(", n = ")[0], []).append(each)
         for cell, judged in cells.items():
-            shares = [each for each in judged if each.quantity.startswith("share")]
-            boats = [int(each.reading.rpartition("n = ")[2]) for each in shares]
-            small = [each for each, n in zip(shares, boats, strict=True) if n < max(boats)]
-            asked = [each for each in judged if each not in small]
-            refutes = [each for each in asked if not each.quantity.startswith("drift")]
-            answer = "for" if all(each.verdict == HOLDS for each in asked) else "open"
             line = lines.setdefault(cell, {"cell": cell})
-            against = any(each.verdict == FAILS for each in refutes)
-            line[f"{rule} rule"] = "against" if against else answer
+            line |= {f"{rule} rule": _answer(judged), **_numbers(rule, judged)}
     return pd.DataFrame(lines.values())
+
+
+def _shares(judged: list[Claim]) -> list[Claim]:
+    """Return the shares of the largest flocks."""
+    shares = [each for each in judged if each.quantity.startswith("share")]
+    boats = [int(each.reading.rpartition("n = ")[2]) for each in shares]
+    return [each for each, n in zip(shares, boats, strict=True) if n == max(boats)]
+
+
+def _answer(judged: list[Claim]) -> str:
+    """Return what a rule says of a cell: for, against or open."""
+    largest = _shares(judged)
+    asked = [each for each in judged if each in largest or not each.quantity.startswith("share")]
+    refutes = [each for each in asked if not each.quantity.startswith("drift")]
+    if any(each.verdict == FAILS for each in refutes):
+        return "against"
+    return "for" if all(each.verdict == HOLDS for each in asked) else "open"
+
+
+def _numbers(rule: str, judged: list[Claim]) -> dict[str, str]:
+    largest = _shares(judged)
+    numbers = {f"{rule}: boats": largest[0].reading.rpartition("n = ")[2]}
+    for start, words in STARTED.items():
+        for name, each in [("share kept", each) for each in largest] + [
+            ("exits per doubling", each) for each in judged if each.quantity.startswith("factor")
+        ]:
+            if f"starts {words}" in each.claim:
+                value, low, high = each.found.texts()
+                numbers[f"{rule}: {name}, {start}"] = f"{value} ({low} to {high})"
+    return numbers
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:
@@ -253,18 +280,24 @@ def script(options: Options) -> None:
     table = pd.concat([STUDY.results(options), LITERAL.results(options)], ignore_index=True)
     found = {"first": judge(table, "first"), "second": judge(second(table), "second")}
     long = LONG.results(options)
-    words = ", two hours after a split"
-    followed = [*judge(second(long), "second", words), *side_by_side(long)] if len(long) else []
-    claims = [*found["first"], *found["second"], *followed, *bistable(table)]
-    write_claims(options, "transition", claims)
+    write_claims(options, "transition", [*bistable(table), *side_by_side(long)])
     if len(table):
         draw(options, table)
         draw_map(options, "transition_map", table, "stays {}")
         draw_map(options, "transition_map_second", second(table), "starts {},\nends so")
-        lines = answers(found).to_csv(index=False)
-        write(options.folder / "answers.csv", lines.encode())
+        _write_answers(options, "answers", answers(found))
     if len(long):
         draw_long(options, long)
+        _write_answers(options, "answers_long", answers({"second": judge(second(long), "second")}))
+
+
+def _write_answers(options: Options, name: str, lines: pd.DataFrame) -> None:
+    path = options.folder / f"{name}.csv"
+    write(path, lines.to_csv(index=False, lineterminator="\n").encode())
+    rules = [column for column in lines if column.endswith(" rule")]
+    for _, line in lines.iterrows():
+        print(f"{line['cell']}: {', '.join(f'{rule}: {line[rule]}' for rule in rules)}")
+    print(f"{len(lines)} cells: {path}")
 
 
 if __name__ == "__main__":

@@ -113,7 +113,9 @@ def loss(table: pd.DataFrame, case: str) -> Interval:
 
 def judge(table: pd.DataFrame) -> Claims:
     """Judge what leaders need, over blocks of 32 flocks."""
-    claims = Claims("beyond the paper", "simulation (leapfrog, white), wide, 3 of 27, bw = 0.31 s")
+    claims = Claims(
+        "beyond the paper", "simulation (leapfrog, white), wide, 3 of 27, bw = 0.31 s", ours=True
+    )
     for case in (each for each in CASES[1:] if each in set(table["case"])):
         least, most, words = 0.0, np.inf, f"Leaders need to see {case}"
         if case == CONSTANT:

@@ -79,7 +79,7 @@ def gain(table: pd.DataFrame, bw_s: float) -> Interval:
 
 def judge(table: pd.DataFrame) -> Claims:
     """Judge worth, additivity and the response against the fluctuations."""
-    claims = Claims("beyond the paper", "simulation (leapfrog, white), wide")
+    claims = Claims("beyond the paper", "simulation (leapfrog, white), wide", ours=True)
     for n_boats, bw_s in [(27, bw_s) for bw_s in NOISES_S] + [(100, 0.31), (400, 0.31)]:
         for policy in POLICIES[1:]:
             same = {"n_boats": n_boats, "bw_s": bw_s, "against": 0}
