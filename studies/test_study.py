@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies import claim, make, plots, study
+from studies import claim, counts, make, plots, study
 from studies.transition import transition, transition_runs
 
 
@@ -250,3 +250,60 @@ def test_answers_of_a_map() -> None:
 def test_wall_slots() -> None:
     # Six discs of 5 cm touch around a circle of 10 cm; their hulls' bows are 10 cm further out.
     assert transition_runs.outer_radius_cm(6, 1.0) == pytest.approx(20.0)
+
+
+def test_the_page_counts_the_statements() -> None:
+    assert counts.table() in (study.HERE / "README.md").read_text(encoding="utf-8")
+
+
+def test_a_statement_counts_once() -> None:
+    """Two presets agree, two do not, one is open; what is ours does not count."""
+    lines = [
+        ("paper", "a", "holds"),
+        ("paper", "a", "holds"),
+        ("paper", "b", "holds"),
+        ("paper", "b", "fails"),
+        ("paper", "c", "fails"),
+        ("paper", "c", "open"),
+        ("ours", "d", "fails"),
+    ]
+    claims = pd.DataFrame(lines, columns=["of", "claim", "verdict"])
+    assert dict(zip(counts.ANSWERS, counts.counted(claims), strict=True)) == {
+        "holds": 1,
+        "fails": 0,
+        "depends": 1,
+        "open": 1,
+    }
+
+
+def test_a_fall_is_where_a_line_crosses_the_level() -> None:
+    """Of two draws: one rises again before it falls, and one never is above the level."""
+    y = np.array([[0.9, 0.2], [0.1, 0.1], [0.5, 0.1], [0.1, 0.0]])
+    found = claim.crossing([0.0, 1.0, 2.0, 3.0], y, 0.3)
+    assert found[0] == pytest.approx(2.5)
+    assert math.isnan(found[1])
+    assert claim.crossing([0.0, 1.0], np.array([[0.9], [0.8]]), 0.3) == [1.0]
+
+
+def test_order_that_is_not_lost_has_no_noise_at_which_it_is() -> None:
+    random = np.random.default_rng(0)
+    falls = [level + 0.01 * random.normal(size=(24, 1)) for level in (0.9, 0.5, 0.1)]
+    stays = [level + 0.01 * random.normal(size=(24, 1)) for level in (0.9, 0.5, 0.4)]
+    levels = [1.0, 2.0, 3.0]
+    assert claim.disorder(levels, [falls])[0] == pytest.approx(2.5, abs=0.02)
+    shift = claim.disorder(levels, [falls, falls], (1.0, -1.0))
+    assert shift[0] == pytest.approx(0.0, abs=1e-9)
+    assert all(map(math.isnan, claim.disorder(levels, [falls, stays], (1.0, -1.0))))
+
+
+def test_few_runs_print_one_digit_and_ties_are_ties() -> None:
+    def last_digits(runs: np.ndarray) -> np.ndarray:
+        means = runs[..., 0].mean(-1)
+        return np.asarray(means * (1.0 + 1e-15 * np.sign(np.sin(1e6 * means))))
+
+    few = np.array([[0.0], [0.0], [1.0], [1.0], [1.0], [0.0], [0.0], [1.0]])
+    found = claim.bca([few], last_digits)
+    assert found == claim.bca([few], lambda runs: runs[..., 0].mean(-1))
+    assert found.texts()[0] == "0.5"
+    assert claim.bca([np.repeat(few, 3, axis=0)], last_digits).digits == 3
+    assert claim.Interval((0.1234, 0.01, 1.26), 8, 1).texts() == ["0.1", "0.01", "1"]

@@ -21,10 +21,10 @@ export const LESSONS = [
   },
   {
     name: "noise",
-    title: "Dense flocks need noise to move",
+    title: "Backing frees a jam",
     link: `${NOISE}&bw_s=0`,
     before: `Boats that [never back up](${NOISE}&bw_s=0) jam at the wall. Let them back up [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8).`,
-    after: "Some noise frees the jam of this dense flock; too much ends the order. Sparse flocks circle without noise.",
+    after: "Some backing frees boats that crowd the wall; too much ends the order. Sparse flocks circle without it, by the boats' random turning.",
   },
   {
     name: "leaders",

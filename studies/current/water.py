@@ -82,8 +82,9 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             (COLORS[1], "most_cm_s", "99th percentile"),
         ):
             groups = table.dropna().groupby("bw_s")[column]
-            found = [mean(each) for _, each in groups]
-            curve(axes, groups.groups, found, color=color, label=label)
+            if groups.ngroups:
+                found = [mean(each) for _, each in groups]
+                curve(axes, groups.groups, found, color=color, label=label)
         axes.set(xlabel="bw (s)", ylabel="speed of the water (cm/s)", ylim=(0.0, 5.5))
         axes.legend()
 

@@ -228,7 +228,7 @@ def test_a_browser_without_what_it_needs_gets_a_sentence(open_live, chromium, mi
         live = open_live().go()
         assert live.script("return document.body.dataset.ready") == "failed"
         assert f"this browser has no {missing}" in live.status()
-        assert "Dense flocks need noise" not in live.status()
+        assert "Backing frees a jam" not in live.status()
     finally:
         chromium.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
 
