@@ -29,6 +29,7 @@ from typing import Any
 import numpy as np
 
 import flockenv
+from flockenv.comparison import score_policies
 from flockenv.policies import LeaningLaw, NetworkPolicy
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.policies.provenance import provenance_of
@@ -224,13 +225,11 @@ def main(arguments: list[str] | None = None) -> None:
     given = sys.argv[1:] if arguments is None else arguments
     weights = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *given]))
     env, seeds = environment(options.task, options.episodes), list(range(options.episodes))
+    orders = {}
     for name, each in (("evolved", weights), ("no search", 0.0 * weights)):
         steer = linear(np.tile(each, (options.episodes, 1)), env.num_leaders)
-        for what, values in zip(
-            ("mean reward", "signed order"), episode(env, seeds, steer), strict=True
-        ):
-            half = 1.96 * values.std(ddof=1) / np.sqrt(options.episodes)
-            print(f"{name}: {what} {values.mean():.3f} ± {half:.3f}")
+        _, orders[name] = episode(env, seeds, steer)
+    print(score_policies(orders, "no search").round(3).to_string(index=False))
     print(f"written to {options.out}")
 
 

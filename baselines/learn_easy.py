@@ -13,28 +13,29 @@ processor's, for training alone.
 """
 
 import argparse
-import csv
 import time
 from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
+import pandas as pd
 import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import LinearSchedule
 
 import flockenv  # noqa: F401 - registers the environment
+from flockenv.comparison import score_policies
+from flockenv.comparison.score import SCORE
 from flockenv.policies import DampedLaw, SteeringLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, evaluate_flocks
-from flockenv.statistics import mean_interval
 
 OPTIONS = gymnasium.spec("flockenv/Order-easy-v0").kwargs
 LAWS = {"paper's law": SteeringLaw, "damped law": DampedLaw}
 EPISODES, EARLIER_EPISODES = 512, 128
-COLUMNS = ("policy", "seed", "samples", "cpu_s", "signed_order", "low", "high")
+COLUMNS = ("policy", "seed", "samples", "cpu_s", *SCORE)
 
 
 def ppo(seed: int) -> PPO:
@@ -62,17 +63,12 @@ def orders(policy: Any, flocks: int) -> np.ndarray:
     return evaluate_flocks(policy, venv, flocks, seed=0).signed_order
 
 
-def interval(values: np.ndarray) -> dict[str, float]:
-    """Return the mean of flocks, with its 95 % interval."""
-    return dict(zip(("signed_order", "low", "high"), mean_interval(values), strict=True))
-
-
 class Curve(BaseCallback):
-    """Evaluates the mean policy every so many samples."""
+    """Scores the mean policy every so many samples, against a law in the same flocks."""
 
     def __init__(self, seed: int, samples: int, law: np.ndarray) -> None:
         super().__init__()
-        self.known, self.law = {"policy": "PPO", "seed": seed}, law
+        self.seed, self.law = seed, law
         self.every, self.due, self.rows = max(1, samples // 4), 0, list[dict[str, Any]]()
         self.start, self.outside = time.process_time(), 0.0
 
@@ -83,16 +79,14 @@ class Curve(BaseCallback):
 
     def _on_training_end(self) -> None:
         self.note(EPISODES)
-        gain = {"policy": "PPO minus paper's law", **interval(self.found - self.law)}
-        self.rows.append({**self.rows[-1], **gain})
 
     def note(self, flocks: int) -> None:
         """Add a point."""
         paused = time.process_time()
-        self.found = orders(self.model, flocks)
-        cpu_s = paused - self.start - self.outside
-        point = {"samples": self.num_timesteps, "cpu_s": cpu_s, **interval(self.found)}
-        self.rows.append({**self.known, **point})
+        led = {"PPO": orders(self.model, flocks), "paper's law": self.law[:flocks]}
+        point = {"seed": self.seed, "samples": self.num_timesteps}
+        point |= {"cpu_s": paused - self.start - self.outside}
+        self.rows.append(score_policies(led, "paper's law").to_dict("records")[0] | point)
         self.outside += time.process_time() - paused
         print(self.rows[-1], flush=True)
 
@@ -117,15 +111,11 @@ def main(arguments: list[str] | None = None) -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     layout = {name: OPTIONS[name] for name in ("observation", "mirror_to_target")}
     found = {name: orders(law(**layout), EPISODES) for name, law in LAWS.items()}
-    rows: list[dict[str, Any]] = [{"policy": n, **interval(each)} for n, each in found.items()]
+    rows = score_policies(found).to_dict("records")
     for seed in options.seeds:
         rows += learn(seed, options.samples, found["paper's law"])
-        with (options.out / "curve.csv").open("w", encoding="utf-8", newline="") as file:
-            table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            table.writeheader()
-            for row in rows:
-                shown = {n: round(v, 4) if isinstance(v, float) else v for n, v in row.items()}
-                table.writerow(shown)
+        table = pd.DataFrame(rows)[[*COLUMNS]].astype({"seed": "Int64", "samples": "Int64"})
+        table.to_csv(options.out / "curve.csv", index=False, float_format="%.4f")
     print(f"written to {options.out}")
 
 

@@ -45,11 +45,10 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
 
 from flockenv import FlockParameters
-from flockenv.comparison import run_episodes
+from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw, LeaningLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
-from flockenv.statistics import mean_interval
 from flockenv.training import TrainingSettings
 
 SHIPPED = Path(__file__).parents[1] / "src" / "policies" / "learned"
@@ -229,9 +228,9 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
     used = list(laws.values()) if chosen == "mean" else [laws[chosen]]
     rule = f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks"
     seeds = release_seeds("pretrained", given.judging_flocks)
-    signed_order, low, high = mean_interval(
-        orders(candidates[chosen], pool, 3, seeds, given.episode_s)
-    )
+    own = orders(candidates[chosen], pool, 3, seeds, given.episode_s)
+    found = score_policies({chosen: own}).loc[0, ["signed_order", "low", "high"]]
+    signed_order, low, high = map(float, found)
     judged = {
         "signed_order": round(signed_order, 3),
         "interval": [round(low, 3), round(high, 3)],

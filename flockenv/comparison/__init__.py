@@ -4,6 +4,7 @@ from flockenv.comparison.case import Case
 from flockenv.comparison.comparison import compare_leaders
 from flockenv.comparison.episodes import NO_LEADERS, ORDERING_TIMES, QUANTITIES, run_episodes
 from flockenv.comparison.report import ComparisonReport
+from flockenv.comparison.score import score_policies
 
 __all__ = [
     "NO_LEADERS",
@@ -13,4 +14,5 @@ __all__ = [
     "ComparisonReport",
     "compare_leaders",
     "run_episodes",
+    "score_policies",
 ]

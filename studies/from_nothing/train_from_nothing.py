@@ -41,11 +41,10 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 
 from flockenv import FlockParameters
-from flockenv.comparison import compare_leaders
+from flockenv.comparison import compare_leaders, score_policies
 from flockenv.envs.observation import observation_entries
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
-from flockenv.statistics import mean_interval
 from studies.study import write_table
 
 FLOCKS, LEADERS, DECISIONS_HZ = 128, 3, 2.5
@@ -146,13 +145,10 @@ class Curve(BaseCallback):
 def judged(
     pool: str, policies: dict[str, Any], seeds: range, known: dict[str, Any]
 ) -> list[dict[str, Any]]:
-    """Return the mean signed order of each policy, with its 95 % interval."""
+    """Return the score of each policy."""
     runs = compare_leaders(FlockParameters(**flock(pool)), [LEADERS], policies, seeds, JUDGED_S)
-    rows = []
-    for name, own in runs.groupby("policy", sort=False):
-        mean = dict(zip(COLUMNS[-3:], mean_interval(own["signed_order"]), strict=True))
-        rows.append({"policy": name, **known, **mean})
-    return rows
+    scores = score_policies(dict(iter(runs.groupby("policy", sort=False)["signed_order"])))
+    return [{**row, **known} for row in scores.to_dict("records")]
 
 
 def write(pool: str, policy: dict[str, Any], rows: list[dict[str, Any]], folder: Path) -> None:

@@ -24,10 +24,10 @@ from typing import Any
 import pandas as pd
 
 from flockenv import FlockParameters
-from flockenv.comparison import run_episodes
+from flockenv.comparison import run_episodes, score_policies
+from flockenv.comparison.score import SCORE
 from flockenv.policies import DampedLaw, LeaningLaw, load
 from flockenv.runs.seeds import release_seeds
-from flockenv.statistics import mean_interval, paired_difference
 from studies.study import resumed, run, write_table
 
 POOL = "wide"
@@ -64,20 +64,13 @@ def measured(cell: Cell, policy: Any, flocks: int, episode_s: float) -> dict[str
     made = {"pool": POOL, "n_boats": 27, "n_leaders": 3, "bw_s": 0.31, **cell.parameters}
     flock = FlockParameters.preset(cell.preset).replace(**made)
     seeds = release_seeds("beyond one noise", flocks)
-    ours, theirs = (
-        run_episodes(flock, each, seeds, episode_s, options=cell.options)["signed_order"]
-        for each in (policy, DampedLaw.tuned(POOL))
-    )
-    gain = paired_difference(ours, theirs)
-    return {
-        "what": cell.what,
-        "value": cell.value,
-        "signed_order": mean_interval(ours)[0],
-        "tuned_law": mean_interval(theirs)[0],
-        "gain": gain.mean,
-        "gain_low": gain.low,
-        "gain_high": gain.high,
+    orders = {
+        name: run_episodes(flock, each, seeds, episode_s, options=cell.options)["signed_order"]
+        for name, each in (("policy", policy), ("tuned law", DampedLaw.tuned(POOL)))
     }
+    ours, theirs = score_policies(orders, "tuned law").to_dict("records")
+    known = {"what": cell.what, "value": cell.value, "tuned_law": theirs["signed_order"]}
+    return known | {name: ours[name] for name in SCORE}
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -28,6 +28,7 @@ import numpy as np
 import pandas as pd
 
 import flockenv
+from flockenv.comparison import score_policies
 from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
@@ -127,11 +128,9 @@ def main(arguments: list[str] | None = None) -> None:
         for seed, learned_order, order in zip(block, plain, planned, strict=True):
             rows.append({"seed": seed, "learned": learned_order, "planned": order})
         write_table(path, pd.DataFrame(rows), "%.17g")
-        table = pd.DataFrame(rows)
-        gain = table["planned"] - table["learned"]
-        means = f"learned {table['learned'].mean():.3f}, planned {table['planned'].mean():.3f}"
-        half = 1.96 * gain.std(ddof=1) / np.sqrt(len(gain))
-        print(f"{len(rows)} episodes: {means}, gain {gain.mean():+.3f} ± {half:.3f}", flush=True)
+        found = {name: [row[name] for row in rows] for name in ("learned", "planned")}
+        scores = score_policies(found, "learned")
+        print(scores.round(3).to_string(index=False), flush=True)
 
 
 if __name__ == "__main__":

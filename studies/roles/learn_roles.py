@@ -23,10 +23,9 @@ import pandas as pd
 from cmaes import CMA
 from numpy.typing import ArrayLike
 
-from flockenv.comparison import run_episodes
+from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
-from flockenv.statistics import mean_interval
 from studies.roles.misinformed_pair import TASK, Signed
 from studies.study import run, write_table
 from studies.tuned_laws.tune_laws import RANGES, law
@@ -110,10 +109,10 @@ def main(arguments: list[str] | None = None) -> None:
 
     def judge(name: int | str, hours: float, pair: Pair) -> None:
         judging = TASK.seeds[: options.judged]
-        found = mean_interval(orders(pair, judging, TASK.episode_s / 60.0, "default"))
-        ends = zip(("signed_order", "low", "high"), found, strict=True)
-        rows.append({"seed": name, "flock_hours": hours, **dict(ends)})
-        print("seed {}: {:.3f} [{:.3f}, {:.3f}]".format(name, *found), flush=True)
+        found = orders(pair, judging, TASK.episode_s / 60.0, "default")
+        score = score_policies({"pair": found}).loc[0, ["signed_order", "low", "high"]].to_dict()
+        rows.append({"seed": name, "flock_hours": hours, **score})
+        print(f"seed {name}: {score}", flush=True)
 
     tuned = DampedLaw.tuned("wide")
     judge("by hand", 0.0, Pair([Signed(tuned, 1.0), Signed(tuned, -1.0)]))

@@ -50,9 +50,9 @@ from typing import Any
 import pandas as pd
 
 from flockenv import FlockParameters
-from flockenv.comparison import compare_leaders
+from flockenv.comparison import compare_leaders, score_policies
 from flockenv.runs.seeds import release_seeds
-from flockenv.statistics import mean_interval, paired_difference, two_way_interval
+from flockenv.statistics import two_way_interval
 from studies.study import run, write_table
 
 LAWS = ("paper's law", "tuned law")
@@ -76,16 +76,8 @@ def orders(folders: list[Path], flocks: int) -> pd.DataFrame:
 
 
 def judged(found: pd.DataFrame) -> pd.DataFrame:
-    """Return the mean order of each training and law, and its difference from the tuned law."""
-    rows = []
-    for name, own in found.items():
-        signed_order, low, high = mean_interval(own)
-        row = {"policy": name, "signed_order": signed_order, "low": low, "high": high}
-        if name != "tuned law":
-            gain = paired_difference(own, found["tuned law"])
-            row |= {"gain": gain.mean, "gain_low": gain.low, "gain_high": gain.high}
-        rows.append(row)
-    return pd.DataFrame(rows)
+    """Return the score of each training and law, its gain being that on the tuned law."""
+    return score_policies(dict(found.items()), "tuned law")
 
 
 def algorithms(found: pd.DataFrame) -> pd.DataFrame:

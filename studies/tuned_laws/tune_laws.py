@@ -36,11 +36,10 @@ from cmaes import CMA
 from rich.progress import Progress
 
 import flockenv
-from flockenv.comparison import run_episodes
+from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
-from flockenv.statistics import mean_interval, paired_difference
 from studies.study import resumed, run, write_table
 
 #: Gains, each with the middle and the width (in factors of e) of the first generation.
@@ -107,17 +106,19 @@ def tuned(pool: str, leaders: int, options: argparse.Namespace) -> dict[str, flo
 def judged(
     pool: str, leaders: int, gains: dict[str, float], flocks: int, duration_s: float = 480.0
 ) -> dict[str, float]:
-    """Return the order by these gains in fresh flocks, and the difference from the tuned law."""
+    """Return the score of these gains in fresh flocks, in which the tuned law leads as well.
+
+    What they add to it is called `beyond`: the law itself has a `gain`.
+    """
     seeds = release_seeds("tune_laws", flocks)
     parameters = flock_parameters(pool, leaders)
-    ours, theirs = (
-        run_episodes(parameters, each, seeds, duration_s)["signed_order"]
-        for each in (DampedLaw(**gains), DampedLaw.tuned(pool))
-    )
-    order, low, high = mean_interval(ours)
-    gain = paired_difference(ours, theirs)
-    scores = {"signed_order": order, "low": low, "high": high}
-    return scores | {"beyond": gain.mean, "beyond_low": gain.low, "beyond_high": gain.high}
+    laws = {"searched": DampedLaw(**gains), "tuned law": DampedLaw.tuned(pool)}
+    orders = {
+        name: run_episodes(parameters, each, seeds, duration_s)["signed_order"]
+        for name, each in laws.items()
+    }
+    score = score_policies(orders, "tuned law").loc[0].drop(["policy", "flocks"])
+    return score.rename(lambda name: name.replace("gain", "beyond")).to_dict()
 
 
 def main(arguments: list[str] | None = None) -> None:
