@@ -18,10 +18,10 @@ from flockenv.policies.leaders import Leaders
 from flockenv.policies.registry import Steering
 from flockenv.recording import PHASES, PRECISIONS, Recording, checked_functions
 
-Schedule = Iterable[tuple[float, Mapping[str, Any]]]
+Schedule = Iterable[tuple[float, Mapping[str, object]]]
 """Times in s from the start of a run, and the fields of the parameters that change then."""
 
-Start = bytes | Mapping[str, Any] | Recording
+Start = bytes | Mapping[str, object] | Recording
 """A snapshot, a state, or a recording whose last sample it is."""
 
 # Of them depends whether boats fit, which is tried before a run.
@@ -215,7 +215,7 @@ def _changes(
     return changes
 
 
-def _change(entry: Any) -> tuple[float, dict[str, Any]]:
+def _change(entry: object) -> tuple[float, dict[str, object]]:
     """Return the time and the fields of an entry of a schedule."""
     words = "pairs of a time in s, at least 0, and a dictionary of fields"
     match entry:

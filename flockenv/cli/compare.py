@@ -5,10 +5,9 @@ import math
 import shlex
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
@@ -160,9 +159,9 @@ def _compared(
     }
     conditions = {"command": command, "policies": shown}
     hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
-    finished: list[Any] = []
+    finished: list[object] = []
 
-    def written(**more: Any) -> ComparisonReport:
+    def written(**more: object) -> ComparisonReport:
         runs = require("pandas", "plot").concat(finished, ignore_index=True)
         runs.insert(0, "case", runs.pop("case"))
         there = [case for case in cases if case.name in set(runs["case"])]
@@ -300,10 +299,10 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     base = options.parameters()
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
-    own: list[Any] = [base.pool]
-    for pool in options.pool or own:
+    pools: Sequence[Pool] = options.pool or [base.pool]
+    for pool in pools:
         levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
-        preset = given.get("preset", "simulation")
+        preset = str(given.get("preset", "simulation"))
         for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:
             found.append(base.replace(pool=pool, bw_s=bw_s))
     return found

@@ -1,7 +1,5 @@
 """Where commands print: results to standard output, progress and errors to standard error."""
 
-from typing import Any
-
 from rich.console import Console
 
 console = Console()
@@ -18,6 +16,6 @@ def warn(line: str) -> None:
     say(f"Warning: {line}", errors)
 
 
-def print_json(data: Any) -> None:
+def print_json(data: object) -> None:
     """Print data as JSON, in ASCII: the same on every console."""
     console.print_json(data=data, ensure_ascii=True)

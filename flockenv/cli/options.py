@@ -39,7 +39,7 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
 
     def taking(command: Callable[[Options], None]) -> Callable[..., None]:
         @wraps(command)
-        def called(**given: Any) -> None:
+        def called(**given: object) -> None:
             command(options(**given))
 
         called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]

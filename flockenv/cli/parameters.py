@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.cli.options import option
@@ -37,7 +37,7 @@ class Flocks:
         except TypeError as error:
             raise ParameterError(str(error)) from error
 
-    def fields(self) -> dict[str, Any]:
+    def fields(self) -> dict[str, object]:
         """Return the fields that the options name, and ``preset`` if they name one."""
         file, preset = self.params, self.preset
         fields = {} if file is None else read_toml_file(file, f"--params {file}")
@@ -71,13 +71,13 @@ def option_of(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, Any]:
+def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, object]:
     """Return what `--set` options, or others like it, give: ``NAME=VALUE`` each.
 
     Values are as in TOML, also with parentheses for brackets; words need no quotes, as in
     ``target=cw,cw,ccw``. Texts of another form and names that come twice are refused.
     """
-    fields: dict[str, Any] = {}
+    fields: dict[str, object] = {}
     for change in changes:
         name, equals, text = (part.strip() for part in change.partition("="))
         if not (name and equals and text):
@@ -90,7 +90,7 @@ def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, A
     return fields
 
 
-def _value(text: str) -> Any:
+def _value(text: str) -> object:
     if text[0] in "([" and text[-1] in ")]":
         text = text.replace("(", "[").replace(")", "]")
     try:

@@ -3,7 +3,6 @@
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import typer
 from rich.progress import Progress
@@ -44,7 +43,7 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that Ctrl-C ends with exit code 130, where nothing is half done."""
 
     @functools.wraps(command)
-    def wrapped(*arguments: Any, **options: Any) -> None:
+    def wrapped(*arguments: object, **options: object) -> None:
         with noted_interrupts():
             try:
                 command(*arguments, **options)

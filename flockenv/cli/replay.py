@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,10 +110,10 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
         steps_s = options.start + np.arange(count) * options.speed / fps
         with progress("drawing", len(steps_s), options.shows_nothing) as advance:
 
-            def drawn(step_s: Any) -> NDArray[np.uint8]:
+            def drawn(step_s: float) -> NDArray[np.uint8]:
                 advance()
                 # The shorter of two stays at its end.
-                times: Any = (min(run.time_s[0] + step_s, run.time_s[-1]) for run in runs)
+                times = (min(run.time_s[0] + step_s, run.time_s[-1]) for run in runs)
                 frames = (
                     frame(run, time_s, colors=options.colors, caption=caption)
                     for run, time_s, caption in zip(runs, times, captions, strict=True)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import errors, print_json, say
@@ -35,7 +35,7 @@ class TrainOptions(Printing):
     out: Path = option(Path("results/train"), "Folder for the model and the run.")
     resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
 
-    def settings(self) -> dict[str, Any]:
+    def settings(self) -> dict[str, object]:
         """Return the settings of the training that were given."""
         environment = changed_fields(self.change or [])
         for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):

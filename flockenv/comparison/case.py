@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flockenv._io.arguments import items
 from flockenv._io.extras import require
@@ -30,10 +30,10 @@ class Case:
     #: Length of an episode in s.
     episode_s: float = 480.0
     #: Options of the environment that differ from its defaults.
-    environment: Mapping[str, Any] = field(default_factory=dict)
+    environment: Mapping[str, object] = field(default_factory=dict)
     #: Dealt out to the seeds in turn, each as in the parameters, whose target they replace. The
     #: signed order counts towards the target of leader 0.
-    targets: tuple[Any, ...] = ()
+    targets: tuple[object, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("leaders", "seeds", "targets"):
@@ -73,7 +73,7 @@ class Case:
         runs.insert(0, "case", self.name)
         return runs
 
-    def described(self) -> dict[str, Any]:
+    def described(self) -> dict[str, object]:
         """Return everything but the parameters, in types of TOML."""
         return {
             "leaders": list(self.leaders),

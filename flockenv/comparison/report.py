@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import tomli_w
 from rich.console import Console
@@ -45,7 +45,7 @@ class ComparisonReport:
     #: One row per episode: the rows of `Case.run` of all cases.
     runs: "pd.DataFrame"
     #: What else the numbers depend on.
-    conditions: Mapping[str, Any] = field(default_factory=dict)
+    conditions: Mapping[str, object] = field(default_factory=dict)
 
     @cached_property
     def means(self) -> "pd.DataFrame":
@@ -189,12 +189,14 @@ def titled(policy: Policy | Mapping[str, Policy]) -> str:
     return "; ".join(f"{leader}: {each.name}" for leader, each in policy.items())
 
 
-def _plus_minus(row: Mapping[str, Any]) -> str:
+def _plus_minus(row: Mapping[str, float]) -> str:
     half = (row["signed_order_high"] - row["signed_order_low"]) / 2
     return "unknown" if math.isnan(half) else f"{row['signed_order']:.3f} ±{half:.3f}"
 
 
-def _table(rows: list[dict[str, Any]], keys: list[str], kind: type[Any]) -> "pd.DataFrame":
+def _table(
+    rows: list[dict[str, object]], keys: list[str], kind: type[Difference] | type[Line]
+) -> "pd.DataFrame":
     columns = [*keys, *(each.name for each in fields(kind))]
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

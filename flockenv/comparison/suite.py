@@ -5,7 +5,7 @@ release, so that a later release scores all entries again, on flocks that none o
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,7 @@ def _task(name: str, env_id: str) -> Case:
     """Return the task that an environment is."""
     options = dict(ENVIRONMENTS[env_id].options)
     parameters = FlockParameters.from_dict(options.pop("params"))
-    targets: tuple[Any, ...] = ()
+    targets: tuple[object, ...] = ()
     if isinstance(options.get("target"), tuple):
         # No direction is favored: half of the episodes exchange them.
         told = options.pop("target")
@@ -118,7 +118,7 @@ def scores_table(result: ComparisonReport) -> "pd.DataFrame":
     orders = result.runs.pivot_table(
         index=["case", "seed"], columns="policy", values="signed_order", sort=False
     )
-    rows: list[tuple[Any, ...]] = []
+    rows: list[tuple[object, ...]] = []
     for policy in (name for name in orders if name != REFERENCE):
         beyond = []
         for case, own in orders.groupby(level="case", sort=False):

@@ -5,7 +5,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol, Self, runtime_checkable
+from typing import Any, Protocol, Self, TypedDict, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,14 @@ from flockenv._io.arguments import by_name, number, real_numbers, truth
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, refuse_unknown, shown
+
+
+class Layout(TypedDict, total=False):
+    """Options of the environments that say what leaders observe."""
+
+    observation: Mapping[str, object] | None
+    mirror_to_target: bool
+
 
 Pool = str | tuple[float, float]
 """A pool's name, or its outer and inner radius in cm."""
@@ -86,7 +94,7 @@ class Policy:
     name: str
     control_hz: float | None = CONTROL_HZ
     pool: Pool | None = None
-    observation: Mapping[str, Any] = field(default_factory=dict)
+    observation: Mapping[str, object] = field(default_factory=dict)
     mirror_to_target: bool = False
     action_mode: str = "rudder"
     decision_period_s: float | None = None
@@ -243,7 +251,7 @@ class RowPolicy(ABC):
     decision_period_s: float | None = None
 
     def __init__(
-        self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
+        self, *, observation: Mapping[str, object] | None = None, mirror_to_target: bool = False
     ) -> None:
         if not isinstance(observation, Mapping | None):
             raise ParameterError(
@@ -263,11 +271,11 @@ class RowPolicy(ABC):
 
     def predict(
         self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
+        observation: ArrayLike | Mapping[object, ArrayLike],
+        state: object = None,
+        episode_start: object = None,
         deterministic: bool = True,
-    ) -> tuple[Any, Any]:
+    ) -> tuple[object, object]:
         """Return rudders for observations, as `LeaderPolicy`; there is one way to act."""
         if isinstance(observation, Mapping):
             return {agent: self._rudders(each) for agent, each in observation.items()}, state

@@ -1,12 +1,12 @@
 """Policies that observe nothing, as controls for the worth of steering."""
 
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.arguments import whole
-from flockenv.policies.base import RowPolicy
+from flockenv.policies.base import Layout, RowPolicy
 
 
 class StraightAhead(RowPolicy):
@@ -27,7 +27,7 @@ class RandomRudders(RowPolicy):
         The options of `RowPolicy`.
     """
 
-    def __init__(self, seed: int = 0, **layout: Any) -> None:
+    def __init__(self, seed: int = 0, **layout: Unpack[Layout]) -> None:
         super().__init__(**layout)
         self._random = np.random.default_rng(whole(seed, "seed"))
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from hashlib import sha256
 from numbers import Real
-from typing import Any, Self
+from typing import Any, Self, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from flockenv._io.atomic_write import write_text
 from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
-from flockenv.policies.base import CONTROL_HZ, RowPolicy
+from flockenv.policies.base import CONTROL_HZ, Layout, RowPolicy
 from flockenv.policies.model import ModelPolicy
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 
@@ -49,7 +49,7 @@ class LawPolicy(RowPolicy):
     """
 
     def __init__(
-        self, law: _core.Law, observation: Mapping[str, Any] | None, mirror_to_target: bool
+        self, law: _core.Law, observation: Mapping[str, object] | None, mirror_to_target: bool
     ) -> None:
         super().__init__(observation=observation, mirror_to_target=mirror_to_target)
         self.law = law
@@ -60,7 +60,7 @@ class LawPolicy(RowPolicy):
         """The gains by name; none in the paper's law."""
         return dict(self.law.gains)
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; an AttributeError refuses what the core's law was made of."""
         if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
@@ -69,7 +69,7 @@ class LawPolicy(RowPolicy):
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return self._observed.actions(rows)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         kind: Any = type(self)
         layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
         return partial(kind, *self.gains.values(), **layout), ()
@@ -93,7 +93,7 @@ class SteeringLaw(LawPolicy):
     """
 
     def __init__(
-        self, *, observation: Mapping[str, Any] | None = None, mirror_to_target: bool = False
+        self, *, observation: Mapping[str, object] | None = None, mirror_to_target: bool = False
     ) -> None:
         super().__init__(_core.Law.named(PAPERS_LAW), observation, mirror_to_target)
 
@@ -118,14 +118,14 @@ class NamedLaw(LawPolicy):
         self,
         name: str,
         *,
-        observation: Mapping[str, Any] | None = None,
+        observation: Mapping[str, object] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
         super().__init__(_core.Law.named(name), observation, mirror_to_target)
         self.name = name
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        layout: dict[str, Any] = {
+    def __reduce__(self) -> tuple[object, ...]:
+        layout: Layout = {
             "observation": self.observation,
             "mirror_to_target": self.mirror_to_target,
         }
@@ -165,7 +165,7 @@ class DampedLaw(LawPolicy):
         backward_gain: float = 6.0 / math.pi,
         damping: float = 3.0,
         *,
-        observation: Mapping[str, Any] | None = None,
+        observation: Mapping[str, object] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
         given = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
@@ -173,7 +173,7 @@ class DampedLaw(LawPolicy):
         super().__init__(law, observation, mirror_to_target)
 
     @classmethod
-    def tuned(cls, pool: str, **layout: Any) -> Self:
+    def tuned(cls, pool: str, **layout: Unpack[Layout]) -> Self:
         """Return the tuned law of a named pool, for a layout of the observations.
 
         A ParameterError refuses other pools.
@@ -226,7 +226,7 @@ class LeaningLaw(LawPolicy):
         gains: Mapping[str, float] | None = None,
         bound: str = "tanh",
         decision_period_s: float | None = None,
-        judged: Mapping[str, Any] | None = None,
+        judged: Mapping[str, object] | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         if gains is None:
@@ -250,7 +250,7 @@ class LeaningLaw(LawPolicy):
         model: Any,
         pool: str,
         *,
-        judged: Mapping[str, Any] | None = None,
+        judged: Mapping[str, object] | None = None,
         provenance: Mapping[str, str] | None = None,
     ) -> Self:
         """Return the law that a model of stable-baselines3 has learned; the law needs no torch.
@@ -340,7 +340,7 @@ class LeaningLaw(LawPolicy):
         self.pool: str = values["pool"]
         self.bias: float = values["bias"]
         self.weights: dict[str, float] = values["weights"]
-        self.judged: dict[str, Any] | None = values.get("judged")
+        self.judged: dict[str, object] | None = values.get("judged")
         self.provenance: dict[str, str] = values.get("provenance", {})
         self.decision_period_s = values.get("decision_period_s")
         self.action_mode = "rudder" if self.decision_period_s is None else "lean"
@@ -365,21 +365,21 @@ class LeaningLaw(LawPolicy):
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return LeaningLaw.from_json, (self.to_json(),)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.pool!r}, bias={self.bias:.3g}, 29 weights)"
 
 
-def _json(values: dict[str, Any]) -> str:
+def _json(values: dict[str, object]) -> str:
     try:
         return json.dumps(values, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"a law of {shown(values)} is not accepted: {error}") from error
 
 
-def _plain(value: Any) -> float:
+def _plain(value: object) -> float:
     if isinstance(value, Real):
         return float(value)
     raise TypeError(f"{shown(value)} is no number")

@@ -92,7 +92,7 @@ class ModelPolicy:
         self.leaders = space.leaders
         self._size = space.shape[0] // space.leaders
         options = space.policy_options()
-        self.observation: dict[str, Any] = options["observation"]
+        self.observation: dict[str, object] = options["observation"]
         self.mirror_to_target: bool = options["mirror_to_target"]
         self.control_hz: float = options["control_hz"]
         self.action_mode: str = options["action_mode"]
@@ -101,11 +101,11 @@ class ModelPolicy:
 
     def predict(
         self,
-        observation: ArrayLike | Mapping[Any, ArrayLike],
-        state: Any = None,
-        episode_start: Any = None,
+        observation: ArrayLike | Mapping[object, ArrayLike],
+        state: object = None,
+        episode_start: object = None,
         deterministic: bool = True,
-    ) -> tuple[Any, Any]:
+    ) -> tuple[object, object]:
         """Return rudders for observations, as `LeaderPolicy`.
 
         A model of k leaders takes every k leaders in a row for a flock; `deterministic` is the
@@ -118,8 +118,8 @@ class ModelPolicy:
         return self._predict(observed(observation), state, episode_start, deterministic)
 
     def _predict(
-        self, array: NDArray[np.float32], state: Any, episode_start: Any, deterministic: bool
-    ) -> tuple[NDArray[np.float32], Any]:
+        self, array: NDArray[np.float32], state: object, episode_start: object, deterministic: bool
+    ) -> tuple[NDArray[np.float32], object]:
         leaders = leaders_observed(array, self._size)
         rows = array.size // self._size
         if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
@@ -129,7 +129,7 @@ class ModelPolicy:
             )
         items = array.reshape(rows // self.leaders, -1)
         if episode_start is not None:
-            starts = np.ravel(episode_start)
+            starts: NDArray[np.bool_] = np.asarray(episode_start, np.bool_).ravel()
             episode_start = np.repeat(starts, len(items) // len(starts))
         actions, state = self._decided(items, state, episode_start, deterministic)
         given = np.asarray(actions, np.float64).reshape(rows)
@@ -141,16 +141,18 @@ class ModelPolicy:
     def _decided(
         self,
         items: NDArray[np.float32],
-        state: Any,
+        state: object,
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
-    ) -> tuple[Any, Any]:
+    ) -> tuple[object, object]:
         """Return what the model does, each item being what it observes at once."""
         normalizes = normalizing(self.model)
         if normalizes is not None:
             items = normalizes.normalize_obs(items)
         with one_by_one():
-            found: tuple[Any, Any] = self.model.predict(items, state, episode_start, deterministic)
+            found: tuple[object, object] = self.model.predict(
+                items, state, episode_start, deterministic
+            )
         return found
 
     def __repr__(self) -> str:
@@ -159,12 +161,12 @@ class ModelPolicy:
         return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
 
 
-def normalizing(model: Any) -> Any:
+def normalizing(model: object) -> Any:
     """Return the ``VecNormalize`` of a model's environment, if it has one."""
     return getattr(model, "get_vec_normalize_env", lambda: None)()
 
 
-def one_by_one() -> AbstractContextManager[Any]:
+def one_by_one() -> AbstractContextManager[object]:
     """Return a mode of torch in which no row of a linear layer depends on the others."""
     torch = sys.modules.get("torch")
     return _mode_of(torch)() if torch else nullcontext()
@@ -208,7 +210,7 @@ def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
     )
 
 
-def as_policy(policy: Any) -> Any:
+def as_policy(policy: object) -> object:
     """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
     gymnasium = sys.modules.get("gymnasium")  # Without it there is no model.
     if gymnasium and isinstance(getattr(policy, "observation_space", None), gymnasium.Space):

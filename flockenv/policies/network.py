@@ -117,7 +117,7 @@ class NetworkPolicy(RowPolicy):
         activation: str | Sequence[str] = "tanh",
         *,
         norms: Sequence[Norm | None] | None = None,
-        observation: Mapping[str, Any] | None = None,
+        observation: Mapping[str, object] | None = None,
         mirror_to_target: bool = False,
         action_mode: str = "rudder",
         decision_period_s: float | None = None,

@@ -10,6 +10,7 @@ from flockenv._io.arguments import check_function
 from flockenv._io.extras import require
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import ParameterError, shown
+from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.model import ModelPolicy, normalizing, one_by_one
 
 if TYPE_CHECKING:
@@ -50,14 +51,14 @@ class WrappedPolicy(ModelPolicy):
 
     def __init__(
         self,
-        model: Any,
+        model: LeaderPolicy,
         wrapper: Wrap,
-        env: Any,
+        env: object,
         *,
         provenance: Mapping[str, str] | None = None,
     ) -> None:
         check_function(wrapper, "wrapper")
-        unwrapped = getattr(env, "unwrapped", env)
+        unwrapped: Any = getattr(env, "unwrapped", env)
         space = getattr(unwrapped, "observation_space", None)
         is_single = not hasattr(unwrapped, "num_envs")
         if not isinstance(space, ObservationSpace):
@@ -84,10 +85,10 @@ class WrappedPolicy(ModelPolicy):
     def _decided(
         self,
         items: NDArray[np.float32],
-        state: Any,
+        state: object,
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
-    ) -> tuple[Any, Any]:
+    ) -> tuple[object, object]:
         starts = state is None
         if episode_start is not None and episode_start.any():
             if not episode_start.all():
@@ -96,7 +97,7 @@ class WrappedPolicy(ModelPolicy):
                     "again for all of them"
                 )
             starts = True
-        run = _Run(self, items) if starts else state
+        run = state if isinstance(state, _Run) and not starts else _Run(self, items)
         seen = run.observed(items)
         normalizes = normalizing(self.model)
         if normalizes is not None:
@@ -114,10 +115,10 @@ class _Run:
         self.is_each = policy._is_each
         count = len(items) if self.is_each else 1
         self.wrapped = [policy._made(items[place:]) for place in range(count)]
-        self.state: Any = None
+        self.state: object = None
         self.actions: Any = None
 
-    def observed(self, items: NDArray[np.float32]) -> Any:
+    def observed(self, items: NDArray[np.float32]) -> object:
         """Return what the wrappers make of observations."""
         for place, each in enumerate(self.wrapped):
             each.unwrapped.given = items[place] if self.is_each else items
@@ -134,20 +135,22 @@ class _Run:
 
 def _stand_in(
     space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
-) -> Any:
+) -> "gymnasium.Env[Any, Any]":
     """Return an environment of Gymnasium whose observations are given to it."""
     import gymnasium
 
-    class StandIn(gymnasium.Env[Any, Any]):
+    class StandIn(gymnasium.Env[object, object]):
         observation_space, action_space = space, actions
 
         def __init__(self) -> None:
             self.given = given
 
-        def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, Any]:
+        def reset(
+            self, *, seed: int | None = None, options: object = None
+        ) -> tuple[object, dict[str, Any]]:
             return self.given, {}
 
-        def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        def step(self, action: object) -> tuple[object, float, bool, bool, dict[str, Any]]:
             return self.given, 0.0, False, False, {}
 
     return StandIn()
@@ -155,7 +158,7 @@ def _stand_in(
 
 def _vector_stand_in(
     space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
-) -> Any:
+) -> object:
     """Return a vector environment of stable-baselines3 whose observations are given to it."""
     vec_env = require("stable_baselines3.common.vec_env", "train")
 
@@ -164,29 +167,31 @@ def _vector_stand_in(
             self.given, self.render_mode = given, None
             super().__init__(len(given), space, actions)
 
-        def reset(self) -> Any:
+        def reset(self) -> object:
             return self.given
 
-        def step_async(self, actions: Any) -> None:
+        def step_async(self, actions: object) -> None:
             pass
 
-        def step_wait(self) -> tuple[Any, ...]:
+        def step_wait(self) -> tuple[object, ...]:
             count = self.num_envs
             return self.given, np.zeros(count), np.zeros(count, bool), [{} for _ in range(count)]
 
         def close(self) -> None:
             pass
 
-        def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        def get_attr(self, attr_name: str, indices: object = None) -> list[object]:
             return [getattr(self, attr_name)] * self.num_envs
 
-        def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
             raise AttributeError(attr_name)
 
-        def env_method(self, method_name: str, *arguments: Any, **options: Any) -> list[Any]:
+        def env_method(
+            self, method_name: str, *arguments: object, **options: object
+        ) -> list[object]:
             raise AttributeError(method_name)
 
-        def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        def env_is_wrapped(self, wrapper_class: object, indices: object = None) -> list[bool]:
             return [False] * self.num_envs
 
     return StandIn()

@@ -73,7 +73,7 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _parse(values: Mapping[str, Any]) -> SweepSpec:
+def _parse(values: Mapping[str, object]) -> SweepSpec:
     known = FlockParameters.__dataclass_fields__
     for key in values:
         if key not in _KEYS and key in known:
@@ -99,7 +99,7 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
         for grid in grids
         for point in itertools.product(*(grid[axis] for axis in axes))
     )
-    run = {
+    run: dict[str, Any] = {
         "duration_s": 60.0 * _number("minutes", values.get("minutes")),
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
@@ -114,7 +114,7 @@ def _parse(values: Mapping[str, Any]) -> SweepSpec:
     return SweepSpec(axes, runs)
 
 
-def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
+def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
     grids = values.get("grid")
     grids = [grids] if isinstance(grids, dict) else grids
     if not isinstance(grids, list) or not grids or not all(isinstance(g, dict) for g in grids):
@@ -132,7 +132,7 @@ def _grids(values: Mapping[str, Any]) -> list[dict[str, list[Any]]]:
     return grids
 
 
-def _seeds(seeds: Any) -> tuple[int, ...]:
+def _seeds(seeds: object) -> tuple[int, ...]:
     if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
         return tuple(range(seeds))
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
@@ -143,7 +143,7 @@ def _seeds(seeds: Any) -> tuple[int, ...]:
     )
 
 
-def _number(name: str, value: Any) -> float:
+def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ParameterError(f"{name} = {shown(value)} is not accepted: a number")
     return float(value)
@@ -216,7 +216,7 @@ def run_sweep(
         run, failure = store.load(spec), str(failures.get(spec, ""))
         if run is None and not failure:
             raise FlockError(f"{store.path(spec)} has been lost since it was written")
-        found: dict[str, Any] = {"frames": 0} if run is None else summary(run)
+        found: dict[str, float] = {"frames": 0} if run is None else summary(run)
         rows.append({**fields, "seed": spec.seed, **found, "failure": failure})
     table: pd.DataFrame = pandas.DataFrame(rows, columns=[*sweep.axes, "seed", *_COLUMNS])
     try:
@@ -228,7 +228,7 @@ def run_sweep(
     return table
 
 
-def _one_word(value: Any) -> Any:
+def _one_word(value: object) -> object:
     # A pool is a name or a pair of radii, a target a word or several: a column of both would be of
     # no type.
     if not isinstance(value, tuple):
@@ -309,7 +309,7 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     return table
 
 
-def to_xarray(table: "pd.DataFrame") -> Any:
+def to_xarray(table: "pd.DataFrame") -> object:
     """Return the table of a sweep as an `xarray.Dataset` over its fields and seeds.
 
     Combinations that no grid has are NaN. Without the extra ``sweep`` this is a MissingExtraError.
