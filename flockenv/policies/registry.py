@@ -88,41 +88,39 @@ def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) ->
     TypeError
         For attributes of another kind than the options have.
     """
-    found = given if isinstance(given, Policy) else _made(given, pool, trust)
+    if given is None or (isinstance(given, str) and given == EVERY_SUBSTEP):
+        every = _core.Law.named(EVERY_SUBSTEP)
+        return Policy(source=SteeringLaw(), name=EVERY_SUBSTEP, control_hz=None, law=every)
+    found = given if isinstance(given, Policy) else _source(given, pool, trust)
+    if not isinstance(found, Policy):
+        law = found.law if isinstance(found, LawPolicy) else None
+        leaders = found.leaders if isinstance(found, ModelPolicy) else 1
+        found = Policy.from_source(found, leaders=leaders, law=law)
     if pool is not None:
         found.check_pool(pool)
     return found
 
 
-def _made(given: Steering, pool: Pool | None, trust: bool) -> Policy:
-    if given is None or (isinstance(given, str) and given == EVERY_SUBSTEP):
-        law = _core.Law.named(EVERY_SUBSTEP)
-        return Policy(source=SteeringLaw(), name=EVERY_SUBSTEP, control_hz=None, law=law)
+def _source(given: Steering, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
+    """Return the object with ``predict`` that something is or names."""
+    made: object = given
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(FILES)):
+        return load(given, trust=trust)
+    if isinstance(given, str) and given in POLICIES:
+        return POLICIES[given]()
+    if isinstance(given, str) and given in POOL_POLICIES:
+        return POOL_POLICIES[given](pool)
     if isinstance(given, str):
-        return _by_name(given, pool, trust)
-    if isinstance(given, os.PathLike):
-        return _of_source(load(given, trust=trust))
-    return _by_object(given)
-
-
-def _by_object(given: object) -> Policy:
-    if isinstance(given, type) or (callable(given) and not hasattr(given, "predict")):
+        made = _attribute(given, trust)
+    if isinstance(made, type) or (callable(made) and not hasattr(made, "predict")):
         try:
-            given = given()
+            made = made()
         except TypeError as error:
-            raise _no_policy(given) from error
-    found = as_policy(given)
-    if isinstance(found, Policy):
-        return found
-    if isinstance(found, type) or not isinstance(found, LeaderPolicy):
-        raise _no_policy(found)
-    return _of_source(found)
-
-
-def _of_source(source: LeaderPolicy) -> Policy:
-    law = source.law if isinstance(source, LawPolicy) else None
-    leaders = source.leaders if isinstance(source, ModelPolicy) else 1
-    return Policy.from_source(source, leaders=leaders, law=law)
+            raise _no_policy(made) from error
+    made = as_policy(made)
+    if isinstance(made, type) or not isinstance(made, LeaderPolicy):
+        raise _no_policy(made)
+    return made
 
 
 def _no_policy(found: object) -> ParameterError:
@@ -132,26 +130,20 @@ def _no_policy(found: object) -> ParameterError:
     return ParameterError(f"policy = {shown(found)} is not accepted: {words}")
 
 
-def _by_name(name: str, pool: Pool | None, trust: bool) -> Policy:
-    if name in POLICIES:
-        return _of_source(POLICIES[name]())
-    if name in POOL_POLICIES:
-        return _of_source(POOL_POLICIES[name](pool))
-    if name.endswith(FILES):
-        return _of_source(load(name, trust=trust))
-    if _ATTRIBUTE.fullmatch(name):
-        return _by_object(_attribute(name, trust))
+def _no_name(name: str) -> ParameterError:
     parts = [part.strip() for part in name.split(",")]
     near = nearest(name, NAMES)
     if len(parts) > 1 and set(parts) <= {*NAMES}:
         hint = "policies are named one by one (on the command line, repeat the option)"
     else:
         hint = f"did you mean {near!r}?" if near else f"there are {quoted(NAMES)}"
-    raise ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
+    return ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
 
 
 def _attribute(name: str, trust: bool) -> object:
     """Return what ``"module:attribute"`` names, also of a module in the working directory."""
+    if not _ATTRIBUTE.fullmatch(name):
+        raise _no_name(name)
     if not trust:
         raise ParameterError(
             f"{name} names code, and importing it executes it: if you know where it comes from, "
