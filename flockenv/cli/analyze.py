@@ -12,8 +12,18 @@ from flockenv._io.extras import require
 from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
-from flockenv.errors import ParameterError
 from flockenv.recording import Recording
+
+
+def _pictures() -> list[str]:
+    kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes
+    return [f".{each}" for each in kinds]
+
+
+def _written() -> tuple[str, ...]:
+    from flockenv.tracks import EXPORTS
+
+    return (".npz", *EXPORTS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,8 +34,12 @@ class AnalyzeOptions(Overwriting, Printing):
     layout: Path | None = option(
         None, "TOML file with the columns and units of tracks. [beside the file]"
     )
-    plot: Path | None = option(None, "Picture of the first frame and of the order against time.")
-    out: Path | None = option(None, "Write a recording (.npz), a table (.csv, .parquet) or .gsd.")
+    plot: Path | None = option(
+        None, "Picture of the first frame and of the order against time.", endings=_pictures
+    )
+    out: Path | None = option(
+        None, "Write a recording (.npz), a table (.csv, .parquet) or .gsd.", endings=_written
+    )
 
 
 @takes(AnalyzeOptions)
@@ -41,17 +55,9 @@ def analyze(options: AnalyzeOptions) -> None:
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
     """
-    from flockenv.tracks import EXPORTS, TrackReport, export
+    from flockenv.tracks import TrackReport, export
 
-    out, plot, endings = options.out, options.plot, (".npz", *EXPORTS)
-    if out is not None and out.suffix.lower() not in endings:
-        raise ParameterError(
-            f"--out {out} is not accepted: a name that ends in {', '.join(endings)}"
-        )
-    kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes if plot else ()
-    if plot is not None and (ending := plot.suffix.lower().removeprefix(".")) not in kinds:
-        named = ", ".join(f".{each}" for each in kinds)
-        raise ParameterError(f"--plot {plot} is not accepted: {ending!r} is none of {named}")
+    out, plot = options.out, options.plot
     is_table = out is not None and out.suffix.lower() not in (".npz", ".gsd")
     beside = out.with_suffix(".toml") if out is not None and is_table else None
     written = [path for path in (plot, out, beside) if path is not None]

@@ -8,13 +8,14 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.console import console, errors, print_json, say
-from flockenv.cli.options import TRUST, Printing, option, takes
+from flockenv.cli.options import TRUST, Printing, option, option_of, takes
 from flockenv.cli.output import prepare, printable
-from flockenv.cli.parameters import Flocks, changed_fields, option_of
+from flockenv.cli.parameters import Flocks, changed_fields
 from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
 from flockenv.comparison.report import ComparisonReport, titled
@@ -102,22 +103,20 @@ def compare(options: CompareOptions) -> None:
     """
     for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
         require(package, "plot")
-    cases, own = _tasks(options) if options.suite else _flocks(options), _own_policies(options)
-    spent = _spent(options, own)
-    policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
+    plan = Plan.parse(options)
     prepare(options.out / "runs.csv")
     if options.suite and not options.shows_nothing:
-        hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
-        minutes = math.ceil(_seconds(cases, policies) / 60)
-        say(f"{len(cases)} tasks, {hours:.0f} flock-hours: about {minutes} min here", errors)
-    result = _compared(options, cases, policies)
-    if own:
-        case, name = cases[0], next(iter(own))
-        write_text(options.out / "card.md", result.card(name, policies[case.name][name]))
+        minutes = math.ceil(_seconds(plan) / 60)
+        hours = f"{plan.flock_hours:.0f} flock-hours"
+        say(f"{len(plan.cases)} tasks, {hours}: about {minutes} min here", errors)
+    result = _compared(options, plan)
+    if plan.own:
+        first = plan.policies[plan.cases[0].name][plan.own[0]]
+        write_text(options.out / "card.md", result.card(plan.own[0], first))
     tables = {"means": result.means, "differences": result.differences}
     if options.suite:
         scores = scores_table(result)
-        tables["scores"] = scores.assign(flock_hours=scores["policy"].map(spent))
+        tables["scores"] = scores.assign(flock_hours=scores["policy"].map(plan.spent))
         write_csv(options.out / "scores.csv", tables["scores"], float_format="%.4f")
     if options.as_json:
         print_json({n: json.loads(table.to_json(orient="records")) for n, table in tables.items()})
@@ -131,45 +130,74 @@ def compare(options: CompareOptions) -> None:
     say(f"Written to {options.out}")
 
 
-def _seconds(cases: list[Case], policies: dict[str, dict[str, Steers]]) -> float:
+@dataclass(frozen=True)
+class Plan:
+    """What is compared, checked before anything runs."""
+
+    cases: list[Case]
+    #: For each case its policies by name, the user's first.
+    policies: dict[str, dict[str, Steers]]
+    #: The names of the user's policies.
+    own: list[str]
+    #: Flock-hours that made the user's policies, as far as a suite asks for them.
+    spent: dict[str, float]
+
+    @classmethod
+    def parse(cls, options: CompareOptions) -> Self:
+        """Return what options ask for; a ParameterError names one that is not accepted."""
+        cases = _tasks(options) if options.suite else _flocks(options)
+        own = _own_policies(options)
+        spent = _spent(options, own)
+        policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
+        return cls(cases, policies, list(own), spent)
+
+    @property
+    def names(self) -> list[str]:
+        """The names of all policies, the user's first."""
+        return list(dict.fromkeys(name for each in self.policies.values() for name in each))
+
+    @property
+    def flock_hours(self) -> float:
+        """Hours of simulated time."""
+        return sum(case.flock_hours(len(self.policies[case.name])) for case in self.cases)
+
+
+def _seconds(plan: Plan) -> float:
     """Return what cases take here, extrapolated from a minute of a few flocks for each policy."""
     total = 0.0
-    for name in dict.fromkeys(name for each in policies.values() for name in each):
-        own = [case for case in cases if name in policies[case.name]]
+    for name in plan.names:
+        own = [case for case in plan.cases if name in plan.policies[case.name]]
         trial = replace(own[0], seeds=own[0].seeds[:_TRIAL_FLOCKS], episode_s=_TRIAL_S)
         start = time.perf_counter()
-        trial.run({name: policies[trial.name][name]})
+        trial.run({name: plan.policies[trial.name][name]})
         rate = (time.perf_counter() - start) / trial.flock_hours(1)
         total += rate * sum(case.flock_hours(1) for case in own)
     return total
 
 
-def _compared(
-    options: CompareOptions, cases: list[Case], policies: dict[str, dict[str, Steers]]
-) -> ComparisonReport:
+def _compared(options: CompareOptions, plan: Plan) -> ComparisonReport:
     """Run the cases and return their report, which is written whenever a case is finished.
 
     After Ctrl-C it is written, too, of the policies and numbers of leaders that were finished.
     """
-    names = list(dict.fromkeys(name for each in policies.values() for name in each))
+    cases, policies = plan.cases, plan.policies
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
     shown = {
         case.name: {name: titled(own) for name, own in policies[case.name].items()}
         for case in cases
     }
     conditions = {"command": command, "policies": shown}
-    hours = sum(case.flock_hours(len(policies[case.name])) for case in cases)
     finished: list[object] = []
 
     def written(**more: object) -> ComparisonReport:
         runs = require("pandas", "plot").concat(finished, ignore_index=True)
         runs.insert(0, "case", runs.pop("case"))
         there = [case for case in cases if case.name in set(runs["case"])]
-        result = ComparisonReport(there, names, runs, conditions | more)
+        result = ComparisonReport(there, plan.names, runs, conditions | more)
         result.write(options.out)
         return result
 
-    with progress("simulating", 3600 * hours, options.shows_nothing) as advance:
+    with progress("simulating", 3600 * plan.flock_hours, options.shows_nothing) as advance:
         try:
             for case in cases:
                 case.run(policies[case.name], advance, finished.append)

@@ -8,7 +8,6 @@ from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
 from flockenv.cli.progress import progress
-from flockenv.errors import ParameterError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,7 +18,7 @@ class DemoOptions(Printing):
     minutes: float | None = option(
         None, "Record runs of this length, even if the live page is built. [8]", min=0.1
     )
-    out: Path = option(Path("results/demo.html"), "The page.")
+    out: Path = option(Path("results/demo.html"), "The page.", endings=lambda: (".html",))
     show: bool = option(True, "Open the page in a browser.", "--open/--no-open")
 
 
@@ -46,8 +45,6 @@ def demo(options: DemoOptions) -> None:
     )
 
     out, seed = options.out, options.seed
-    if out.suffix.lower() != ".html":
-        raise ParameterError(f"--out {out} is not accepted: a name that ends in .html")
     prepare(out)
     is_recorded = options.minutes is not None or options.as_json or not options.show
     if not is_recorded and (page := live_page()) is not None:

@@ -1,12 +1,14 @@
 """A command's options as a dataclass, and those that several commands share."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from functools import wraps
 from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
+
+from flockenv.errors import ParameterError
 
 Options = TypeVar("Options")
 
@@ -14,9 +16,23 @@ TRUST = "Read .zip files of stable-baselines3 models: this executes the code in 
 """What a command's option ``trust`` does."""
 
 
-def option(default: Any, help: str, *names: str, **settings: Any) -> Any:  # noqa: A002
-    """Return a field that is an option: its default, and what `typer.Option` takes."""
-    return field(default=default, metadata={"typer": typer.Option(*names, help=help, **settings)})
+Endings = Callable[[], Iterable[str]]
+"""A function that returns how the name of a file may end."""
+
+
+def option(
+    default: Any,
+    help: str,  # noqa: A002
+    *names: str,
+    endings: Endings | None = None,
+    **settings: Any,
+) -> Any:
+    """Return a field that is an option: its default, and what `typer.Option` takes.
+
+    The name of a file that is given may be asked to end in one of some ways.
+    """
+    declared = typer.Option(*names, help=help, **settings)
+    return field(default=default, metadata={"typer": declared, "endings": endings})
 
 
 def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa: A002
@@ -40,13 +56,34 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
     def taking(command: Callable[[Options], None]) -> Callable[..., None]:
         @wraps(command)
         def called(**given: object) -> None:
-            command(options(**given))
+            checked = options(**given)
+            _check_endings(checked)
+            command(checked)
 
         called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
         called.__annotations__ = {each.name: each.annotation for each in parameters}
         return called
 
     return taking
+
+
+def option_of(name: str) -> str:
+    """Return how a field is spelled as an option."""
+    return f"--{name.replace('_', '-')}"
+
+
+def _check_endings(options: object) -> None:
+    """Refuse names of files that end in another way than their options are declared with."""
+    for each in fields(options):  # type: ignore[arg-type]
+        path, endings = getattr(options, each.name), each.metadata.get("endings")
+        if path is None or endings is None:
+            continue
+        accepted = list(endings())
+        if path.suffix.lower() not in accepted:
+            raise ParameterError(
+                f"{option_of(each.name)} {path} is not accepted: a name that ends in "
+                f"{', '.join(accepted)}"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from flockenv._io.toml import read_toml, read_toml_file
-from flockenv.cli.options import option
+from flockenv.cli.options import option, option_of
 from flockenv.errors import ParameterError, shown
 from flockenv.parameters import FlockParameters
 
@@ -64,11 +64,6 @@ class OneFlock(Flocks):
     pool: str | None = option(None, "wide, narrow or (outer_cm, inner_cm). [the preset's]")
     n_leaders: int | None = option(None, "How many of the boats lead.")
     bw_s: float | None = option(None, "Noise: backward duration in s.")
-
-
-def option_of(name: str) -> str:
-    """Return how a field is spelled as an option."""
-    return f"--{name.replace('_', '-')}"
 
 
 def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, object]:

@@ -22,15 +22,51 @@ class ReplayOptions(Printing):
 
     first: Path = argument("A recording (.npz), or tracks (.csv, .parquet).", metavar="RUN")
     second: Path | None = argument("A second one, to play beside it.", None, metavar="OTHER")
-    html: Path | None = option(None, "The page. [the first recording's name]")
-    gif: Path | None = option(None, "A moving picture instead of the page.")
-    mp4: Path | None = option(None, "A video instead of the page.")
+    html: Path | None = option(
+        None, "The page. [the first recording's name]", endings=lambda: (".html",)
+    )
+    gif: Path | None = option(
+        None, "A moving picture instead of the page.", endings=lambda: (".gif",)
+    )
+    mp4: Path | None = option(None, "A video instead of the page.", endings=lambda: (".mp4",))
     colors: str = option("direction", "What color shows in pictures: direction or role.")
     speed: float = option(8.0, "Speed of pictures over real time.", min=0.1, max=100.0)
     start: float = option(0.0, "Second of the recording at which pictures start.", min=0.0)
     seconds: float = option(20.0, "Longest duration of pictures.", min=0.1)
     name: list[str] | None = option(None, "Name of a recording; once for each.")
     show: bool = option(False, "Open the page in a browser.", "--open")
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            given = getattr(self, each.name) != each.default
+            if given and each.name in (("show",) if self.pictures else _OF_PICTURES):
+                where = "--gif and --mp4" if self.pictures else "a page, which has it itself"
+                name = "open" if each.name == "show" else each.name
+                raise ParameterError(f"--{name} is not accepted with {where}")
+        if self.pictures and self.html is not None:
+            raise ParameterError("--html is not accepted with --gif or --mp4")
+        count = len(self.paths)
+        if self.name and len(self.name) != count:
+            raise ParameterError(
+                f"{len(self.name)} --name for {count} recordings: name all or none"
+            )
+
+    @property
+    def paths(self) -> list[Path]:
+        """The files of the recordings."""
+        return [path for path in (self.first, self.second) if path is not None]
+
+    @property
+    def pictures(self) -> list[Path]:
+        """The moving pictures that are written instead of the page."""
+        return [path for path in (self.gif, self.mp4) if path is not None]
+
+    def named(self) -> dict[str, Path]:
+        """Return the recordings' files by the names that they have in pages and pictures."""
+        names = self.name or [path.stem for path in self.paths]
+        if len(set(names)) < len(names):
+            names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
+        return {printable(name): path for name, path in zip(names, self.paths, strict=True)}
 
 
 @takes(ReplayOptions)
@@ -44,40 +80,17 @@ def replay(options: ReplayOptions) -> None:
 
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """
-    for path, end in ((options.html, ".html"), (options.gif, ".gif"), (options.mp4, ".mp4")):
-        if path is not None and path.suffix.lower() != end:
-            raise ParameterError(f"--{end[1:]} {path} is not accepted: a name that ends in {end}")
-    pictures = [path for path in (options.gif, options.mp4) if path is not None]
-    for each in fields(options):
-        given = getattr(options, each.name) != each.default
-        if given and each.name in (("show",) if pictures else _OF_PICTURES):
-            where = "--gif and --mp4" if pictures else "a page, which has it itself"
-            name = "open" if each.name == "show" else each.name
-            raise ParameterError(f"--{name} is not accepted with {where}")
-    if not pictures:
-        _page(options)
-    elif options.html is not None:
-        raise ParameterError("--html is not accepted with --gif or --mp4")
+    if options.pictures:
+        _pictures(options, options.pictures)
     else:
-        _pictures(options, pictures)
-
-
-def _named(options: ReplayOptions) -> dict[str, Path]:
-    """Return the recordings' files by the names that they have in pages and pictures."""
-    paths = [path for path in (options.first, options.second) if path is not None]
-    names = options.name or [path.stem for path in paths]
-    if len(names) != len(paths):
-        raise ParameterError(f"{len(names)} --name for {len(paths)} recordings: name all or none")
-    if len(set(names)) < len(names):
-        names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
-    return {printable(name): path for name, path in zip(names, paths, strict=True)}
+        _page(options)
 
 
 def _page(options: ReplayOptions) -> None:
     # The page's code is not needed by any other command.
     from flockenv.replay import write_replay
 
-    named = _named(options)
+    named = options.named()
     page = options.html or options.first.with_suffix(".html")
     prepare(page)
     recordings = {
@@ -97,7 +110,7 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
     """Write one recording, or two side by side, as a GIF, a video, or both."""
     from flockenv.rendering import frame, save_animation
 
-    named = _named(options)
+    named = options.named()
     prepare(*paths)
     runs = [load_recording(path, quiet=options.shows_nothing) for path in named.values()]
     # A lone recording needs no name, unless it is given one.

@@ -42,7 +42,11 @@ class RunOptions(OneFlock, Overwriting, Printing):
         metavar="TIME:FIELD=VALUE",
     )
     contacts: bool = option(True, "Record contact forces too.", "--contacts/--no-contacts")
-    out: Path | None = option(None, "The recording. [results/run.npz, numbered if that exists]")
+    out: Path | None = option(
+        None,
+        "The recording. [results/run.npz, numbered if that exists]",
+        endings=lambda: (".npz",),
+    )
 
 
 @takes(RunOptions)
@@ -57,8 +61,6 @@ def run(options: RunOptions) -> None:
     parameters = options.parameters()
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
     out = options.out or _free(_OUT)
-    if out.suffix != ".npz":
-        raise ParameterError(f"--out {out} is not accepted: a name that ends in .npz")
     beside = out.with_suffix(".toml")
     prepare(out, beside, overwrites=options.force)
     duration_s = 60 * options.minutes

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import errors, print_json, say
-from flockenv.cli.options import Printing, option, takes
-from flockenv.cli.parameters import changed_fields, option_of
+from flockenv.cli.options import Printing, option, option_of, takes
+from flockenv.cli.parameters import changed_fields
 from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 from flockenv.policies.names import TUNED_LAW
@@ -34,6 +34,12 @@ class TrainOptions(Printing):
     episodes: int = option(512, "Held-out flocks of the comparison with the laws.", min=2)
     out: Path = option(Path("results/train"), "Folder for the model and the run.")
     resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
+
+    def __post_init__(self) -> None:
+        if self.settings().keys() - {"flock_hours"} and self.resume:
+            raise ParameterError(
+                "--resume takes settings from the folder; only --flock-hours may differ"
+            )
 
     def settings(self) -> dict[str, object]:
         """Return the settings of the training that were given."""
@@ -66,10 +72,6 @@ def train(options: TrainOptions) -> None:
     from flockenv import training
 
     given, out = options.settings(), options.out
-    if options.resume and given.keys() - {"flock_hours"}:
-        raise ParameterError(
-            "--resume takes settings from the folder; only --flock-hours may differ"
-        )
     kept = f"{out} holds the last checkpoint: --resume continues from it."
     with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
         shown = 0.0

@@ -19,6 +19,8 @@ from flockenv.policies.base import CONTROL_HZ, Policy
 from flockenv.policies.leaders import Leaders
 from flockenv.policies.registry import Steering
 
+Decide = Callable[[NDArray[np.float32]], NDArray[np.float64] | None]
+
 Progress = Callable[[float], object]
 """Called with flock-seconds as they are simulated."""
 
@@ -87,10 +89,10 @@ class Episodes:
         count = len(self.seeds)
         batch = self._batch(count)
         batch.core.reset([{"seed": seed} for seed in self.seeds])
-        actions = self._actions(batch)
+        decide, observed = self._decide(batch), batch.core.observe()
         ended = np.zeros(count, np.bool_)
         while not ended.all():
-            _, _, ended = batch.core.step(actions())
+            observed, _, ended = batch.core.step(decide(observed))
             progress(count / batch.decisions_hz)
             end_if_interrupted()
         summaries = [batch.core.finished(flock) or {} for flock in range(count)]
@@ -100,25 +102,25 @@ class Episodes:
             for name in (*QUANTITIES, *ORDERING_TIMES)
         }
 
-    def _actions(self, batch: LeaderBatch) -> Callable[[], NDArray[np.float64] | None]:
-        """Return a function that decides for the flocks as they are; None: by the law alone."""
+    def _decide(self, batch: LeaderBatch) -> Decide:
+        """Return a function from what leaders observe to actions; None: the law acts alone."""
         core, rows = batch.core, batch.num_flocks * self.n_leaders
         if self.leaders.is_each:
             decisions = self.leaders.decisions(batch.settings["control_hz"])
 
-            def each() -> NDArray[np.float64]:
+            def each(_: NDArray[np.float32]) -> NDArray[np.float64]:
                 observed = (core.observe_in(*layout) for layout in decisions.layouts)
                 return decisions.rudders(core.target_signs().ravel(), *observed)
 
             return each
         policy, state = self.leaders.seats[0].policy.started(), None
         if policy.control_hz is None:
-            return lambda: None
+            return lambda observed: None
 
-        def all_at_once() -> NDArray[np.float64]:
+        def all_at_once(observed: NDArray[np.float32]) -> NDArray[np.float64]:
             nonlocal state
-            observed = core.observe().reshape(batch.num_flocks, -1)
-            actions, state = policy.decide(observed, state, rows)
+            each_flock = observed.reshape(batch.num_flocks, -1)
+            actions, state = policy.decide(each_flock, state, rows)
             return actions
 
         return all_at_once

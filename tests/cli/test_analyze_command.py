@@ -135,7 +135,10 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "README.md"], ".parquet, .pq (recordings end in .npz)"),
         (["analyze", "film"], "film is no table of tracks"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
-        (["analyze", "run.npz", "--plot", "order.xyz"], "'xyz' is none of .eps"),
+        (
+            ["analyze", "run.npz", "--plot", "order.xyz"],
+            "--plot order.xyz is not accepted: a name that ends in .eps",
+        ),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
         (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
         (["analyze", "absent.npz", "--out", "new.csv"], "absent.npz cannot be read"),
