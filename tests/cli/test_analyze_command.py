@@ -137,7 +137,7 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
         (
             ["analyze", "run.npz", "--plot", "order.xyz"],
-            "--plot order.xyz is not accepted: a name that ends in .eps",
+            "order.xyz is not accepted: a name that ends in .eps",
         ),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
         (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
