@@ -4,7 +4,7 @@ The mean of few values has Student's interval, of more a BCa bootstrap (`mean_in
 `bootstrap_interval` takes any statistic, and `two_way_interval` a table of runs that share two
 sources of luck.
 
-Over 24 normal values an interval of either kind holds the mean 92 times of 100, over 64 94 times.
+An interval of 24 normal values holds their mean 93 times of 100, and one of 64 values 94 times.
 """
 
 import math
