@@ -18,6 +18,8 @@ PER_S = {"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e3, "us": 1
 PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
+_DAY_S = 86_400.0
+
 
 def times_of(table: Table, layout: TrackLayout) -> Floats:
     """Return the times in s, from the least."""
@@ -52,13 +54,26 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
         (pandas.to_timedelta, {}),
         (pandas.to_datetime, {"utc": True, "format": "ISO8601"}),
     ):
-        values = convert(found.astype(str), errors="coerce", **options)
+        # Loggers write 12:34:56,789.
+        points = found.astype(str).str.replace(",", ".")
+        values = convert(points, errors="coerce", **options)
         if values[texts.index].notna().all():
-            return _typed(pandas, values)
+            if convert is pandas.to_datetime:
+                return _typed(pandas, values)
+            return _past_midnight(values.dt.total_seconds().to_numpy(np.float64))
     raise ParameterError(
         f"column {found.name!r} holds {shown(str(texts.iloc[0]))}, which is no number, no time "
         "12:34:56.7 and no date 2026-01-31 12:34:56.7"
     )
+
+
+def _past_midnight(seconds: Floats) -> Floats:
+    """Return clock times that go on past midnight: those before a gap of half a day are later."""
+    stamps = np.unique(seconds[np.isfinite(seconds)])
+    gap = int(np.diff(stamps).argmax()) if len(stamps) > 1 else 0
+    if len(stamps) < 2 or stamps[-1] > _DAY_S or stamps[gap + 1] - stamps[gap] < _DAY_S / 2:
+        return seconds
+    return np.where(seconds <= stamps[gap], seconds + _DAY_S, seconds)
 
 
 def _check_kind(times: Floats, layout: TrackLayout) -> None:

@@ -6,67 +6,44 @@ point and ``*`` for anything. The column of y is that of x with one letter excha
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Format:
+class Format(NamedTuple):
     """The table of one program."""
 
     program: str
-    #: Columns by field of a layout; all of them must be there.
+    #: Columns by field of a layout, all of which must be there.
     columns: Mapping[str, str]
-    #: Other fields of a layout: the clock, the marks of a lost animal, the axes.
-    fields: Mapping[str, Any] = field(default_factory=dict)
+    #: Other fields of a layout: the clock, the axes, what stands for a boat.
+    fields: Mapping[str, Any] = MappingProxyType({})
 
 
 MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
+_BOX = {"box": MOT[4:6], "heading": None, "y_down": True}
 _MOTIVE = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
+_ABOVE = {"quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True}
+_PLACE = {"x": "{id}.Position_X", "y": "{id}.Position_Z"}
 
 FORMATS = (
-    Format(
-        program="MOT",
-        columns={"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"},
-        fields={"box": MOT[4:6], "heading": None, "header": MOT, "y_down": True},
-    ),
-    Format(
-        program="OptiTrack Motive",
-        columns={"frame": "Time (Seconds)", "x": "{id}.Position_X", "y": "{id}.Position_Z"},
-        fields={"id": "", "quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True},
-    ),
-    Format(
-        program="DeepLabCut, several animals",
-        columns={"frame": "frame", "x": "{id}.{part}_x"},
-        fields={"id": ""},
-    ),
-    Format(
-        program="DeepLabCut",
-        columns={"frame": "frame", "x": "{part}_x", "confidence": "{part}_likelihood"},
-    ),
-    Format(
-        program="SLEAP",
-        columns={"frame": "frame_idx", "id": "track", "x": "{part}.x"},
-    ),
-    Format(
-        program="movement",
-        columns={"frame": "time", "id": "individual*", "x": "{part}_x"},
-    ),
-    Format(program="TrackMate", columns={"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
-    Format(program="ROS", columns={"frame": "%time", "x": "*position.x"}, fields={"fps": 1e9}),
-    Format(
-        program="ROS 2",
-        columns={"frame": "*rosbagTimestamp", "x": "*position.x"},
-        fields={"fps": 1e9},
-    ),
-    Format(program="AnimalTA", columns={"frame": "Time", "x": "X_{id}"}, fields={"id": ""}),
-    Format(program="EthoVision", columns={"frame": "Trial time", "x": "X center"}),
-    Format(program="idtracker.ai", columns={"frame": "seconds", "x": "*x{n}*"}, fields={"id": ""}),
-    Format(program="numbered columns", columns={"x": "*x{n}*"}, fields={"id": ""}),
-    Format(program="key points of several", columns={"x": "{id}.{part}_x"}, fields={"id": ""}),
-    Format(program="key points", columns={"x": "{part}_x"}),
-    Format(program="key points", columns={"x": "{part}.x"}),
+    Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"}, _BOX),
+    Format("OptiTrack Motive", {"frame": "Time (Seconds)", **_PLACE}, _ABOVE),
+    Format("DeepLabCut, several animals", {"frame": "frame", "x": "{id}.{part}_x"}),
+    Format("DeepLabCut", {"frame": "frame", "x": "{part}_x", "confidence": "{part}_likelihood"}),
+    Format("SLEAP", {"frame": "frame_idx", "id": "track", "x": "{part}.x"}),
+    Format("movement", {"frame": "time", "id": "individual*", "x": "{part}_x"}),
+    Format("TrackMate", {"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
+    Format("ROS", {"frame": "%time", "x": "*position.x"}, {"fps": 1e9}),
+    Format("ROS 2", {"frame": "*rosbagTimestamp", "x": "*position.x"}, {"fps": 1e9}),
+    Format("AnimalTA", {"frame": "Time", "x": "X_{id}"}),
+    Format("EthoVision", {"frame": "Trial time", "x": "X center"}),
+    Format("idtracker.ai", {"frame": "seconds", "x": "*x{n}*"}),
+    Format("numbered columns", {"x": "*x{n}*"}),
+    Format("key points of several", {"x": "{id}.{part}_x"}),
+    Format("key points", {"x": "{part}_x"}),
+    Format("key points", {"x": "{part}.x"}),
 )
 """What is known of each program, the more special ones first."""
 
@@ -178,6 +155,7 @@ def _fields_of(one: Format, names: list[str], there: Set[str]) -> dict[str, Any]
     boat, x = first.groupdict().get("id", ""), _as_written(first)
     form: dict[str, Any] = {name: each[0] for name, each in found.items() if each}
     form |= {"x": x, "y": y or _as_y(x, there, boat)} | dict(one.fields)
+    form |= {"id": ""} if "{id}" in x else {}
     if "part" in first.groupdict():
         same = [each for each in pairs if each.groupdict().get("id", "") == boat]
         form |= key_points({each["part"]: _as_written(each)[:-1] for each in same})

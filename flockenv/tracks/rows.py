@@ -158,7 +158,10 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
             f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
             "add up to 1"
         )
-    heading = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+    # Turns that are counted against the way from x to y are about an axis of a mirrored system.
+    is_mirrored = layout.heading_turns not in (None, "cw" if layout.y_down else "ccw")
+    across = -x * y if is_mirrored else x * y
+    heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
     return np.where(off > 0.1, np.nan, heading)
 
 

@@ -145,12 +145,12 @@ def trackmate(lines: int) -> str:
 
 
 def quaternions() -> Rows:
-    """In m, y up, with the boats a little tilted, as ROS writes them."""
+    """In m, y up, with the boats rolled about their length, as ROS writes them."""
     table = rows()
     found = table[["frame", "id"]].copy()
     found["x"] = (table["x"] - CENTER[0]) * PIXEL_CM / 100
     found["y"] = -(table["y"] - CENTER[1]) * PIXEL_CM / 100
-    half, tilt = -np.radians(table["angle"]) / 2, 0.02
+    half, tilt = -np.radians(table["angle"]) / 2, 0.2
     for name, value in {
         "qx": tilt * np.cos(half),
         "qy": tilt * np.sin(half),
@@ -354,6 +354,12 @@ PROGRAMS: dict[str, Honest] = {
     "motion capture with quaternions": Honest(
         quaternions, {**METERS, "fps": HZ, "quaternion": ["qx", "qy", "qz", "qw"]}
     ),
+    "MOT with a header": Honest(
+        lambda: ",".join(MOT) + "\n" + mot(10),
+        {**PLACE, "fps": HZ, "x": "bb_left", "y": "bb_top", "box": ("bb_width", "bb_height")}
+        | {"heading": None},
+        has_headings=False,
+    ),
     "OptiTrack Motive": Honest(
         motive,
         {**METERS, "frame": "Time (Seconds)", "y_down": True, "heading_turns": "ccw", "skip": 2}
@@ -534,6 +540,16 @@ CLOCKS: dict[str, tuple[Callable[[Any], Any], dict[str, Any]]] = {
         lambda s: (START + pd.to_timedelta(s, "s")).dt.strftime("%H:%M:%S.%f"),
         {"fps": None},
     ),
+    "clock past midnight": (
+        lambda s: (pd.Timestamp("2026-03-29 23:59:52") + pd.to_timedelta(s, "s")).dt.strftime(
+            "%H:%M:%S.%f"
+        ),
+        {"fps": None},
+    ),
+    "dates with commas": (
+        lambda s: (START + pd.to_timedelta(s, "s")).dt.strftime("%Y-%m-%d %H:%M:%S,%f"),
+        {"fps": None},
+    ),
     "stamps of each boat": (None, {"fps": None}),
 }
 SPELLINGS: dict[str, tuple[str, dict[str, Any], dict[str, Any], Callable[[bytes], bytes]]] = {
@@ -560,6 +576,12 @@ SPELLINGS: dict[str, tuple[str, dict[str, Any], dict[str, Any], Callable[[bytes]
     "Macintosh lines": ("t.csv", {}, {}, lambda b: b.replace(b"\n", b"\r")),
     "blank lines": ("t.csv", {}, {}, lambda b: b.replace(b"\n", b"\n\n")),
     "blanks after commas": ("t.csv", {}, {}, lambda b: b.replace(b",", b", ")),
+    "Excel's word for it": (
+        "t.csv",
+        {"sep": ";"},
+        {"separator": ";", "skip": 1},
+        lambda b: b"sep=;\n" + b,
+    ),
     "remarks above": ("t.csv", {}, {"skip": 2}, lambda b: b"# made by a camera\n# 10 Hz\n" + b),
     "a remark mark": ("t.csv", {}, {}, lambda b: b"#" + b),
     "commas at the ends": ("t.csv", {}, {}, lambda b: b.replace(b"\n", b",\n")),
@@ -765,7 +787,7 @@ def check(honest: Honest, source: Any) -> None:
     assert np.abs((pose - own)[there][:, :2]).max() < 0.01
     if honest.has_headings:
         turn = (pose - own)[there][:, 2]
-        assert np.cos(turn).min() > 0.999
+        assert np.cos(turn).min() > 1 - 1e-6
     speed = np.hypot(*np.moveaxis(truth().velocity, -1, 0)[:2])
     assert reports[0].median_speed_cm_s == pytest.approx(np.median(speed), rel=0.1)
     assert reports[0].duration_s == pytest.approx(FRAMES / HZ, rel=0.01)
