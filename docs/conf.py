@@ -66,7 +66,7 @@ html_theme = "furo"
 html_title = f"flockenv {release}"
 html_math_renderer = "mathml"
 html_static_path = ["static"]
-html_css_files = ["doors.css", "loops.css", "phones.css"]
+html_css_files = ["doors.css", "loops.css", "phones.css", "dark.css"]
 html_show_copyright = False
 html_copy_source = False
 
