@@ -52,6 +52,10 @@ test: $(STAMPS)/venv ## set up, then check style and types and run all tests
 	$(MAKE) --no-print-directory test-python
 
 setup: $(STAMPS)/test
+# TORCH=cpu takes torch's build for processors from PyTorch's own index: without libraries for GPUs.
+setup-train: build ## install what trainings and their plots need beside the core, without compiling it again
+	$(UV) $(if $(TORCH),--torch-backend $(TORCH)) -r pyproject.toml --extra train --extra plot
+
 # One set of versions for all platforms and interpreters; no addresses, so that it holds for any registry.
 lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
 	$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --no-annotate --custom-compile-command "make lock" \
