@@ -29,7 +29,7 @@ shutil.rmtree(_studies, ignore_errors=True)
 shutil.copytree(
     _studies.parents[1] / "studies",
     _studies,
-    ignore=shutil.ignore_patterns("software", "*.py", "__pycache__"),
+    ignore=shutil.ignore_patterns("*.py", "__pycache__"),
 )
 _notebooks = Path(__file__).parent / "examples"
 shutil.rmtree(_notebooks, ignore_errors=True)
@@ -60,7 +60,7 @@ extensions = [
     "loop",
     "mathml",
 ]
-exclude_patterns = ["_build", "results", "speed_vs_error"]
+exclude_patterns = ["_build", "results", "software", "speed_vs_error"]
 
 html_theme = "furo"
 html_title = f"flockenv {release}"
