@@ -72,11 +72,8 @@ def sweep(options: SweepOptions) -> None:
         _show_workload(options, runs, store)
         return
     copy = folder / "sweep.toml"
-    if copy.exists() and not options.force and not _is_same(copy, work):
-        raise ParameterError(
-            f"{copy} is there already, of another sweep: name another folder with --out, or "
-            "replace its table with --force"
-        )
+    if not options.force:
+        _check_same(copy, work)
     prepare(copy)
     write_text(copy, options.spec.read_text("utf-8"))
     total = sum(run.cost for run in runs)
@@ -128,14 +125,19 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
         say(f"{flock}: {lost}" if flock else lost.capitalize())
 
 
-def _is_same(path: Path, work: "SweepSpec") -> bool:
-    """Return whether the file of a sweep names the same runs, however it is written."""
+def _check_same(path: Path, work: "SweepSpec") -> None:
+    """Refuse to put another sweep in the place of one that is there, however it is written."""
     from flockenv.runs.sweep import read_sweep
 
     try:
-        return read_sweep(path) == work
+        is_same = not path.exists() or read_sweep(path) == work
     except ParameterError:
-        return False
+        is_same = False
+    if not is_same:
+        raise ParameterError(
+            f"{path} is there already, of another sweep: name another folder with --out, or "
+            "replace its table with --force"
+        )
 
 
 def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) -> None:

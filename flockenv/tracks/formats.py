@@ -74,6 +74,9 @@ _PARTS = {
     "tail": ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
     "middle": ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
 }
+_LONGEST = 200
+"""Letters of a name of a column; to compare longer ones takes long, and they tell nothing."""
+
 _ANGLES = ("heading", "theta", "angle", "orientation", "alpha", "yaw")
 _PLACES = {"{id}": r"(?P<id>.+?)", "{part}": r"(?P<part>[^.]+)", "{n}": r"[ _#.]?(?P<id>\d+)"}
 _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$")
@@ -81,6 +84,7 @@ _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$"
 
 def plain(name: str) -> tuple[str, str]:
     """Return what a column is called without its unit, in small letters, and the unit."""
+    name = name[:_LONGEST]
     found = _UNIT.search(name)
     unit = next(filter(None, found.groups()), "") if found else ""
     base = re.sub(r"([a-z])([A-Z])", r"\1_\2", _UNIT.sub("", name)).lower()
@@ -114,7 +118,7 @@ def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
 
 def quaternion(names: Iterable[str]) -> list[str] | None:
     """Return the columns x, y, z and w of the first quaternion among names, None if none is."""
-    there = {name.casefold(): name for name in names}
+    there = {name.casefold(): name for name in names if len(name) <= _LONGEST}
     for key in there:
         for place in (at for at, letter in enumerate(key) if letter == "w"):
             four = [f"{key[:place]}{axis}{key[place + 1 :]}" for axis in "xyzw"]
@@ -174,6 +178,7 @@ def _fields_of(one: Format, names: list[str], there: Set[str]) -> dict[str, Any]
 
 def recognized(names: list[str]) -> dict[str, Any]:
     """Return the fields of a layout that names of columns tell, "" for none."""
+    names = [name for name in names if len(name) <= _LONGEST]
     by_plain: dict[str, str] = {}
     for name in names:
         by_plain.setdefault(plain(name)[0], name)

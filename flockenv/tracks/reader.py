@@ -93,6 +93,16 @@ def _recording(
     rows = rows.sort_values("time", kind="stable")
     rows["frame"] = frames_of(rows)
     names, time_s, stamps, pose = _poses(rows, layout)
+    motion = _turned_into_motion(stamps, pose, layout)
+    flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
+    recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
+    found = _report(rows, time_s, pose, motion, layout)
+    report(replace(found, unsorted=unsorted, unnamed=unnamed))
+    return recording
+
+
+def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
+    """Return the motion of poses, whose headings become continuous directions of the bows."""
     motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
     if layout.heading is None and layout.quaternion is None:
         pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
@@ -102,33 +112,34 @@ def _recording(
     pose[..., 2] = unwrapped(pose[..., 2])
     motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
     motion.check(pose, layout)
-    flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
-    recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
+    return motion
+
+
+def _report(
+    rows: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
+) -> TrackReport:
+    """Return what was used of rows, and what was left out."""
     there = ~np.isnan(pose[..., 0])
     gaps, speed = motion.gaps(), np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
     counts: Any = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
-    report(
-        TrackReport(
-            frames=len(time_s),
-            boats=len(names),
-            samples=int(there.sum()),
-            missing=len(names) * (len(time_s) + motion.empty_frames(time_s)) - int(there.sum()),
-            duration_s=float(time_s[-1]),
-            step_s=float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0,
-            median_speed_cm_s=_median(speed),
-            left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
-            unsorted=unsorted,
-            unnamed=unnamed,
-            gaps=len(gaps),
-            longest_gap_s=float(gaps.max(initial=0.0)),
-            broken=motion.broken,
-            lone=int((there & np.isnan(speed)).sum()),
-            cosine=motion.cosine(pose),
-            stuck=_stuck(rows, layout),
-            held=_held(rows),
-        )
+    every = pose.shape[1] * (len(time_s) + motion.empty_frames(time_s))
+    return TrackReport(
+        frames=len(time_s),
+        boats=pose.shape[1],
+        samples=int(there.sum()),
+        missing=every - int(there.sum()),
+        duration_s=float(time_s[-1]),
+        step_s=float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0,
+        median_speed_cm_s=_median(speed),
+        left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
+        gaps=len(gaps),
+        longest_gap_s=float(gaps.max(initial=0.0)),
+        broken=motion.broken,
+        lone=int((there & np.isnan(speed)).sum()),
+        cosine=motion.cosine(pose),
+        stuck=_stuck(rows, layout),
+        held=_held(rows),
     )
-    return recording
 
 
 def _median(values: Floats) -> float:

@@ -94,7 +94,11 @@ class TrackReport:
                 ", far from 1: are y_down, heading_unit, heading_turns, heading_zero and the order "
                 "of x and y right, and are headings no axes?"
             )
-        lines += self._doubts()
+        return "\n  ".join([*lines, *self._doubts(), *self._marks()])
+
+    def _marks(self) -> list[str]:
+        """Return lines about points and headings that may stand for a lost boat."""
+        lines = []
         if self.stuck:
             points = (
                 f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
@@ -110,7 +114,7 @@ class TrackReport:
                 f"the same heading in many frames{_by_boat(self.held)}; "
                 "if a number stands for no heading, name it in `missing`"
             )
-        return "\n  ".join(lines)
+        return lines
 
     def _doubts(self) -> list[str]:
         """Return lines about what is unusual, and may be as it should."""

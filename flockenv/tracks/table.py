@@ -163,13 +163,7 @@ def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]
 def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:
     rows = cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
-    extra = [place for place, row in enumerate(rows[height:]) if any(row[len(names) :])]
-    if extra:
-        line = layout.skip + height + extra[0] + 1
-        raise ParameterError(
-            f"the header names {len(names)} columns, and line {line} holds "
-            f"{len(rows[height + extra[0]])} values: every column needs a name{_other_mark(names)}"
-        )
+    _check_width(names, rows[height:], layout.skip + height + 1)
     names += [f"unnamed {place}" for place in range(len(names), max(map(len, rows)))]
     unique, twice = _unique(names)
     texts = {name for name in unique if layout.id and _key(name) == _key(layout.id)}
@@ -197,6 +191,16 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
     # Some write units, or longer names, into the lines under the header.
     under = [] if layout.header else [n for n, row in table.head(4).iterrows() if not _is_data(row)]
     return Table(table[~blank & ~table.index.isin(under)], twice)
+
+
+def _check_width(names: list[str], rows: list[list[str]], first: int) -> None:
+    """Refuse rows, the first of which is in a line, with more values than there are names."""
+    for line, row in enumerate(rows, first):
+        if any(row[len(names) :]):
+            raise ParameterError(
+                f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
+                f"every column needs a name{_other_mark(names)}"
+            )
 
 
 def _unique(names: list[Any]) -> tuple[list[Any], set[Any]]:

@@ -211,3 +211,14 @@ def test_a_ros_bag_of_one_robot_is_guessed(prefix, tmp_path):
     assert "orientation.w" in text
     assert "fps = 1000000000.0" in text
     assert PLACE["y_down"]
+
+
+@pytest.mark.timeout(60)
+@pytest.mark.parametrize("name", ["x" * 100_000, "_" * 100_000 + "a", "w" * 100_000, "a." * 50_000])
+def test_names_as_long_as_a_page_tell_nothing_and_take_no_time(name, tmp_path):
+    text = f"{name},frame,id,x,y,heading\n" + "".join(f"1,{k},a,{k},2,0\n" for k in range(30))
+    (tmp_path / "a.csv").write_text(text)
+    checks = guess_layout(tmp_path / "a.csv")
+    assert not [line for line in checks if line.startswith(("x", "y =", "frame", "id"))]
+    layout = TrackLayout(pool=(100.0, 0.0), fps=1.0)
+    assert len(read_tracks(tmp_path / "a.csv", layout)) == 30
