@@ -260,7 +260,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                 axes.set_title(f"{name} constants, {leaders} leaders")
             row[0].set_ylabel("mean Ψ_o")
         for axes in panels[1]:
-            axes.set_xlabel("bw (s); shaded: Ψ_o falls through 0.3; dashed: loss in figure 9")
+            axes.set_xlabel("bw (s)")
+        figure.supxlabel("shaded: Ψ_o falls through 0.3; dashed: loss in figure 9", fontsize=8)
         panels[0, 0].legend()
 
 

@@ -76,7 +76,7 @@ def judge(table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw |m| and the share of jammed frames against c4."""
-    with picture(options, "quiet", height_cm=6.5) as figure:
+    with picture(options, "quiet", height_cm=7.5) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
         flocks = table.groupby(["preset", "pool", "n_boats"], sort=False)
         for color, ((preset, pool, n), runs) in zip(COLORS, flocks, strict=False):
@@ -88,7 +88,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                 curve(axes, groups.groups, [mean(each) for _, each in groups], **style)
         left.set(ylabel="mean |m|", xlabel="noise c4", ylim=(-0.03, 1.03))
         right.set(ylabel="share of jammed frames", xlabel="noise c4")
-        left.legend(fontsize=6)
+        handles, labels = left.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
 script = judging("quiet", STUDY, judge, draw)
