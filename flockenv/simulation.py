@@ -128,19 +128,10 @@ def simulate(
     for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
         leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
-    if noise_seed is not None and not isinstance(start, bytes):
-        raise ParameterError(
-            f"noise_seed = {shown(noise_seed)} is not accepted: it needs a snapshot as start"
-        )
-    flock = (
-        Flock(parameters, seed) if start is None else _started(parameters, seed, start, noise_seed)
-    )
-    precision = np.dtype(dtype)
-    if precision not in PRECISIONS:
-        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
+    flock = _started(parameters, seed, start, noise_seed)
     plan = {
         "sample_hz": sample_hz,
-        "single_precision": bool(precision == np.float32),
+        "single_precision": _is_single(dtype),
         "contacts": truth(contacts, "contacts"),
         "changes": changes,
         "control": _control(leaders, control_hz),
@@ -231,7 +222,23 @@ def _change(entry: object) -> tuple[float, dict[str, object]]:
     raise ParameterError(f"schedule = {shown(entry)} is not accepted: {words}")
 
 
-def _started(parameters: FlockParameters, seed: int, start: Start, noise_seed: int | None) -> Flock:
+def _is_single(dtype: DTypeLike) -> bool:
+    precision = np.dtype(dtype)
+    if precision not in PRECISIONS:
+        raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
+    return bool(precision == np.float32)
+
+
+def _started(
+    parameters: FlockParameters, seed: int, start: Start | None, noise_seed: int | None
+) -> Flock:
+    """Return the flock at the start of a run."""
+    if noise_seed is not None and not isinstance(start, bytes):
+        raise ParameterError(
+            f"noise_seed = {shown(noise_seed)} is not accepted: it needs a snapshot as start"
+        )
+    if start is None:
+        return Flock(parameters, seed)
     if isinstance(start, Recording):
         start = start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
     if isinstance(start, Mapping):

@@ -48,7 +48,8 @@ class CompareOptions(Flocks, Printing):
     policy: list[str] | None = option(
         None,
         "Your policy; repeatable. A name, the file of a learned policy, the .zip file of an SB3 "
-        "model (with --trust), or one per leader, as in leader_0=a.npz,leader_1=learned.",
+        "model or module:attribute (with --trust), or one per leader, as in "
+        "leader_0=a.npz,leader_1=learned.",
     )
     name: list[str] | None = option(None, "Name of your policy; once for each. [its file's name]")
     only: bool = option(False, f"Leave out {', '.join(REFERENCES)}.", "--only")

@@ -12,7 +12,7 @@ from flockenv.errors import ParameterError
 
 Options = TypeVar("Options")
 
-TRUST = "Read .zip files of stable-baselines3 models: this executes the code in them."
+TRUST = "Read .zip files of SB3 models and import module:attribute: this executes their code."
 """What a command's option ``trust`` does."""
 
 

@@ -28,7 +28,7 @@ class RunOptions(OneFlock, Overwriting, Printing):
     policy: str = option(
         EVERY_SUBSTEP,
         "How leaders steer: by the paper's law at every substep, or at 10 Hz by a policy's file, "
-        "an SB3 model's .zip file (with --trust) or one of: "
+        "an SB3 model's .zip file or module:attribute (with --trust), or one of: "
         f"{quoted(NAMES)}.",
     )
     trust: bool = option(False, TRUST, "--trust")

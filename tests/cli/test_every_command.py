@@ -54,7 +54,7 @@ def test_presets_as_json_are_the_presets(cli):
     [
         (["run", "--jason"], "--jason"),
         (["run", "--set", "n_bots=3"], "did you mean 'n_boats'"),
-        (["run", "--policy", "{}/none.npz"], "cannot be read"),
+        (["run", "--policy", "{}/none.npz"], "none.npz: No such file or directory"),
         (["run", "--policy", "{}/file.npz"], "file.npz"),
         (["run", "--out", "{}/run.txt"], ".npz"),
         (["run", "--out", "{}/file.npz/run.npz"], "cannot be written"),

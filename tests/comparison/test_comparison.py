@@ -14,6 +14,15 @@ WIDE = load("learned", pool="wide")
 OTHER_POOL = r"'narrow'.*pool = 'wide'"
 
 
+class Seldom:
+    """A policy that decides neither at control steps nor between whole numbers of them."""
+
+    decision_period_s = 0.15
+
+    def predict(self, observation, state=None):
+        return np.zeros(len(observation)), state
+
+
 def options(**environment) -> dict:
     return {"environment": environment}
 
@@ -40,6 +49,7 @@ REFUSED = [
     ),
     ({"policies": {"mine": "papers law"}}, ParameterError, "did you mean"),
     ({"policies": {"mine": WIDE}}, ParameterError, OTHER_POOL),
+    ({"policies": {"mine": Seldom()}}, ParameterError, "decision_period_s = 0.15"),
     ({"policies": {"mine": {"leader_0": WIDE}}}, ParameterError, OTHER_POOL),
     ({"policies": {"mine": {"leader_1": "damped law"}}}, ParameterError, "each of leader_0"),
     (
