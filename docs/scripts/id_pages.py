@@ -80,7 +80,8 @@ def page(env_id: str) -> str:
         "```python\nimport gymnasium\n\n"
         f'env = gymnasium.make("flockenv:{env_id}")\n'
         "observation, info = env.reset(seed=7)\n```",
-        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. '
+        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. After '
+        f'`import flockenv`, `pettingzoo.make("parallel", "{env_id}")` makes each leader an agent. '
         "[Other interfaces](index.md#interfaces) have the same task.",
         *_spaces(env_id, env),
         *_course(env_id, env),

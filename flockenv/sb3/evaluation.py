@@ -114,8 +114,7 @@ class _AsTrained:
     """
 
     def __init__(self, model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
-        # It normalizes too, and turns levels into rudders.
-        self.model = model.model if isinstance(model, ModelPolicy) else model
+        self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
         own = getattr(self.model, "get_vec_normalize_env", lambda: None)()
         normalizes = any(isinstance(each, VecNormalize) for each in _layers(flocks))
@@ -166,9 +165,15 @@ def _follow(training: VecNormalize, flocks: VecEnv) -> None:
             each.ret_rms = copy.deepcopy(training.ret_rms)
 
 
+def _unwrapped(model: Any) -> Any:
+    """Return the model of a `ModelPolicy`, which normalizes too and turns levels into rudders."""
+    # One in a wrapper of its own makes what the model observes.
+    return model.model if type(model) is ModelPolicy else model
+
+
 def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     """Refuse a model that was trained on observations or actions of another meaning."""
-    model = model.model if isinstance(model, ModelPolicy) else model
+    model = _unwrapped(model)
     own_policy = Policy.from_source(model)
     own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, here = getattr(model, "observation_space", None), leaders.observation_space

@@ -13,7 +13,7 @@ from stable_baselines3.common.monitor import load_results
 from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize
 
 from flockenv import ParameterError
-from flockenv.policies import DampedLaw, ModelPolicy, SteeringLaw
+from flockenv.policies import DampedLaw, ModelPolicy, SteeringLaw, WrappedPolicy
 from flockenv.sb3 import (
     FlockEvalCallback,
     FlockMonitor,
@@ -32,6 +32,8 @@ OTHERS = {
     "heading": {"action_mode": "heading"},
     "period": {"decision_period_s": 0.5},
 }
+#: It tells policies apart at once.
+EFFORT = {"reward": {"rudder_effort": 1.0}}
 LOOKS = {
     "plain": lambda venv: venv,
     "per flock": PerFlock,
@@ -78,6 +80,19 @@ def test_stacked_frames_are_judged_in_stacked_frames():
     assert len(found.returns) == 4
 
 
+def test_a_model_with_its_wrapper_is_judged_in_plain_flocks():
+    def stacked(venv):
+        return VecFrameStack(venv, 2)
+
+    model = ppo(stacked(make(**EFFORT))).learn(96)
+    expected = evaluate_flocks(model, stacked(make(**EFFORT)), 8, seed=7)
+    policy = WrappedPolicy(model, stacked, make(**EFFORT))
+    found = evaluate_flocks(policy, make(**EFFORT), 8, seed=7)
+    np.testing.assert_allclose(found.returns, expected.returns, rtol=1e-5)
+    with pytest.raises(ParameterError, match="made for mirror_to_target"):
+        evaluate_flocks(policy, make(mirror_to_target=True), 4)
+
+
 def test_policies_are_judged_in_what_they_say_and_no_more():
     evaluate_flocks(SteeringLaw(), make(control_hz=5.0), 4)
     evaluate_flocks(SteeringLaw(mirror_to_target=True), make(mirror_to_target=True), 4)
@@ -88,10 +103,6 @@ def test_policies_are_judged_in_what_they_say_and_no_more():
     ):
         with pytest.raises(ParameterError, match="made for"):
             evaluate_flocks(law, make(**options), 4)
-
-
-#: It tells policies apart at once.
-EFFORT = {"reward": {"rudder_effort": 1.0}}
 
 
 def normalized_model():
