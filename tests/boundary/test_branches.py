@@ -105,7 +105,7 @@ def test_simulate_continues_with_other_noise():
 REFUSED = [
     (-1, ParameterError),
     (2**64, ParameterError),
-    (5.0, ParameterError),
+    (5.5, ParameterError),
     (float("nan"), ParameterError),
     (True, TypeError),
     (np.True_, TypeError),

@@ -189,7 +189,7 @@ def test_a_run_under_a_wrong_name_is_not_taken(spec: RunSpec, store: RunStore) -
     [
         ({"specs": "abc"}, "specs must be a sequence"),
         ({"workers": 0}, "workers = 0"),
-        ({"workers": 1.5}, "workers must be an integer"),
+        ({"workers": 1.5}, "workers = 1.5 is not accepted: a whole number"),
         ({"progress": None}, "progress must be a function"),
     ],
 )
