@@ -24,7 +24,7 @@ export const LESSONS = [
     title: "Backing frees a jam",
     link: `${NOISE}&bw_s=0`,
     before: `Boats that [never back up](${NOISE}&bw_s=0) jam at the wall. Let them back up [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8).`,
-    after: "Some backing frees boats that crowd the wall; too much ends the order. Sparse flocks circle without it, by the boats' random turning.",
+    after: "Backing frees boats that crowd the wall; too much ends the order. Sparse flocks need only random turning.",
   },
   {
     name: "leaders",
