@@ -13,6 +13,7 @@ import flockenv
 from flockenv.cli import app
 from flockenv.cli.presets import ABOUT
 from flockenv.comparison import episodes
+from flockenv.policies import Policy
 from flockenv.runs import store
 
 COMMANDS = sorted(command.callback.__name__ for command in app.registered_commands)
@@ -126,8 +127,8 @@ EPISODES = ["compare", "--episodes", "2", "--minutes", "9", "--set", "n_boats=5"
     ("arguments", "place"),
     [
         (["run"], (sys.modules["flockenv.cli.run"], "simulate")),
-        (EPISODES, (episodes, "simulate")),
-        ([*EPISODES, "--n-leaders", "1"], (flockenv.LeadersVectorEnv, "step")),
+        (EPISODES, (episodes.Episodes, "measure")),
+        ([*EPISODES, "--n-leaders", "1"], (Policy, "decide")),
     ],
 )
 def test_ctrl_c_leaves_no_half_result(cli, arguments, place, tmp_path, pressed_in):
@@ -140,17 +141,17 @@ def test_ctrl_c_leaves_no_half_result(cli, arguments, place, tmp_path, pressed_i
 
 def test_ctrl_c_keeps_what_a_comparison_has_finished(cli, tmp_path, monkeypatch):
     """Pressed in the second of eight parts: the first one is there as a whole comparison has it."""
-    reset, calls = flockenv.LeadersVectorEnv.reset, []
+    measure, calls = episodes.Episodes.measure, []
 
     def pressed(*arguments, **options):
         calls.append(1)
         if len(calls) == 2:
             signal.raise_signal(signal.SIGINT)
-        return reset(*arguments, **options)
+        return measure(*arguments, **options)
 
     words = [*EPISODES[:3], "--set", "n_boats=5", "--n-leaders", "1-2", "--minutes", "0.2"]
     words += ["--quiet", "--out"]
-    monkeypatch.setattr(flockenv.LeadersVectorEnv, "reset", pressed)
+    monkeypatch.setattr(episodes.Episodes, "measure", pressed)
     done = cli(*words, tmp_path / "part")
     assert done.returncode == 130, done.stderr
     words_of_it = "part holds what was finished: 1 pair of a policy and a number of leaders."
