@@ -45,22 +45,25 @@ struct Done {
 }
 
 fn work(name: &str) -> Option<Work> {
-    let flock = |scene: Scene, boats, relinearizations| {
+    let flock = |scene: Scene, boats, tolerance_cm| {
         Work::Flock(FlockParameters {
             dt_s: 0.01,
-            relinearizations,
+            tolerance_cm,
             ..scene.parameters(boats)
         })
     };
     Some(match name {
-        "jam of 27" => flock(Scene::Jam, 27, 0),
-        "jam of 27, 1 relinearization" => flock(Scene::Jam, 27, 1),
-        "jam of 27, 2 relinearizations" => flock(Scene::Jam, 27, 2),
-        "cycle of 27" => flock(Scene::Cycle, 27, 0),
-        "cycle of 27, 1 relinearization" => flock(Scene::Cycle, 27, 1),
+        "jam of 27, linearized once" => flock(Scene::Jam, 27, f64::INFINITY),
+        "jam of 27" => flock(Scene::Jam, 27, 1e-4),
+        "jam of 27, 1e-6 cm" => flock(Scene::Jam, 27, 1e-6),
+        "jam of 27, 1e-9 cm" => flock(Scene::Jam, 27, 1e-9),
+        "cycle of 27, linearized once" => flock(Scene::Cycle, 27, f64::INFINITY),
+        "cycle of 27" => flock(Scene::Cycle, 27, 1e-4),
+        "cycle of 27, 1e-6 cm" => flock(Scene::Cycle, 27, 1e-6),
         "cycle of 27 with 300 posts" => Work::Flock(with_posts(Scene::Cycle.parameters(27))),
-        "jam of 1000" => flock(Scene::Jam, 1000, 0),
-        "jam of 1000, 1 relinearization" => flock(Scene::Jam, 1000, 1),
+        "jam of 1000, linearized once" => flock(Scene::Jam, 1000, f64::INFINITY),
+        "jam of 1000" => flock(Scene::Jam, 1000, 1e-4),
+        "jam of 1000, 1e-6 cm" => flock(Scene::Jam, 1000, 1e-6),
         "control step in wide" => Work::Environment(environment(Pool::WIDE, 0.3)),
         "control step in narrow" => Work::Environment(environment(Pool::NARROW, 0.4)),
         "training control step in wide" => Work::Environment(training(Pool::WIDE, 0.31)),
@@ -96,15 +99,18 @@ fn with_posts(parameters: FlockParameters) -> FlockParameters {
     }
 }
 
-const SCENES: [&str; 14] = [
+const SCENES: [&str; 17] = [
+    "jam of 27, linearized once",
     "jam of 27",
-    "jam of 27, 1 relinearization",
-    "jam of 27, 2 relinearizations",
+    "jam of 27, 1e-6 cm",
+    "jam of 27, 1e-9 cm",
+    "cycle of 27, linearized once",
     "cycle of 27",
-    "cycle of 27, 1 relinearization",
+    "cycle of 27, 1e-6 cm",
     "cycle of 27 with 300 posts",
+    "jam of 1000, linearized once",
     "jam of 1000",
-    "jam of 1000, 1 relinearization",
+    "jam of 1000, 1e-6 cm",
     "control step in wide",
     "control step in narrow",
     "training control step in wide",

@@ -40,12 +40,12 @@ fn cycle(bencher: Bencher, boats: usize) {
     advance_a_cycle(bencher, scene(Scene::Cycle, boats));
 }
 
-#[divan::bench(args = [0, 1, 2], sample_count = 50, sample_size = 1)]
-fn jam_of_27_relinearized(bencher: Bencher, relinearizations: usize) {
+#[divan::bench(args = [f64::INFINITY, 1e-4, 1e-6, 1e-9], sample_count = 50, sample_size = 1)]
+fn jam_of_27_by_tolerance(bencher: Bencher, tolerance_cm: f64) {
     advance_a_cycle(
         bencher,
         FlockParameters {
-            relinearizations,
+            tolerance_cm,
             ..scene(Scene::Jam, 27)
         },
     );

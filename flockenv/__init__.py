@@ -20,7 +20,7 @@ if TYPE_CHECKING:
         ParameterError,
         SolverError,
     )
-    from flockenv.flock import Contacts, ContactSeries, Flock, Statistics
+    from flockenv.flock import Contacts, ContactSeries, Flock, Statistics, StepStatistics
     from flockenv.order import OrderParameters, OrderSeries, order_series
     from flockenv.parameters import FlockParameters
     from flockenv.recording import Recording
@@ -43,6 +43,7 @@ __all__ = [
     "Recording",
     "SolverError",
     "Statistics",
+    "StepStatistics",
     "__version__",
     "env",
     "order_series",
@@ -56,7 +57,7 @@ _NAMES = {
     "envs.single": ("LeadersEnv",),
     "envs.vector": ("LeadersVectorEnv",),
     "errors": ("EpisodeError", "FlockError", "InUseError", "ParameterError", "SolverError"),
-    "flock": ("ContactSeries", "Contacts", "Flock", "Statistics"),
+    "flock": ("ContactSeries", "Contacts", "Flock", "Statistics", "StepStatistics"),
     "order": ("OrderParameters", "OrderSeries", "order_series"),
     "parameters": ("FlockParameters",),
     "recording": ("Recording",),

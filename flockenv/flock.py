@@ -1,6 +1,7 @@
 """A flock that a program advances, with its contacts, order parameters and statistics."""
 
 import base64
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import blob, once, truth
-from flockenv.errors import HintsAtNames
+from flockenv.errors import HintsAtNames, ParameterError
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
@@ -125,7 +126,10 @@ class Statistics:
     most_factor_entries : int
         Most numbers that the Cholesky factors of one solve held.
     unsolved : int
-        Solves whose constraints contradicted each other or that exceeded their residual.
+        Substeps that left overlaps deeper than the tolerance.
+    halved_substeps : int
+        Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have
+        driven boats, or a boat moved too far.
     depenetration_passes : int
         Passes that moved deeply overlapping hulls apart.
     neighbor_builds : int
@@ -147,11 +151,41 @@ class Statistics:
     factored_rows: int
     most_factor_entries: int
     unsolved: int
+    halved_substeps: int
     depenetration_passes: int
     neighbor_builds: int
     worst_residual_cm_s: float
     worst_overlap_cm: float
     displaced_angular_momentum_cm2_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepStatistics:
+    """Whether a run kept its tolerance; as in `Statistics`.
+
+    Attributes
+    ----------
+    worst_overlap_cm : float
+        Deepest overlap at the start of a substep in cm, positive.
+    unsolved : int
+        Substeps that left overlaps deeper than the tolerance.
+    halved_substeps : int
+        Halvings of substeps.
+    """
+
+    worst_overlap_cm: float
+    unsolved: int
+    halved_substeps: int
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if not (math.isfinite(value) and value >= 0):
+                raise ParameterError(f"{each.name} = {value} is not accepted: at least 0")
+
+
+STEP_STATISTICS = tuple(each.name for each in fields(StepStatistics))
+"""Names of the `StepStatistics`, as in tables and summaries of episodes."""
 
 
 class Flock(HintsAtNames):

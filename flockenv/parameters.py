@@ -66,7 +66,7 @@ class FlockParameters:
     solver: str = _declared("solver")
     dt_s: float = _declared("dt_s")
     overlap_tolerance_cm: float = _declared("overlap_tolerance_cm")
-    relinearizations: int = _declared("relinearizations")
+    tolerance_cm: float = _declared("tolerance_cm")
     turning_bias: float = _declared("turning_bias")
     speed_spread_cm_s: float = _declared("speed_spread_cm_s")
     current_gain: float = _declared("current_gain")

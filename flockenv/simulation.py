@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from flockenv import _core
 from flockenv._io.arguments import check_function, items, truth
 from flockenv.errors import ParameterError, shown
-from flockenv.flock import ContactSeries, Flock
+from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
 from flockenv.policies.leaders import Leaders
@@ -140,7 +140,11 @@ def simulate(
 
     def recording(columns: dict[str, Any]) -> Recording:
         series = columns.pop("contacts", None)
-        own = {"phase": PHASES[columns["phase"]], "order": OrderSeries(**columns["order"])}
+        own = {
+            "phase": PHASES[columns["phase"]],
+            "order": OrderSeries(**columns["order"]),
+            "statistics": StepStatistics(**columns["statistics"]),
+        }
         return Recording(
             **columns | own,
             contacts=None if series is None else ContactSeries.of_columns(series),

@@ -15,8 +15,8 @@ pub enum Kind {
         scheme: Scheme,
         /// How contacts are solved.
         solver: Solver,
-        /// How well gaps hold at the end of a step.
-        relinearizations: usize,
+        /// Deepest overlap in cm that a step may leave.
+        tolerance_cm: f64,
     },
     /// rapier2d-f64.
     RapierF64(rapier_f64::Settings),
@@ -37,6 +37,8 @@ pub struct Configuration {
 
 /// Steps in s that engines are compared at.
 pub const STEPS_S: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
+/// The tolerances in cm that engines are compared at, from gaps that are linearized once to the finest.
+pub const TOLERANCES_CM: [f64; 4] = [f64::INFINITY, 1e-4, 1e-6, 1e-9];
 /// The step in s of the main comparison.
 pub const STEP_S: f64 = 0.01;
 
@@ -47,21 +49,21 @@ impl Configuration {
         "setting",
         "scheme",
         "solver",
-        "relinearizations",
+        "tolerance_cm",
         "dt_s",
     ];
 
     /// flockenv with the exact solver.
-    pub fn exact(scheme: Scheme, relinearizations: usize, dt_s: f64) -> Self {
-        Self::ours(scheme, Solver::BlockPivoting, relinearizations, dt_s)
+    pub fn exact(scheme: Scheme, tolerance_cm: f64, dt_s: f64) -> Self {
+        Self::ours(scheme, Solver::BlockPivoting, tolerance_cm, dt_s)
     }
 
     /// flockenv.
-    pub fn ours(scheme: Scheme, solver: Solver, relinearizations: usize, dt_s: f64) -> Self {
+    pub fn ours(scheme: Scheme, solver: Solver, tolerance_cm: f64, dt_s: f64) -> Self {
         let kind = Kind::Ours {
             scheme,
             solver,
-            relinearizations,
+            tolerance_cm,
         };
         Self { kind, dt_s }
     }
@@ -82,13 +84,13 @@ impl Configuration {
         }
     }
 
-    /// Every scheme × step × relinearization with the exact solver.
+    /// Every scheme × step × tolerance with the exact solver.
     pub fn all_exact() -> Vec<Self> {
         let mut all = Vec::new();
         for &scheme in Scheme::ALL {
-            for relinearizations in 0..=2 {
+            for tolerance_cm in TOLERANCES_CM {
                 for dt_s in STEPS_S {
-                    all.push(Self::exact(scheme, relinearizations, dt_s));
+                    all.push(Self::exact(scheme, tolerance_cm, dt_s));
                 }
             }
         }
@@ -103,7 +105,7 @@ impl Configuration {
     /// The other solvers, at the step of the main comparison.
     pub fn all_inexact() -> Vec<Self> {
         let solvers = [Solver::GaussSeidel, Solver::Clarabel];
-        let each = |scheme| solvers.map(|solver| Self::ours(scheme, solver, 0, STEP_S));
+        let each = |scheme| solvers.map(|solver| Self::ours(scheme, solver, f64::INFINITY, STEP_S));
         Scheme::ALL.iter().copied().flat_map(each).collect()
     }
 
@@ -159,12 +161,12 @@ impl Configuration {
         if let Kind::Ours {
             scheme,
             solver,
-            relinearizations,
+            tolerance_cm,
         } = self.kind
         {
             parameters.scheme = scheme;
             parameters.solver = solver;
-            parameters.relinearizations = relinearizations;
+            parameters.tolerance_cm = tolerance_cm;
         }
         parameters
     }
@@ -191,12 +193,12 @@ impl Configuration {
 
     /// Its cells of a table.
     pub fn cells(&self) -> Vec<String> {
-        let (scheme, solver, relinearizations) = match self.kind {
+        let (scheme, solver, tolerance_cm) = match self.kind {
             Kind::Ours {
                 scheme,
                 solver,
-                relinearizations,
-            } => (scheme.name(), solver.name(), text(relinearizations)),
+                tolerance_cm,
+            } => (scheme.name(), solver.name(), number(tolerance_cm)),
             _ => ("", "", String::new()),
         };
         vec![
@@ -204,7 +206,7 @@ impl Configuration {
             self.setting(),
             text(scheme),
             text(solver),
-            relinearizations,
+            tolerance_cm,
             number(self.dt_s),
         ]
     }
@@ -223,13 +225,14 @@ impl Configuration {
             Kind::Ours {
                 scheme,
                 solver,
-                relinearizations,
+                tolerance_cm,
             } => {
-                format!(
-                    "{} / {} / r{relinearizations}",
-                    scheme.name(),
-                    solver.name()
-                )
+                let gaps = if tolerance_cm < f64::INFINITY {
+                    format!("{tolerance_cm:e} cm")
+                } else {
+                    text("linear")
+                };
+                format!("{} / {} / {gaps}", scheme.name(), solver.name())
             }
             Kind::RapierF64(set) => {
                 rapier_setting(set.iterations, set.length_unit_cm, set.round_obstacle)

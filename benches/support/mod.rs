@@ -28,8 +28,8 @@ pub fn environment(pool: Pool, bw_s: f64) -> FlockParameters {
 /// The same, stepped as for training.
 pub fn training(pool: Pool, bw_s: f64) -> FlockParameters {
     let mut parameters = environment(pool, bw_s);
-    if let Some((dt_s, relinearizations)) = Physics::Training.stepping() {
-        (parameters.dt_s, parameters.relinearizations) = (dt_s, relinearizations);
+    if let Some((dt_s, tolerance_cm)) = Physics::Training.stepping() {
+        (parameters.dt_s, parameters.tolerance_cm) = (dt_s, tolerance_cm);
     }
     parameters
 }

@@ -70,6 +70,7 @@ def train(options: TrainOptions) -> None:
     Example: `flockenv train --pool wide --n-leaders 3 --flock-hours 60`
     """
     from flockenv import training
+    from flockenv.comparison.report import overlap_notes
 
     given, out = options.settings(), options.out
     kept = f"{out} holds the last checkpoint: --resume continues from it."
@@ -107,4 +108,6 @@ def train(options: TrainOptions) -> None:
         f"{training.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
         f"{gain.high:+.3f}), paired by flock"
     )
+    for line in overlap_notes(rows):
+        say(line)
     say(f"Written to {out}")

@@ -14,6 +14,7 @@ from flockenv._io.interrupts import end_if_interrupted
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
 from flockenv.errors import ParameterError, shown
+from flockenv.flock import STEP_STATISTICS
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import CONTROL_HZ, Policy
 from flockenv.policies.leaders import Leaders
@@ -99,7 +100,7 @@ class Episodes:
         # A summary does not have what is unknown.
         return {
             name: np.array([each.get(name, np.nan) for each in summaries])
-            for name in (*QUANTITIES, *ORDERING_TIMES)
+            for name in (*QUANTITIES, *ORDERING_TIMES, *STEP_STATISTICS)
         }
 
     def _decide(self, batch: LeaderBatch) -> Decide:
@@ -196,7 +197,8 @@ def run_episodes(
     Returns
     -------
     dict
-        The `QUANTITIES` and `ORDERING_TIMES` by name, one number per episode.
+        The `QUANTITIES`, `ORDERING_TIMES` and `flockenv.flock.STEP_STATISTICS` by name, one number
+        per episode.
     """
     check_function(progress, "progress")
     return Episodes.parse(parameters, policy, seeds, duration_s, options).measure(progress)

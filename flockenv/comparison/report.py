@@ -162,7 +162,7 @@ class ComparisonReport:
             f"{Line(**{name: row[name] for name in names})}"
             for row in self.lines.to_dict("records")
         ]
-        return "\n".join(differences + lines)
+        return "\n".join([*differences, *lines, *overlap_notes(self.runs)])
 
     def card(self, name: str, policy: Policy | Mapping[str, Policy]) -> str:
         """Return a policy's model card as Markdown: its provenance and its comparison."""
@@ -180,6 +180,18 @@ class ComparisonReport:
         Console(file=printed, width=120).print(self.table())
         text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
         return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
+
+
+def overlap_notes(episodes: "pd.DataFrame") -> list[str]:
+    """Return a line that says in how many episodes overlaps exceeded the tolerance, if any."""
+    deep = episodes[episodes["unsolved"] > 0]
+    if len(deep) == 0:
+        return []
+    worst = deep["worst_overlap_cm"].max()
+    return [
+        f"{len(deep)} of {len(episodes)} episodes left overlaps deeper than tolerance_cm; "
+        f"the deepest is {worst:.2g} cm"
+    ]
 
 
 def titled(policy: Policy | Mapping[str, Policy]) -> str:

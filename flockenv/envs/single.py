@@ -110,13 +110,14 @@ class LeadersEnv(
     - `ordering_time_s` and `ordering_time_wide_s`: eq. (7) with the angle π/20 as printed and with
       π/4; infinite if the flock never ordered
     - `clip_rate`: share of clipped numbers in the observations
+    - `worst_overlap_cm`, `unsolved` and `halved_substeps` of the flock, as in `flockenv.Statistics`
 
     ## Arguments
     Any field of `FlockParameters` (`n_boats` is 27 and `n_leaders` 3 unless given) and the options
     of docs/environments/tables.md. Those that most trainings set:
 
     - `preset` or `params`: parameters of the flock by name, or as a `FlockParameters`
-    - `physics`: "training" for steps that are coarser and cheaper
+    - `physics`: "training" for steps that are coarser and cheaper, "publication" for finer ones
     - `bw_s`: duration of the backward phase in s; a pair (low, high) draws it for each episode
     - `target`: "cw", "ccw", "random" or "alternate", or one per leader
     - `mirror_to_target`: reflects what leaders see and do, so that both directions are one task

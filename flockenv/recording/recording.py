@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv._io.arguments import number, truth
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import HintsAtNames, ParameterError, shown
-from flockenv.flock import ContactSeries, Flock
+from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
@@ -76,6 +76,9 @@ class Recording(HintsAtNames):
         What steered the leaders: "paper's law at every substep", or the policy's name; a learned
         policy's name ends in the first digits of its SHA-256. None if that is unknown, as for
         tracks.
+    statistics : StepStatistics or None
+        Worst overlap, unsolved and halved substeps of the flock at the end; None if they are
+        unknown, as for tracks.
     duration_s : float
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.
@@ -113,6 +116,7 @@ class Recording(HintsAtNames):
     contacts: ContactSeries | None = None
     rudder: NDArray[np.float64] | None = None
     policy: str | None = None
+    statistics: StepStatistics | None = None
     duration_s: float = math.nan
     quantities: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     ids: NDArray[np.str_] | None = None

@@ -7,6 +7,7 @@ array more or less are read.
 
 import warnings
 from collections.abc import Iterable, Mapping
+from dataclasses import fields as dataclass_fields
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError
-from flockenv.flock import ContactSeries
+from flockenv.flock import ContactSeries, StepStatistics
 from flockenv.order import ORDER, OrderSeries, order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import CONTACTS, PRECISIONS, TIMES, check_array
@@ -27,6 +28,7 @@ FORMAT = "flockenv recording 1"
 """What the file of a recording says that it is."""
 
 _OWN = "quantity_"
+_STEPS = "statistics_"
 _TEXTS = ("format", "version", "parameters", "policy")
 _DROPPED = "has {} that this flockenv does not know, and does not keep"
 _UNDEFINED = "has no poses, from which these quantities would be computed, and they are NaN"
@@ -48,6 +50,8 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     arrays |= {name: fields[name] for name in OPTIONAL if fields[name] is not None}
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
+    if (statistics := fields["statistics"]) is not None:
+        arrays |= {f"{_STEPS}{name}": np.array(value) for name, value in vars(statistics).items()}
     texts = {
         "format": FORMAT,
         "version": fields["version"],
@@ -72,8 +76,10 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     if missing := [name for name in needed if name not in arrays]:
         raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
     own = [name for name in arrays if name.startswith(_OWN)]
+    steps = {each.name: f"{_STEPS}{each.name}" for each in dataclass_fields(StepStatistics)}
     orders = [f"order_{name}" for name in ORDER]
-    _say(_DROPPED.format("arrays"), arrays.keys() - {*needed, *orders, *OPTIONAL, *own})
+    known = {*needed, *orders, *OPTIONAL, *own, *steps.values()}
+    _say(_DROPPED.format("arrays"), arrays.keys() - known)
     if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
         raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
@@ -92,7 +98,20 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         "duration_s": float(arrays["duration_s"]),
         **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),
+        "statistics": _statistics(arrays, steps),
     }
+
+
+def _statistics(
+    arrays: Mapping[str, NDArray[Any]], names: Mapping[str, str]
+) -> StepStatistics | None:
+    """Return whether the run kept its tolerance; None of a file that does not say."""
+    if not all(name in arrays for name in names.values()):
+        return None
+    for name in names.values():
+        if arrays[name].ndim or arrays[name].dtype.kind not in "iuf":
+            raise ParameterError(f"{name} must be one number")
+    return StepStatistics(**{field: arrays[name].item() for field, name in names.items()})
 
 
 def _say(words: str, names: Iterable[str]) -> None:

@@ -22,7 +22,7 @@ from flockenv.runs.spec import RunSpec, execute
 RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
-RESULTS_VERSION = 5
+RESULTS_VERSION = 6
 """Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
 
 

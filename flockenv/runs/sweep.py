@@ -18,6 +18,7 @@ from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_csv
 from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.flock import STEP_STATISTICS
 from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import EVERY_SUBSTEP
@@ -39,6 +40,7 @@ _COLUMNS = (
     "frames",
     *(f"{name}_{kind}" for name in _AVERAGED for kind in ("mean", "std")),
     "rotation_size",
+    *STEP_STATISTICS,
     "failure",
 )
 
@@ -159,7 +161,8 @@ def summary(run: Recording) -> dict[str, float]:
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
         the nematic order, milling, the signed order towards the target and the rotation
         m = Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
-        turns round. Over the frames that define them, NaN if none does.
+        turns round. Over the frames that define them, NaN if none does. Then the run's
+        ``worst_overlap_cm``, ``unsolved`` and ``halved_substeps``, NaN if they are unknown.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
@@ -171,7 +174,7 @@ def summary(run: Recording) -> dict[str, float]:
     rotation = used.order.rotation()
     rotation = rotation[np.isfinite(rotation)]
     row["rotation_size"] = float(abs(rotation).mean()) if len(rotation) else np.nan
-    return row
+    return row | {name: getattr(run.statistics, name, np.nan) for name in STEP_STATISTICS}
 
 
 def run_sweep(

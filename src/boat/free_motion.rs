@@ -63,10 +63,14 @@ impl FreeMotion {
         (3.0 * self.c1 * angular * angular + self.c3 * along).max(0.0)
     }
 
-    /// Explicit Euler over `dt`: accelerations at the given velocity.
-    ///
-    /// A spin that a collision left so fast that −c1·α̇³ would turn it round within one step
-    /// (c1·α̇²·dt > 1) is stopped instead: beyond 2, explicit steps would grow without end.
+    /// The part of a spin that damping leaves, if it takes `rate` of it over `dt`: none where it would turn it round. A
+    /// step beyond that would make spins alternate, and an explicit one grow without end.
+    #[inline]
+    fn damped(rate: f64, dt: f64) -> f64 {
+        (1.0 - rate * dt).max(0.0)
+    }
+
+    /// Explicit Euler over `dt`: accelerations at the given velocity. Drag and damping take at most what there is.
     #[inline]
     pub(crate) fn explicit(
         &self,
@@ -77,13 +81,13 @@ impl FreeMotion {
     ) -> Velocity {
         let along = axis.dot(&(velocity.linear - drive.water));
         let spin = velocity.angular;
-        let excess = (self.c1 * spin * spin * dt - 1.0).max(0.0);
+        let rate = self.c1 * spin * spin + self.c3 * along;
+        let driven = spin * Self::damped(rate, dt) + self.c2 * drive.rudder * along * dt;
+        let relaxed = (self.c0 * dt).min(1.0);
+        let preferred = axis * drive.preferred_speed + drive.water;
         Velocity {
-            linear: velocity.linear + self.linear_acceleration(velocity.linear, axis, drive) * dt,
-            angular: spin
-                + self.angular_acceleration(spin, along, drive.rudder) * dt
-                + excess * spin
-                + drive.noise,
+            linear: velocity.linear + (preferred - velocity.linear) * relaxed,
+            angular: self.held_back(driven, spin, along, drive.rudder) + drive.noise,
         }
     }
 
@@ -93,7 +97,8 @@ impl FreeMotion {
         1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
-    /// Change of the velocity over `dt` without contacts, with drag centered in the substep.
+    /// Change of the velocity over `dt` without contacts, with drag centered in the substep. Drag takes at most what there
+    /// is: beyond it a boat would start to back.
     #[inline]
     pub(crate) fn centered_change(
         &self,
@@ -102,13 +107,26 @@ impl FreeMotion {
         drive: &Drive,
         dt: f64,
     ) -> Vec2 {
-        self.linear_acceleration(velocity, axis, drive) * (dt * self.linear_mobility(dt))
+        let relaxed = (self.c0 * dt * self.linear_mobility(dt)).min(1.0);
+        (axis * drive.preferred_speed + drive.water - velocity) * relaxed
     }
 
-    /// The spin that a boat would be driven to, held to its own or to a bound of those at which eq. (9) comes to rest: the
-    /// roots of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
-    #[cold]
+    /// The spin that a boat is driven to. Eq. (9) drives no backing boat past the spin at which it comes to rest: a step
+    /// that would ends there.
+    #[inline]
     fn held_back(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
+        let turns_back =
+            || (driven - spin) * self.angular_acceleration(driven, along, rudder) < 0.0;
+        if along < 0.0 && turns_back() {
+            return self.at_most_at_rest(driven, spin, along, rudder);
+        }
+        driven
+    }
+
+    /// A spin held to the boat's own or to a bound of those at which eq. (9) comes to rest: the roots of
+    /// c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
+    #[cold]
+    fn at_most_at_rest(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
         let fastest = (self.c3 * push).sqrt() + libm::cbrt(self.c2 * rudder.abs() * push);
         let most = spin.abs().max(fastest);
@@ -122,8 +140,7 @@ impl FreeMotion {
     ///
     /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
     /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
-    /// at any dt. Eq. (9) drives no backing boat past the spin at which it comes to rest; where a step of
-    /// this order would (at 0.1 s and more), it ends there.
+    /// at any dt. Damping stops a spin at most.
     #[inline]
     pub fn centered(
         &self,
@@ -144,16 +161,14 @@ impl FreeMotion {
         } else {
             1.0 - half_rate
         };
-        let mut torque = self.angular_acceleration(spin, along, drive.rudder) * dt;
-        let driven = spin + torque * angular_mobility;
-        if along < 0.0 && torque * self.angular_acceleration(driven, along, drive.rudder) < 0.0 {
-            torque = (self.held_back(driven, spin, along, drive.rudder) - spin) / angular_mobility;
-        }
-        torque += drive.noise;
+        let rate = self.c1 * spin * spin + self.c3 * along;
+        let turn = self.c2 * drive.rudder * along * dt;
+        let driven = spin * Self::damped(rate, dt * angular_mobility) + turn * angular_mobility;
+        let held = self.held_back(driven, spin, along, drive.rudder);
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,
-                angular: spin + torque * angular_mobility,
+                angular: held + drive.noise * angular_mobility,
             },
             angular_mobility,
         }

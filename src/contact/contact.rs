@@ -28,9 +28,6 @@ pub struct Contact {
     pub gap: Gap,
 }
 
-/// What identifies a contact from one substep to the next.
-pub type ContactKey = (u32, Partner, Feature);
-
 impl Contact {
     /// A contact of a boat with a partner.
     pub(super) fn new(boat: u32, partner: Partner, feature: Feature, gap: Gap) -> Self {
@@ -40,11 +37,6 @@ impl Contact {
             feature,
             gap,
         }
-    }
-
-    /// What identifies this contact from one substep to the next.
-    pub fn key(&self) -> ContactKey {
-        (self.boat, self.partner, self.feature)
     }
 
     /// Whether it is another contact of the same two.

@@ -6,7 +6,8 @@
 
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
-use crate::geometry::{HullPose, Pose, Velocity, cross};
+use crate::geometry::{HullPose, Pose, Velocity, cross, smaller};
+use crate::parameters::FlockParameters;
 
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
@@ -29,26 +30,28 @@ pub(super) struct Depenetration {
     biases: Vec<f64>,
     rest: Vec<Velocity>,
     inertia: Vec<InverseInertia>,
+    own_inertia: InverseInertia,
     largest_step_cm: f64,
     /// Passes made so far.
     pub passes: u64,
 }
 
 impl Depenetration {
-    /// For `boats` boats of a radius and a radius of gyration ρ.
-    pub(super) fn new(boats: usize, boat_radius: f64, gyration_radius: f64) -> Self {
-        let inertia = InverseInertia {
-            linear: 1.0,
-            angular: 1.0 / (gyration_radius * gyration_radius),
-        };
+    /// For checked parameters.
+    pub(super) fn new(parameters: &FlockParameters) -> Self {
+        let gyration_radius = parameters.gyration_radius_cm;
         Self {
             // Regularized, since a packing may leave no way out; the rest is then shared evenly.
             solver: ContactSolver::regularized(1e-4),
             contacts: Vec::new(),
             biases: Vec::new(),
-            rest: vec![Velocity::default(); boats],
-            inertia: vec![inertia; boats],
-            largest_step_cm: LARGEST_STEP * boat_radius,
+            rest: Vec::new(),
+            inertia: Vec::new(),
+            own_inertia: InverseInertia {
+                linear: 1.0,
+                angular: 1.0 / (gyration_radius * gyration_radius),
+            },
+            largest_step_cm: LARGEST_STEP * parameters.boat_radius_cm,
             passes: 0,
         }
     }
@@ -85,6 +88,8 @@ impl Depenetration {
     /// One pass, for the contacts at hand.
     fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
+        self.rest.resize(poses.len(), Velocity::default());
+        self.inertia.resize(poses.len(), self.own_inertia);
         let gaps = self.contacts.iter().map(|contact| contact.gap.gap);
         self.biases.clear();
         self.biases
@@ -117,9 +122,11 @@ fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }
 
-fn smallest_gap(contacts: &[Contact]) -> f64 {
-    let gaps = contacts.iter().map(|contact| contact.gap.gap);
-    gaps.fold(f64::INFINITY, f64::min)
+/// The smallest gap in cm, infinite for none.
+pub(super) fn smallest_gap(contacts: &[Contact]) -> f64 {
+    contacts.iter().fold(f64::INFINITY, |smallest, contact| {
+        smaller(smallest, contact.gap.gap)
+    })
 }
 
 /// Σx×v about the pool's center: what moving poses alone changes of the angular momentum, in cm²/s.
@@ -134,14 +141,13 @@ pub(super) fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) 
 pub(crate) fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],
-    boat_radius: f64,
-    gyration_radius: f64,
+    parameters: &FlockParameters,
     most_passes: u32,
     keep_going: KeepGoing,
 ) {
     let mut boats = Vec::with_capacity(poses.len());
     HullPose::replace_all(&mut boats, poses);
-    let mut projection = Depenetration::new(poses.len(), boat_radius, gyration_radius);
+    let mut projection = Depenetration::new(parameters);
     let margin = wide_margin(detector);
     for _ in 0..most_passes {
         detector.detect(&boats, margin, &mut projection.contacts);

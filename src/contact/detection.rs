@@ -1,10 +1,11 @@
 //! Finds the contacts of a flock: candidate pairs from the neighbor list, walls, obstacles, exact gaps.
 
 use super::near_obstacles::NearObstacles;
+use super::touches::{are_swapped, first_of_two};
 use super::{Contact, Partner};
 use crate::geometry::{
-    Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Velocity, end_gaps, inner_wall_gap,
-    outer_wall_gap, pair_gap, pair_gaps, smaller,
+    EndTouch, Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Vec2, Velocity, end_touches,
+    inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps, smaller,
 };
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
@@ -119,8 +120,8 @@ impl ContactDetector {
     /// Whether what was found as a contact overlaps at other poses by more than `allowed`.
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
         let gap = if contact.has_ends() {
-            let [stern, bow] = self.end_gaps_at(contact, boats);
-            smaller(stern, bow)
+            let [stern, bow] = self.touches_at(contact, boats);
+            smaller(stern.gap, bow.gap)
         } else {
             self.gap_at(contact, boats).gap
         };
@@ -215,6 +216,22 @@ impl ContactDetector {
         low..=if high < 0.0 { -1.0 } else { square(high) }
     }
 
+    /// Whether a center is between the pool's walls, and in none of the obstacles that were near the boat.
+    pub(crate) fn is_in_water(&self, boat: u32, center: Vec2) -> bool {
+        let Pool {
+            inner_radius_cm: inner,
+            outer_radius_cm: outer,
+        } = self.pool;
+        let distance_squared = center.norm_squared();
+        if !(inner * inner..=outer * outer).contains(&distance_squared) {
+            return false;
+        }
+        let obstacles = &self.obstacles;
+        let near = obstacles.of(boat).iter();
+        near.map(|&number| &obstacles.obstacles[number as usize])
+            .all(|obstacle| obstacle.distance(center) >= 0.0)
+    }
+
     fn detect_walls(&self, boat: u32, pose: &HullPose, margin: f64, contacts: &mut Vec<Contact>) {
         let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
         let distance = pose.center.norm_squared().sqrt();
@@ -257,29 +274,29 @@ impl ContactDetector {
         }
     }
 
-    /// The gaps of the two ends of a contact's boat at other poses, where they face another boat or an
-    /// obstacle; infinite where they do not. Crossed cores count for both.
+    /// The touches of a contact's boat with another boat or an obstacle at other poses, of its stern's group of ends and
+    /// of its bow's. Crossed cores count for both.
     #[inline]
-    pub(crate) fn end_gaps_at(&self, contact: &Contact, boats: &[HullPose]) -> [f64; 2] {
+    pub(super) fn touches_at(&self, contact: &Contact, boats: &[HullPose]) -> [EndTouch; 2] {
         let boat = &boats[contact.boat as usize];
         match contact.second() {
-            Some(second) => end_gaps((boat, self.hull), (&boats[second], self.hull)),
-            None => self.obstacle_end_gaps(contact, boat),
+            Some(second) => end_touches((boat, self.hull), (&boats[second], self.hull)),
+            None => self.obstacle_touches(contact, boat),
         }
     }
 
     // Apart from boats, whose gaps then stay in registers.
     #[inline(never)]
-    fn obstacle_end_gaps(&self, contact: &Contact, boat: &HullPose) -> [f64; 2] {
-        let mut gaps = [f64::INFINITY; 2];
+    fn obstacle_touches(&self, contact: &Contact, boat: &HullPose) -> [EndTouch; 2] {
+        let mut touches = [EndTouch::MISSING; 2];
         if let Partner::Obstacle(number) = contact.partner {
             let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
             let obstacle = &self.obstacles.obstacles[number as usize];
             obstacle.gaps(boat, hull, margin, &mut |feature, gap| {
-                note_end(&mut gaps, feature, &gap);
+                note_touch(&mut touches, feature, &gap);
             });
         }
-        gaps
+        touches
     }
 
     /// The gap of a known contact at other poses.
@@ -303,18 +320,39 @@ impl ContactDetector {
         }
     }
 
+    /// The gap of contact k where its touch has moved to. The only contact of a pair stands for the whole pair.
+    pub(crate) fn moved_gap(&self, contacts: &[Contact], k: usize, boats: &[HullPose]) -> Gap {
+        let contact = &contacts[k];
+        if !contact.has_ends() || contact.feature.side().is_none() {
+            return self.gap_at(contact, boats);
+        }
+        let touches = self.touches_at(contact, boats);
+        let is_bow = match first_of_two(contacts, k) {
+            Some(first) => (k > first) != are_swapped(&touches, &contacts[first..]),
+            None => touches[1].gap < touches[0].gap,
+        };
+        let feature = Feature::ENDS[usize::from(is_bow)];
+        self.gap_at(
+            &Contact {
+                feature,
+                ..*contact
+            },
+            boats,
+        )
+    }
+
     #[inline(never)]
     fn pair_gap_at(&self, contact: &Contact, first: &HullPose, second: &HullPose) -> Gap {
         pair_gap(contact.feature, (first, self.hull), (second, self.hull))
     }
 }
 
-/// Notes a gap under the end of the boat that it is at; what is at no end counts for both.
+/// Notes a touch under the end of the boat that it is at; what is at no end counts for both.
 #[inline]
-fn note_end(gaps: &mut [f64; 2], feature: Feature, gap: &Gap) {
+fn note_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
     match feature {
-        Feature::Stern => gaps[0] = gap.gap,
-        Feature::Bow => gaps[1] = gap.gap,
-        Feature::Crossed | Feature::Flank => *gaps = [gap.gap; 2],
+        Feature::Stern => touches[0] = gap.into(),
+        Feature::Bow => touches[1] = gap.into(),
+        Feature::Crossed | Feature::Flank => *touches = [gap.into(); 2],
     }
 }

@@ -44,9 +44,12 @@ impl NearObstacles {
         }
     }
 
-    /// The obstacles near a boat, where there are any at all.
+    /// The obstacles near a boat.
     pub(super) fn of(&self, boat: u32) -> &[u32] {
         let boat = boat as usize;
+        if self.starts.is_empty() {
+            return &[];
+        }
         &self.near[self.starts[boat] as usize..self.starts[boat + 1] as usize]
     }
 }

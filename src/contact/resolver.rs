@@ -3,9 +3,11 @@
 
 mod relinearization;
 
-use super::depenetration::{Depenetration, PENETRATION_SLOP, orbital_angular_momentum};
-use super::parting::Parting;
+use super::depenetration::{
+    Depenetration, PENETRATION_SLOP, orbital_angular_momentum, smallest_gap,
+};
 use super::passivity::{self, Passivity};
+use super::skipped_contacts::SkippedContacts;
 use super::solver::ContactSolver;
 use super::trial::Trial;
 use super::velocity_bias::VelocityBias;
@@ -16,15 +18,53 @@ use crate::geometry::{HullPose, Pose, Vec2, Velocity};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use relinearization::Relinearization;
 
-/// What the contacts of a substep came to.
+/// Why a substep was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ContactOutcome {
-    /// Nothing is near enough to touch within the substep.
-    Untouched,
-    /// The contacts have been solved.
-    Solved,
-    /// Contacts turn too far within the substep, and a shorter one is possible; or a boat moves too far in it.
+pub(crate) enum NotTaken {
+    /// It leaves overlaps, would drive boats, or moves a boat too far: a shorter one has to be tried. Deep overlaps may
+    /// have been undone, but no time has passed.
     TooLong,
+    /// Its contacts are too much work, and a shorter substep would not help; the motion is to be thrown away.
+    Exhausted,
+}
+
+/// What a solve came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Solution {
+    /// Every gap holds.
+    Solved,
+    /// It was too much work, and there is no solution.
+    Exhausted,
+    /// Contacts overlap at the substep's end by more than the tolerance.
+    Overlapping,
+    /// Skipped contacts do.
+    Closing,
+    /// Contacts would add energy to boats; the biases are now such that they do not.
+    Driven,
+}
+
+/// The motion that the contacts of a substep meet.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motion<'a> {
+    /// Poses at the substep's start.
+    pub poses: &'a [Pose],
+    /// Velocities without contacts.
+    pub free: &'a [Velocity],
+    /// Effective inertia.
+    pub inertia: &'a [InverseInertia],
+    /// Length of the substep in s.
+    pub dt: f64,
+}
+
+impl<'a> Motion<'a> {
+    fn problem(&self, contacts: &'a [Contact], biases: &'a [f64]) -> ContactProblem<'a> {
+        ContactProblem {
+            contacts,
+            inertia: self.inertia,
+            free: self.free,
+            biases,
+        }
+    }
 }
 
 /// Finds and solves the contacts of a flock, substep after substep.
@@ -37,22 +77,20 @@ pub(crate) struct ContactResolver {
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
     /// Those that are left out while the solution leaves them apart.
-    parting: Parting,
+    skipped: SkippedContacts,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
     persistent: Vec<bool>,
     /// Contacts that carried an impulse, in the order of detection.
     warm_start_cache: WarmStartCache,
-    depenetration: Option<Box<Depenetration>>,
-    /// Whether the contacts of this substep were too much work, and a shorter one would not help.
-    pub(crate) is_exhausted: bool,
+    depenetration: Box<Depenetration>,
     passivity: Passivity,
     trial: Trial,
     relinearization: Relinearization,
-    boat_radius: f64,
-    gyration_radius: f64,
     /// Overlaps beyond this (cm) are undone by moving poses.
     penetration_slop: f64,
+    /// Whether moving poses has left overlaps that are beyond that.
+    is_deep: bool,
     /// Length of a whole substep in s: what an overlap has to close in, however short a substep is.
     whole_substep_s: f64,
 }
@@ -64,24 +102,22 @@ impl ContactResolver {
         Self {
             detector: ContactDetector::new(parameters),
             solver: ContactSolver::new(parameters.solver)
-                .keeping_factors(parameters.relinearizations > 0),
+                .keeping_factors(parameters.tolerance_cm < f64::INFINITY),
             contacts: Vec::new(),
-            parting: Parting::default(),
+            skipped: SkippedContacts::default(),
             biases: Vec::new(),
             persistent: Vec::new(),
             warm_start_cache: WarmStartCache::default(),
-            depenetration: None,
-            is_exhausted: false,
+            depenetration: Box::new(Depenetration::new(parameters)),
             passivity: Passivity::default(),
             trial: Trial::default(),
             relinearization: Relinearization::new(parameters),
-            boat_radius: parameters.boat_radius_cm,
-            gyration_radius: parameters.gyration_radius_cm,
             // Overlaps that the paper's scheme accepts are left alone.
             penetration_slop: match parameters.scheme {
                 Scheme::Paper => penetration_slop.max(2.0 * parameters.overlap_tolerance_cm),
                 Scheme::Leapfrog | Scheme::Moreau => penetration_slop,
             },
+            is_deep: false,
             whole_substep_s: seconds(ticks(parameters.dt_s)),
         }
     }
@@ -119,25 +155,21 @@ impl ContactResolver {
         let margin = self
             .detector
             .detect_moving(boats, velocities, dt, &mut self.contacts);
-        let mut smallest = 0.0;
-        for contact in &self.contacts {
-            if contact.gap.gap < smallest {
-                smallest = contact.gap.gap;
-            }
-        }
-        self.is_exhausted = false;
+        let smallest = smallest_gap(&self.contacts).min(0.0);
+        self.is_deep = false;
         statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
         if smallest < -self.penetration_slop {
             self.depenetrate(poses, boats, velocities, margin, statistics);
+            self.is_deep = smallest_gap(&self.contacts) < -self.penetration_slop;
         }
-        self.parting.clear();
-        if self.relinearization.allowed_overlap.is_some() && self.detector.is_far() {
-            self.parting
+        self.skipped.clear();
+        if self.relinearization.is_on() && self.detector.is_far() {
+            self.skipped
                 .set_apart(&self.detector, velocities, dt, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
-        self.warm_start(poses.len());
+        self.warm_start();
         !self.contacts.is_empty()
     }
 
@@ -150,10 +182,7 @@ impl ContactResolver {
         margin: f64,
         statistics: &mut Statistics,
     ) {
-        let (radius, gyration_radius) = (self.boat_radius, self.gyration_radius);
-        let depenetration = self.depenetration.get_or_insert_with(|| {
-            Box::new(Depenetration::new(poses.len(), radius, gyration_radius))
-        });
+        let depenetration = &mut self.depenetration;
         depenetration.solver.share_room(&self.solver);
         let passes = depenetration.passes;
         let angular_momentum = orbital_angular_momentum(poses, velocities);
@@ -166,16 +195,15 @@ impl ContactResolver {
             &mut self.contacts,
         );
         self.solver.share_room(&depenetration.solver);
-        self.is_exhausted = self.solver.is_exhausted();
         statistics.depenetration_passes += depenetration.passes - passes;
         statistics.displaced_angular_momentum_cm2_s +=
             (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
     }
 
     /// Guesses that contacts which carried an impulse still do.
-    fn warm_start(&mut self, boats: usize) {
+    fn warm_start(&mut self) {
         self.warm_start_cache
-            .lookup(boats, &self.contacts, &mut self.solver.impulses);
+            .lookup(&self.contacts, &mut self.solver.impulses);
         self.persistent.clear();
         self.persistent
             .extend(self.solver.impulses.iter().map(|&impulse| impulse > 0.0));
@@ -195,110 +223,109 @@ impl ContactResolver {
         self.trial.overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`. Poses are
-    /// those at the substep's start.
+    /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`.
     ///
-    /// [`ContactOutcome::TooLong`] changes nothing but the statistics.
+    /// # Errors
+    /// [`NotTaken`]; nothing but the statistics has changed then.
     pub(crate) fn resolve(
         &mut self,
-        poses: &[Pose],
-        free: &[Velocity],
-        inertia: &[InverseInertia],
-        dt: f64,
+        motion: &Motion,
         shorter_possible: bool,
         statistics: &mut Statistics,
-    ) -> ContactOutcome {
-        let bias = VelocityBias {
-            dt,
-            closing_s: dt.max(self.whole_substep_s),
-            penetration_slop: self.penetration_slop,
-        };
-        if self.is_exhausted {
-            return ContactOutcome::TooLong;
-        }
+    ) -> Result<(), NotTaken> {
         self.solver.give_up_early(shorter_possible);
-        self.solve_and_relinearize(poses, free, inertia, bias, statistics);
-        let Self {
-            trial, detector, ..
-        } = &*self;
-        let velocities = &self.solver.velocities;
-        let is_apart = |allowed| {
-            let parting = &self.parting;
-            parting.is_apart(trial, detector, velocities, dt, allowed)
-        };
-        let is_short = !self.is_exhausted && !self.parting.is_empty();
-        if is_short && !self.relinearization.allowed_overlap.is_some_and(is_apart) {
-            self.take_parting_back(poses.len(), statistics);
-            self.solve_and_relinearize(poses, free, inertia, bias, statistics);
+        if self.solver.is_exhausted() {
+            return Err(NotTaken::Exhausted);
         }
-        if !self.is_exhausted && self.stop_driving(free, inertia, bias) {
-            if shorter_possible {
-                return ContactOutcome::TooLong;
+        let mut is_unsolved = self.is_deep;
+        loop {
+            match self.solve_and_check(motion, statistics) {
+                Solution::Solved => break,
+                Solution::Closing => self.restore_skipped(statistics),
+                Solution::Exhausted | Solution::Overlapping | Solution::Driven
+                    if shorter_possible =>
+                {
+                    return Err(NotTaken::TooLong);
+                }
+                Solution::Exhausted => return Err(NotTaken::Exhausted),
+                // Other biases lead to other poses, at which nobody looks for what was skipped.
+                Solution::Driven if !self.skipped.is_empty() => self.restore_skipped(statistics),
+                Solution::Driven => {
+                    if self.solve(None, motion, statistics) == Solution::Exhausted {
+                        return Err(NotTaken::Exhausted);
+                    }
+                    is_unsolved |= self.leaves_overlaps(motion);
+                    break;
+                }
+                Solution::Overlapping => {
+                    is_unsolved = true;
+                    break;
+                }
             }
-            // Other biases lead to other poses, at which nobody looks for what was left out.
-            if !self.parting.is_empty() {
-                self.take_parting_back(poses.len(), statistics);
-                self.solve_and_relinearize(poses, free, inertia, bias, statistics);
-                self.stop_driving(free, inertia, bias);
-            }
-            self.solve(None, free, inertia, statistics);
         }
-        if self.is_exhausted {
-            self.is_exhausted = !shorter_possible;
-            return ContactOutcome::TooLong;
+        if self
+            .detector
+            .moves_too_far(&self.solver.velocities, motion.dt)
+        {
+            return Err(NotTaken::TooLong);
         }
-        if self.detector.moves_too_far(&self.solver.velocities, dt) {
-            return ContactOutcome::TooLong;
-        }
-        let impulses = self.solver.impulses.iter().copied();
+        statistics.unsolved += u64::from(is_unsolved);
+        let impulses = self.solver.impulses.iter();
+        let entries = self.contacts.iter().zip(impulses);
         self.warm_start_cache
-            .replace(self.contacts.iter().map(Contact::key).zip(impulses));
-        ContactOutcome::Solved
+            .replace(entries.map(|(contact, &impulse)| CachedImpulse::new(contact, impulse)));
+        Ok(())
     }
 
-    /// Has the contacts that were left out solved for as well.
-    fn take_parting_back(&mut self, boats: usize, statistics: &mut Statistics) {
-        statistics.contacts += self.parting.give_back(&mut self.contacts);
-        self.warm_start(boats);
+    /// Adds the skipped contacts to the problem again.
+    fn restore_skipped(&mut self, statistics: &mut Statistics) {
+        statistics.contacts += self.skipped.restore(&mut self.contacts);
+        self.warm_start();
     }
 
-    /// Solves the contacts at hand, and relinearizes them if that was asked for.
-    fn solve_and_relinearize(
-        &mut self,
-        poses: &[Pose],
-        free: &[Velocity],
-        inertia: &[InverseInertia],
-        bias: VelocityBias,
-        statistics: &mut Statistics,
-    ) {
+    /// Solves the contacts at hand and looks at what it came to: at the gaps where boats end, at skipped contacts, at the
+    /// energy.
+    fn solve_and_check(&mut self, motion: &Motion, statistics: &mut Statistics) -> Solution {
+        let (free, bias) = (motion.free, self.bias(motion));
         self.biases.clear();
         self.biases.extend(self.contacts.iter().map(|contact| {
             let spin = free[contact.boat as usize].angular;
             bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         }));
-        self.solver.reset(poses.len(), &self.contacts);
-        let solved = self.solve(None, free, inertia, statistics);
-        if let Some(allowed) = self.relinearization.allowed_overlap
-            && solved
-        {
-            self.relinearize(poses, free, inertia, bias.dt, allowed, statistics);
+        self.solver.reset(free.len(), &self.contacts);
+        let mut solution = self.solve(None, motion, statistics);
+        if self.relinearization.is_on() && solution != Solution::Exhausted {
+            solution = self.relinearize(motion, solution, statistics);
+        }
+        if solution == Solution::Exhausted {
+            return solution;
+        }
+        let tolerance = self.relinearization.tolerance;
+        let (trial, detector) = (&self.trial, &self.detector);
+        let velocities = &self.solver.velocities;
+        let skipped = &self.skipped;
+        if !skipped.are_apart(trial, detector, velocities, motion.dt, tolerance) {
+            return Solution::Closing;
+        }
+        if self.stop_driving(motion) {
+            return Solution::Driven;
+        }
+        solution
+    }
+
+    fn bias(&self, motion: &Motion) -> VelocityBias {
+        VelocityBias {
+            dt: motion.dt,
+            closing_s: motion.dt.max(self.whole_substep_s),
+            penetration_slop: self.penetration_slop,
         }
     }
 
     /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back
     /// otherwise; returns whether there are any.
-    fn stop_driving(
-        &mut self,
-        free: &[Velocity],
-        inertia: &[InverseInertia],
-        bias: VelocityBias,
-    ) -> bool {
-        let problem = ContactProblem {
-            contacts: &self.contacts,
-            inertia,
-            free,
-            biases: &self.biases,
-        };
+    fn stop_driving(&mut self, motion: &Motion) -> bool {
+        let bias = self.bias(motion);
+        let problem = motion.problem(&self.contacts, &self.biases);
         if !passivity::may_drive(&problem, &self.solver.impulses, bias) {
             return false;
         }
@@ -311,57 +338,47 @@ impl ContactResolver {
         !driven.is_empty()
     }
 
-    /// Solves some islands again, or all; returns whether that succeeds.
+    /// Solves some islands again, or all: [`Solution::Solved`], [`Solution::Exhausted`], or [`Solution::Overlapping`]
+    /// where the constraints contradict each other. Then the velocities are those of the nearest problem that has a
+    /// solution.
     fn solve(
         &mut self,
         again: Option<&[u32]>,
-        free: &[Velocity],
-        inertia: &[InverseInertia],
+        motion: &Motion,
         statistics: &mut Statistics,
-    ) -> bool {
+    ) -> Solution {
         self.trial.set_old();
         let Self {
             contacts,
             biases,
             solver,
-            is_exhausted,
             ..
         } = self;
-        let problem = ContactProblem {
-            contacts,
-            inertia,
-            free,
-            biases,
-        };
+        let problem = motion.problem(contacts, biases);
         let report = match again {
             Some(islands) => solver.solve_again(&problem, islands),
             None => solver.solve(&problem),
         };
         if solver.is_exhausted() {
-            *is_exhausted = true;
-            return false;
+            return Solution::Exhausted;
         }
         statistics.count(&report);
         if report.converged {
-            return true;
+            return Solution::Solved;
         }
         // Overlaps that cannot all close within the substep contradict each other. Without them, rest
         // satisfies every constraint, and impulses stay bounded.
-        statistics.unsolved += 1;
         biases.iter_mut().for_each(|bias| *bias = bias.max(0.0));
-        let problem = ContactProblem {
-            contacts,
-            inertia,
-            free,
-            biases,
-        };
+        let problem = motion.problem(contacts, biases);
         let is_solved = solver.solve(&problem).converged;
         if !is_solved && !solver.is_exhausted() {
             solver.impulses.fill(0.0);
             solver.solve_as(Solver::GaussSeidel, &problem);
         }
-        *is_exhausted = solver.is_exhausted();
-        false
+        if solver.is_exhausted() {
+            return Solution::Exhausted;
+        }
+        Solution::Overlapping
     }
 
     /// Moves the boats to the end of a substep that was solved, if a trial has put them there.

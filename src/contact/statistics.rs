@@ -20,9 +20,13 @@ pub struct Statistics {
     pub factored_rows: u64,
     /// Most numbers that the Cholesky factors of one solve held.
     pub most_factor_entries: u64,
-    /// Solves whose constraints contradicted each other or that exceeded their residual; velocities
-    /// are then those of the nearest problem that can be solved.
+    /// Substeps that left overlaps deeper than the tolerance: they could not be shortened, and constraints contradicted each
+    /// other or relinearization passes did not converge; or moving poses could not undo deep overlaps. Velocities are then those of the nearest problem that can be
+    /// solved.
     pub unsolved: u64,
+    /// Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have driven boats, or a boat
+    /// moved too far.
+    pub halved_substeps: u64,
     /// Passes that moved deeply overlapping hulls apart.
     pub depenetration_passes: u64,
     /// Substeps that had to rebuild the neighbor list.
@@ -41,10 +45,17 @@ impl Statistics {
     /// All of them by name.
     pub fn named(&self) -> Value {
         let counts = named_fields!(self; substeps solves contacts islands solver_iterations
-            factored_rows most_factor_entries unsolved depenetration_passes neighbor_builds);
+            factored_rows most_factor_entries unsolved halved_substeps depenetration_passes
+            neighbor_builds);
         let worst = named_fields!(self; worst_residual_cm_s worst_overlap_cm
             displaced_angular_momentum_cm2_s);
         counts.into_iter().chain(worst).collect()
+    }
+
+    /// What says whether overlaps stayed within the tolerance, by name.
+    pub fn named_of_steps(&self) -> Value {
+        let named = named_fields!(self; worst_overlap_cm unsolved halved_substeps);
+        named.into_iter().collect()
     }
 
     /// Counts one solve.

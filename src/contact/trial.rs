@@ -1,7 +1,8 @@
 //! The boats where a solve would move them, and the gaps there.
 
+use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
-use crate::geometry::{Feature, Hull, HullPose, Pose, Velocity, smaller};
+use crate::geometry::{Hull, HullPose, Pose, Velocity, smaller};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
@@ -89,11 +90,20 @@ impl Trial {
         pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
-    /// Whether the boats of a contact move far enough to close it.
+    /// Whether the boats of contact k move far enough to close it, or the other contact of the same two: a touch may slide
+    /// from one to the other.
     #[inline]
-    pub(super) fn may_close(&self, contact: &Contact) -> bool {
+    pub(super) fn may_close(&self, contacts: &[Contact], k: usize) -> bool {
+        let contact = &contacts[k];
         let way = |boat: usize| self.ways[boat];
-        contact.gap.gap <= way(contact.boat as usize) + contact.second().map_or(0.0, way)
+        let ways = way(contact.boat as usize) + contact.second().map_or(0.0, way);
+        contact.gap.gap <= ways
+            || contact.has_ends()
+                && first_of_two(contacts, k).is_some_and(|first| {
+                    contacts[first..first + 2]
+                        .iter()
+                        .any(|twin| twin.gap.gap <= ways)
+                })
     }
 
     /// Whether boats with the velocities that were solved for last end at the trial's poses.
@@ -101,9 +111,8 @@ impl Trial {
         self.is_end
     }
 
-    /// The gap of contact k. Between two hulls, or a hull and an obstacle, the touch may have passed from
-    /// one end to the other without moving: a contact follows it, and the only contact of a pair stands
-    /// for the whole pair. `pair` keeps the last such contact and the gaps of its two ends for its twin.
+    /// The gap of contact k where its touch has moved to; infinite if it is gone. The only contact of a pair stands for the whole pair. `pair`
+    /// keeps the number of the first of two contacts of a pair and the gaps of both for the second.
     #[inline]
     pub(super) fn gap(
         &self,
@@ -113,32 +122,26 @@ impl Trial {
         pair: &mut Option<(usize, [f64; 2])>,
     ) -> f64 {
         let contact = &contacts[k];
-        let end = match contact.feature {
-            Feature::Stern if contact.has_ends() => 0,
-            Feature::Bow if contact.has_ends() => 1,
-            _ => return detector.gap_at(contact, &self.hulls).gap,
-        };
-        let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contact.is_twin(other));
-        let follows = is_twin(k.checked_sub(1).and_then(|before| contacts.get(before)));
-        let gaps = match *pair {
-            Some((before, gaps)) if follows && before + 1 == k => gaps,
-            _ => detector.end_gaps_at(contact, &self.hulls),
-        };
-        *pair = Some((k, gaps));
-        let gap = if follows || is_twin(contacts.get(k + 1)) {
-            gaps[end]
-        } else {
-            smaller(gaps[0], gaps[1])
-        };
-        if gap == f64::INFINITY {
-            return self.own_gap(detector, contact);
+        if !contact.has_ends() || contact.feature.side().is_none() {
+            return detector.gap_at(contact, &self.hulls).gap;
         }
-        gap
-    }
-
-    /// The gap of a contact where no end faces the other side any more.
-    #[cold]
-    fn own_gap(&self, detector: &ContactDetector, contact: &Contact) -> f64 {
-        detector.gap_at(contact, &self.hulls).gap
+        let Some(first) = first_of_two(contacts, k) else {
+            let [stern, bow] = detector.touches_at(contact, &self.hulls);
+            return smaller(stern.gap, bow.gap);
+        };
+        let gaps = match *pair {
+            Some((known, gaps)) if known == first => gaps,
+            _ => {
+                let touches = detector.touches_at(contact, &self.hulls);
+                let [stern, bow] = [touches[0].gap, touches[1].gap];
+                if are_swapped(&touches, &contacts[first..]) {
+                    [bow, stern]
+                } else {
+                    [stern, bow]
+                }
+            }
+        };
+        *pair = Some((first, gaps));
+        gaps[k - first]
     }
 }

@@ -1,15 +1,48 @@
 //! Which contacts carried an impulse in the last substep: the guess for the next one.
 
-use super::Contact;
-use super::contact::ContactKey;
+use super::touches::{Place, distance, place};
+use super::{Contact, Partner};
+use std::ops::Range;
 
-/// A contact that carried an impulse, and the impulse in cm/s.
-pub(crate) type CachedImpulse = (ContactKey, f64);
+/// A contact of the last substep with the impulse that it carried.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct CachedImpulse {
+    /// The boat that the normal pushed.
+    pub boat: u32,
+    /// The other side.
+    pub partner: Partner,
+    /// Where the touch was, along both cores.
+    place: Place,
+    /// In cm/s; 0 for none.
+    pub impulse: f64,
+}
+
+impl CachedImpulse {
+    /// A contact that carried an impulse.
+    pub(super) fn new(contact: &Contact, impulse: f64) -> Self {
+        Self {
+            boat: contact.boat,
+            partner: contact.partner,
+            place: place(&contact.gap),
+            impulse,
+        }
+    }
+
+    /// Whether all its numbers are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.impulse.is_finite() && self.place.iter().all(|along| along.is_finite())
+    }
+
+    #[inline]
+    fn is_of(&self, contact: &Contact) -> bool {
+        (self.boat == contact.boat) & (self.partner == contact.partner)
+    }
+}
 
 /// The contacts and impulses of one substep, to be looked up by contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WarmStartCache {
-    /// In the order of detection; contacts without an impulse may be missing.
+    /// In the order of detection, the contacts of a pair one after the other; those without an impulse may be missing.
     entries: Vec<CachedImpulse>,
     /// The last entry of each boat, and for each entry the one before it of the same boat.
     of_boat: Vec<u32>,
@@ -37,97 +70,90 @@ impl WarmStartCache {
         self.entries.extend(entries);
     }
 
-    /// The impulse that each contact carried, 0 if it carried none, in a flock of so many boats. Where an end
-    /// slides off the other hull's end onto its side, a contact changes its name and continues: it inherits the
-    /// impulse of a contact of the same two that is there no more.
+    /// The impulse that each contact carried, 0 if it carried none: each impulse goes to that
+    /// contact of the same two bodies which is nearest to where it was.
     ///
     /// Contacts mostly come in the order of the last substep, a few gone and a few new.
-    pub(super) fn lookup(&mut self, boats: usize, contacts: &[Contact], impulses: &mut Vec<f64>) {
+    pub(super) fn lookup(&mut self, contacts: &[Contact], impulses: &mut Vec<f64>) {
         impulses.clear();
-        let mut next = 0;
-        let mut is_indexed = false;
-        for (k, contact) in contacts.iter().enumerate() {
-            let key = contact.key();
-            let mut place = next;
+        impulses.resize(contacts.len(), 0.0);
+        if self.entries.is_empty() {
+            return;
+        }
+        let (mut next, mut is_indexed, mut k) = (0, false, 0);
+        for pair in contacts.chunk_by(Contact::is_twin) {
             let last = self.entries.len().min(next + AHEAD);
-            while place < last && !is_same(self.entries[place].0, key) {
-                place += 1;
-            }
-            let impulse = if place < last {
-                next = place + 1;
-                let impulse = self.entries[place].1;
-                if impulse > 0.0 || !contact.has_ends() {
-                    impulse.max(0.0)
-                } else {
-                    self.inherited(contacts, k, place)
+            let ahead = self.entries[next..last].iter();
+            let found = ahead
+                .enumerate()
+                .find(|(_, entry)| entry.is_of(&pair[0]))
+                .map(|(passed, _)| next + passed);
+            let entries = match found {
+                Some(start) => {
+                    let entries = self.entries_from(start);
+                    next = entries.end;
+                    entries
                 }
-            } else if self.entries.is_empty() {
-                0.0
-            } else {
-                if !is_indexed {
-                    self.index(boats);
-                    is_indexed = true;
+                None => {
+                    if !is_indexed {
+                        self.index();
+                        is_indexed = true;
+                    }
+                    self.search(&pair[0])
                 }
-                self.search(contacts, k)
             };
-            impulses.push(impulse);
+            for entry in &self.entries[entries] {
+                impulses[k + nearest(pair, entry)] += entry.impulse.max(0.0);
+            }
+            k += pair.len();
         }
     }
 
-    /// The impulse that contact k inherits from its pair's other entry, beside its own.
-    fn inherited(&self, contacts: &[Contact], k: usize, place: usize) -> f64 {
-        let beside = [place.checked_sub(1), Some(place + 1)];
-        let beside = beside.into_iter().flatten();
-        beside
-            .filter_map(|other| self.entries.get(other))
-            .find(|entry| is_heir(contacts, k, entry))
-            .map_or(0.0, |&(_, impulse)| impulse)
+    /// The entries of the same two bodies, from the first of them on.
+    #[inline]
+    fn entries_from(&self, start: usize) -> Range<usize> {
+        let pair = |entry: &CachedImpulse| (entry.boat, entry.partner);
+        let (first, rest) = (pair(&self.entries[start]), &self.entries[start..]);
+        start..start + rest.iter().take_while(|entry| pair(entry) == first).count()
     }
 
     // Out of line, like the search, so that looking up contacts in order stays in registers.
     #[inline(never)]
-    fn index(&mut self, boats: usize) {
+    fn index(&mut self) {
+        let boats = self.entries.iter().map(|entry| entry.boat as usize + 1);
         self.of_boat.clear();
-        self.of_boat.resize(boats, NONE);
+        self.of_boat.resize(boats.max().unwrap_or(0), NONE);
         self.before.clear();
-        for (place, ((boat, _, _), _)) in self.entries.iter().enumerate() {
-            let last = &mut self.of_boat[*boat as usize];
-            self.before.push(std::mem::replace(last, place as u32));
+        for (index, entry) in self.entries.iter().enumerate() {
+            let last = &mut self.of_boat[entry.boat as usize];
+            self.before.push(std::mem::replace(last, index as u32));
         }
     }
 
-    /// The impulse of contact k, wherever it is.
+    /// The entries of a contact's two bodies, wherever they are.
     #[inline(never)]
-    fn search(&self, contacts: &[Contact], k: usize) -> f64 {
-        let key = contacts[k].key();
-        let mut inherited = 0.0;
-        let mut place = self.of_boat[key.0 as usize];
-        while let Some(entry) = self.entries.get(place as usize) {
-            if entry.0 == key && entry.1 > 0.0 {
-                return entry.1;
+    fn search(&self, contact: &Contact) -> Range<usize> {
+        let mut index = self
+            .of_boat
+            .get(contact.boat as usize)
+            .copied()
+            .unwrap_or(NONE);
+        let mut first = None;
+        while let Some(entry) = self.entries.get(index as usize) {
+            if entry.is_of(contact) {
+                first = Some(index as usize);
+            } else if first.is_some() {
+                break;
             }
-            if is_heir(contacts, k, entry) {
-                inherited = entry.1;
-            }
-            place = self.before[place as usize];
+            index = self.before[index as usize];
         }
-        inherited
+        first.map_or(0..0, |first| self.entries_from(first))
     }
 }
 
-/// Equality of keys, without the branches of comparing tuples and choices.
+/// Which of the contacts of two bodies is nearest to where an impulse was.
 #[inline]
-fn is_same(a: ContactKey, b: ContactKey) -> bool {
-    (a.0 == b.0) & (a.2 == b.2) && a.1 == b.1
-}
-
-/// Whether contact k continues with an entry's impulse under another name.
-fn is_heir(contacts: &[Contact], k: usize, &(known, impulse): &CachedImpulse) -> bool {
-    let key = contacts[k].key();
-    if !(impulse > 0.0 && (known.0, known.1) == (key.0, key.1) && contacts[k].has_ends()) {
-        return false;
-    }
-    // A pair has at most two contacts, which are found one after the other.
-    let near = &contacts[k.saturating_sub(1)..(k + 2).min(contacts.len())];
-    near.iter().all(|other| other.key() != known)
+fn nearest(pair: &[Contact], entry: &CachedImpulse) -> usize {
+    let far = |contact: &Contact| distance(place(&contact.gap), entry.place);
+    usize::from(matches!(pair, [first, second] if far(second) < far(first)))
 }

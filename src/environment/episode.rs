@@ -171,8 +171,8 @@ impl Episode {
 
     /// Statistics of the episode so far.
     pub fn summary(&self) -> EpisodeSummary {
-        let bw_s = self.state.flock.parameters().bw_s;
-        self.state.statistics.summary(&self.state.schedule, bw_s)
+        let state = &self.state;
+        state.statistics.summary(&state.schedule, &state.flock)
     }
 
     /// The leaders' targets of the control step that comes next.
@@ -299,7 +299,7 @@ impl Episode {
             Steering::Held(&state.rudders)
         };
         let advanced = match &mut state.credit {
-            None => state.flock.advance_while(keep_going, end, steering),
+            None => state.flock.advance_to(keep_going, end, steering),
             Some(credit) => {
                 credit.start();
                 let watch = &mut |flock: &Integrator| credit.add(flock);

@@ -6,6 +6,7 @@ use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::OrderingWatch;
 use crate::analysis::quantities::{Boats, SUMMARIZED, summarized, summarized_values};
 use crate::by_name;
+use crate::flock::Flock;
 use crate::parameters::{Target, Value, named_fields};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::f64::consts::PI;
@@ -95,13 +96,14 @@ impl EpisodeStatistics {
         self.observed += observed as u64;
     }
 
-    /// The summary of an episode with these statistics and this backward duration.
-    pub(super) fn summary(&self, schedule: &EpisodeSchedule, bw_s: f64) -> EpisodeSummary {
+    /// The summary of an episode with these statistics and this flock.
+    pub(super) fn summary(&self, schedule: &EpisodeSchedule, flock: &Flock) -> EpisodeSummary {
+        let substeps = flock.statistics();
         let steps = f64::from(schedule.step);
         let window = f64::from(self.window_steps);
         EpisodeSummary {
             flock_seed: schedule.flock_seed,
-            bw_s,
+            bw_s: flock.parameters().bw_s,
             steps: schedule.step,
             total_reward: self.reward,
             terms: self.terms.map(|sum| sum / steps),
@@ -109,6 +111,9 @@ impl EpisodeStatistics {
             share_towards_target: f64::from(self.steps_towards_target) / window,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed.max(1) as f64,
+            worst_overlap_cm: substeps.worst_overlap_cm,
+            unsolved: substeps.unsolved,
+            halved_substeps: substeps.halved_substeps,
         }
     }
 }
@@ -122,7 +127,8 @@ impl EpisodeSummary {
         let means = self.averages.named().chain([share]);
         let means = means.filter(|(_, mean)| !mean.is_nan());
         let [printed, wide] = self.ordering_times_s;
-        let first = named_fields!(self; flock_seed bw_s steps total_reward clip_rate);
+        let first = named_fields!(self; flock_seed bw_s steps total_reward clip_rate
+            worst_overlap_cm unsolved halved_substeps);
         let times = [("ordering_time_s", printed), ("ordering_time_wide_s", wide)];
         let numbers = means
             .chain(times)
@@ -156,4 +162,10 @@ pub struct EpisodeSummary {
     pub ordering_times_s: [f64; 2],
     /// Part of the observed numbers that were clipped at their bounds; 0 without leaders.
     pub clip_rate: f64,
+    /// The flock's [`Statistics`](crate::contact::Statistics) of that name at the episode's end.
+    pub worst_overlap_cm: f64,
+    /// The same.
+    pub unsolved: u64,
+    /// The same.
+    pub halved_substeps: u64,
 }

@@ -25,8 +25,9 @@ impl Flock {
             .contacts
             .iter()
             .zip(&resolver.solver.impulses)
-            .map(|(contact, &impulse)| {
-                let gap = detector.gap_at(contact, &self.integrator.boats);
+            .enumerate()
+            .map(|(k, (contact, &impulse))| {
+                let gap = detector.moved_gap(&resolver.contacts, k, &self.integrator.boats);
                 let force = if impulse > 0.0 {
                     impulse / self.integrator.step_length_s
                 } else {

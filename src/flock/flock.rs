@@ -4,12 +4,10 @@ use super::placement;
 use crate::analysis::OrderParameters;
 use crate::analysis::quantities::{self, Recorded};
 use crate::clock::{Ticks, seconds, ticks};
-use crate::contact::{KeepGoing, Statistics};
+use crate::contact::{KeepGoing, NotTaken, Statistics};
 use crate::error::{FlockError, Result};
 use crate::geometry::{HullPose, Pose, Velocity};
-use crate::integrator::{
-    Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, StepOutcome, Substep,
-};
+use crate::integrator::{Checkpoint, Integrator, PhaseMoment, PhaseSchedule, Steering, Substep};
 use crate::parameters::{FlockParameters, Targets};
 
 /// The latest time a flock may reach: 10⁹ s.
@@ -38,6 +36,10 @@ const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it 
                         boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
 const TOO_MUCH: &str = "the contacts of a substep are too many and too entangled to be solved; a smaller dt_s, slower \
                         boats or milder constants may help";
+const OUT_OF_RANGE: &str = "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
+                            may help";
+const LEFT_THE_WATER: &str = "would leave the water: it moves too far within dt_s for its contacts to hold it; smaller \
+                              dt_s, slower boats or milder constants may help";
 
 impl Flock {
     /// A flock placed at random without overlap, at rest.
@@ -175,11 +177,12 @@ impl Flock {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
-    /// [`FlockError::Solver`] if numbers left their range. The flock is unchanged then.
+    /// [`FlockError::Solver`] if the motion left the range or the water. The flock is unchanged then.
     pub fn advance(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<()> {
         let end = self.end_of(duration_s)?;
         self.check_rudder(rudder)?;
-        self.advance_to(end, rudder.map_or(Steering::Law, Steering::Held))
+        let steering = rudder.map_or(Steering::Law, Steering::Held);
+        self.advance_to(&|| true, end, steering)
     }
 
     /// When a duration from now on ends.
@@ -218,21 +221,13 @@ impl Flock {
         })
     }
 
-    /// Advances to a time with checked steering. Substeps end on multiples of dt, on phase switches and
-    /// at `end`.
+    /// Advances to a time with checked steering, asking now and then whether to continue. Substeps end on multiples of dt,
+    /// on phase switches and at `end`.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] if numbers left their range; the flock is unchanged then.
-    pub fn advance_to(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        self.advance_while(&|| true, end, steering)
-    }
-
-    /// As [`Self::advance_to`], asking now and then whether to continue.
-    ///
-    /// # Errors
-    /// As for [`Self::advance_to`], and [`FlockError::Interrupted`] where `keep_going` said no; the flock is unchanged
-    /// then.
-    pub fn advance_while(
+    /// [`FlockError::Solver`] if the motion left the range or the water, [`FlockError::Interrupted`] where `keep_going`
+    /// said no; the flock is unchanged then.
+    pub fn advance_to(
         &mut self,
         keep_going: KeepGoing,
         end: Ticks,
@@ -241,7 +236,7 @@ impl Flock {
         self.advance_watched(keep_going, end, steering, &mut |_| {})
     }
 
-    /// As [`Self::advance_while`], showing the motion after every substep.
+    /// As [`Self::advance_to`], showing the motion after every substep.
     pub(crate) fn advance_watched(
         &mut self,
         keep_going: KeepGoing,
@@ -251,46 +246,37 @@ impl Flock {
     ) -> Result<()> {
         self.integrator.save(&mut self.before);
         let start = self.time;
+        let result = self.take_substeps(keep_going, end, steering, watch);
+        if result.is_err() {
+            self.integrator.return_to(&self.before);
+            self.time = start;
+        }
+        result
+    }
+
+    /// Takes substeps until `end`, and checks where they lead.
+    fn take_substeps(
+        &mut self,
+        keep_going: KeepGoing,
+        end: Ticks,
+        steering: Steering,
+        watch: &mut impl FnMut(&Integrator),
+    ) -> Result<()> {
         let dt = ticks(self.parameters.dt_s);
-        let shortest = (dt / SHORTEST_SHARE).max(1);
         let unsolved = self.integrator.statistics.unsolved;
-        let mut seen = self.work();
-        let mut refilled = 0;
+        let (mut seen, mut refilled) = (self.work(), 0);
         while self.time < end {
-            let moment = self.schedule.at(self.time);
             let grid = (self.time / dt + 1) * dt;
             if grid > refilled {
-                self.integrator
-                    .contacts
-                    .solver
-                    .refill(self.parameters.n_boats);
+                let solver = &mut self.integrator.contacts.solver;
+                solver.refill(self.parameters.n_boats);
                 refilled = grid;
             }
-            let mut substep = Substep {
-                start: self.time,
-                length: end.min(grid).min(self.time + moment.left) - self.time,
-                phase: moment.phase,
-                steering,
-            };
-            loop {
-                let failure = match self.integrator.step(&substep) {
-                    StepOutcome::Taken => break,
-                    StepOutcome::TooLong if substep.length > shortest => {
-                        substep.length = substep.length.div_ceil(2);
-                        continue;
-                    }
-                    StepOutcome::TooLong => TOO_FAST,
-                    StepOutcome::Exhausted => TOO_MUCH,
-                };
-                self.return_to_start(start);
-                return Err(FlockError::Solver(failure.to_owned()));
-            }
-            self.time += substep.length;
+            self.take_substep(end.min(grid), steering)?;
             watch(&self.integrator);
             if self.work() - seen >= WORK_BETWEEN_LOOKS {
                 seen = self.work();
                 if !keep_going() {
-                    self.return_to_start(start);
                     return Err(FlockError::Interrupted);
                 }
             }
@@ -299,15 +285,38 @@ impl Flock {
                 break;
             }
         }
-        if self.integrator.is_in_range() {
-            return Ok(());
+        let fault = match self.integrator.left_the_water(&self.before.poses) {
+            _ if !self.integrator.is_in_range() => OUT_OF_RANGE.to_owned(),
+            Some(boat) => format!("boat {boat} {LEFT_THE_WATER}"),
+            None => return Ok(()),
+        };
+        Err(FlockError::Solver(fault))
+    }
+
+    /// Takes a substep that ends at `end`, at the next phase switch, or before, if it has to be shortened.
+    fn take_substep(&mut self, end: Ticks, steering: Steering) -> Result<()> {
+        let shortest = (ticks(self.parameters.dt_s) / SHORTEST_SHARE).max(1);
+        let moment = self.schedule.at(self.time);
+        let mut substep = Substep {
+            start: self.time,
+            length: end.min(self.time + moment.left) - self.time,
+            phase: moment.phase,
+            steering,
+        };
+        while let Err(reason) = self.integrator.step(&substep) {
+            let fault = match reason {
+                NotTaken::TooLong if substep.length > shortest => {
+                    substep.length = substep.length.div_ceil(2);
+                    self.integrator.statistics.halved_substeps += 1;
+                    continue;
+                }
+                NotTaken::TooLong => TOO_FAST,
+                NotTaken::Exhausted => TOO_MUCH,
+            };
+            return Err(FlockError::Solver(fault.to_owned()));
         }
-        self.return_to_start(start);
-        Err(FlockError::Solver(
-            "the motion left the range of 1e9 cm, cm/s, rad and rad/s; smaller dt_s or milder constants \
-             may help"
-                .to_owned(),
-        ))
+        self.time += substep.length;
+        Ok(())
     }
 
     /// What the substeps so far cost: boats moved, contacts and rows factored.
@@ -323,30 +332,9 @@ impl Flock {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Undoes the substeps of an advance.
-    fn return_to_start(&mut self, start: Ticks) {
-        self.integrator.return_to(&self.before);
-        self.time = start;
-    }
-
-    /// Advances towards a time, but no further than about so many substeps times boats, and returns
-    /// whether it is reached. It stops on the substep grid, where stopping changes nothing.
-    ///
-    /// # Errors
-    /// As for [`Self::advance_to`].
-    pub fn advance_towards(
-        &mut self,
-        end: Ticks,
-        steering: Steering,
-        boat_substeps: u64,
-    ) -> Result<bool> {
-        let stop = self.stop_towards(end, boat_substeps);
-        self.advance_to(stop, steering)?;
-        Ok(stop == end)
-    }
-
-    /// Where [`Self::advance_towards`] stops.
-    pub(crate) fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
+    /// Where an advance towards a time stops that may take about so many substeps times boats: on the substep grid, where
+    /// stopping changes nothing.
+    pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
         end.min((self.time / dt + substeps) * dt)

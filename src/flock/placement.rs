@@ -274,14 +274,7 @@ fn by_growth(
             ..parameters.clone()
         };
         let mut detector = ContactDetector::new(&grown);
-        push_apart(
-            &mut detector,
-            &mut poses,
-            parameters.boat_radius_cm,
-            parameters.gyration_radius_cm,
-            60,
-            keep_going,
-        );
+        push_apart(&mut detector, &mut poses, parameters, 60, keep_going);
     }
     for pose in &mut poses {
         pose.heading = pose.heading.rem_euclid(TAU);

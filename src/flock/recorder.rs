@@ -303,7 +303,7 @@ impl<T: Real> Recorder<T> {
     /// Where it pauses for its work changes nothing.
     ///
     /// # Errors
-    /// As for [`Flock::advance_while`] and [`Flock::change`].
+    /// As for [`Flock::advance_to`] and [`Flock::change`].
     pub fn run(&mut self, keep_going: KeepGoing, boat_substeps: u64) -> Result<Pause> {
         let mut left = boat_substeps;
         loop {
@@ -329,7 +329,7 @@ impl<T: Real> Recorder<T> {
             };
             let before = self.flock.statistics().substeps;
             let stop = self.flock.stop_towards(next, left);
-            self.flock.advance_while(keep_going, stop, steering)?;
+            self.flock.advance_to(keep_going, stop, steering)?;
             let substeps = self.flock.statistics().substeps - before;
             left = left.saturating_sub(substeps * self.flock.parameters().n_boats as u64);
         }

@@ -3,6 +3,7 @@
 
 use super::flock::{Flock, LATEST};
 use crate::clock::Ticks;
+use crate::contact::CachedImpulse;
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
@@ -10,7 +11,7 @@ use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, refused, seal, unseal};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-const MAGIC: Magic = *b"flockst2";
+const MAGIC: Magic = *b"flockst3";
 
 /// What a snapshot holds.
 #[derive(Debug, Serialize, Deserialize)]
@@ -44,14 +45,11 @@ impl Snapshot {
             && motion
                 .warm_start
                 .iter()
-                .all(|((boat, _, _), _)| (*boat as usize) < n);
+                .all(|entry| (entry.boat as usize) < n);
         let vectors = last.persistent_acceleration.iter().chain(reference);
         let finite = motion.poses.iter().all(Pose::is_in_range)
             && motion.velocities.iter().all(Velocity::is_in_range)
-            && motion
-                .warm_start
-                .iter()
-                .all(|(_, impulse)| impulse.is_finite())
+            && motion.warm_start.iter().all(CachedImpulse::is_finite)
             && last.rudder.iter().flatten().all(|s| s.abs() <= 1.0)
             && vectors
                 .flatten()

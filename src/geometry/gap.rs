@@ -18,6 +18,8 @@ pub struct Gap {
     pub normal: Vec2,
     /// Where the first hull is pushed: the coordinate along its core, from its center to the bow, in cm.
     pub along: f64,
+    /// The same along the second hull's core; 0 at a round wall.
+    pub along_j: f64,
     /// Lever arm of the normal about the first body's center in cm.
     pub arm_i: f64,
     /// Lever arm of the normal about the second body's center in cm; 0 for a wall.
@@ -112,6 +114,7 @@ impl<'a> Pair<'a> {
             gap: distance - (self.hull_a.radius + self.hull_b.radius),
             normal,
             along: touch.along_a,
+            along_j: touch.along_b,
             arm_i: touch.along_a * cross(self.a.axis, normal),
             arm_j: touch.along_b * cross(self.b.axis, normal),
             bend: 0.0,
@@ -158,16 +161,6 @@ impl<'a> Pair<'a> {
             }
             (at_a, at_b) => at_a.or(at_b),
         }
-    }
-
-    /// The square of their distance, infinite if no end faces the other core.
-    #[inline]
-    fn square_towards(&self, side: f64) -> f64 {
-        let square = |touch: Touch| touch.between.norm_squared();
-        let follows = if self.cosine >= 0.0 { side } else { -side };
-        let of_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
-        let of_b = self.end_of_b(follows).map_or(f64::INFINITY, square);
-        smaller(of_a, of_b)
     }
 
     fn cores_cross(&self) -> bool {
@@ -234,20 +227,50 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
         .unwrap_or_else(|| crossed_gap(a, hull_a, b, hull_b))
 }
 
-/// The gaps of the two groups of ends, at the stern and at the bow of the first hull: infinite where no end faces the
-/// other hull. That of crossed cores counts for both.
+/// Where one of the two touches of two hulls is, and how near they are there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct EndTouch {
+    /// The gap in cm; infinite if no end of the group faces the other hull.
+    pub(crate) gap: f64,
+    /// The coordinates along both cores, as in [`Gap::along`] and [`Gap::along_j`].
+    pub(crate) along: [f64; 2],
+}
+
+impl EndTouch {
+    /// No end of the group faces the other hull.
+    pub(crate) const MISSING: Self = Self {
+        gap: f64::INFINITY,
+        along: [0.0; 2],
+    };
+}
+
+impl From<&Gap> for EndTouch {
+    fn from(gap: &Gap) -> Self {
+        Self {
+            gap: gap.gap,
+            along: [gap.along, gap.along_j],
+        }
+    }
+}
+
+/// The touches of the two groups of ends, at the stern and at the bow of the first hull. Crossed cores count for both.
 #[inline]
-pub(crate) fn end_gaps(first: Placed, second: Placed) -> [f64; 2] {
+pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
     let lengths = hull_a.half_length + hull_b.half_length;
-    let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
+    let touches = [-1.0, 1.0].map(|side| pair.nearest_towards(side));
+    let squares =
+        touches.map(|touch| touch.map_or(f64::INFINITY, |touch| touch.between.norm_squared()));
     let near = smaller(squares[0], squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
     let may_cross = pair.apart.norm_squared() <= lengths * lengths;
     if near || (may_cross && pair.cores_cross()) {
-        return [crossed_gap(a, hull_a, b, hull_b).gap; 2];
+        return [EndTouch::from(&crossed_gap(a, hull_a, b, hull_b)); 2];
     }
-    squares.map(|square| square.sqrt() - (hull_a.radius + hull_b.radius))
+    [0, 1].map(|group| EndTouch {
+        gap: squares[group].sqrt() - (hull_a.radius + hull_b.radius),
+        along: touches[group].map_or([0.0; 2], |touch| [touch.along_a, touch.along_b]),
+    })
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the
@@ -260,6 +283,7 @@ fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
         gap: distance - (hull_a.radius + hull_b.radius),
         normal,
         along: (p - a.center).dot(&a.axis).clamp(-h_a, h_a),
+        along_j: (q - b.center).dot(&b.axis).clamp(-h_b, h_b),
         arm_i: cross(p - a.center, normal),
         arm_j: cross(q - b.center, normal),
         bend: 0.0,

@@ -30,7 +30,7 @@ impl Integrator {
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);
-        checkpoint.warm_start.retain(|&(_, impulse)| impulse > 0.0);
+        checkpoint.warm_start.retain(|entry| entry.impulse > 0.0);
         checkpoint
     }
 

@@ -3,30 +3,41 @@
 use super::state::Integrator;
 use super::substep::Substep;
 use crate::clock::seconds;
-use crate::contact::ContactOutcome;
+use crate::contact::{Motion, NotTaken};
 
 /// Part of `dt_s` below which no substep is cut for the sake of its contacts.
 const SHORTEST_SHARE: f64 = 1.0 / 16.0;
 
 impl Integrator {
-    /// Turns free velocities into velocities that respect the contacts of a substep.
-    pub(super) fn solve_contacts(&mut self, substep: &Substep) -> ContactOutcome {
+    /// Whether a substep of this length may be cut for the sake of its contacts.
+    pub(super) fn is_divisible(&self, dt: f64) -> bool {
+        dt > SHORTEST_SHARE * self.parameters.dt_s
+    }
+
+    /// Turns free velocities into velocities that respect the contacts of a substep; whether there are any.
+    ///
+    /// # Errors
+    /// [`NotTaken`].
+    pub(super) fn solve_contacts(&mut self, substep: &Substep) -> Result<bool, NotTaken> {
         let dt = seconds(substep.length);
-        let shorter_possible = dt > SHORTEST_SHARE * self.parameters.dt_s;
+        let is_divisible = self.is_divisible(dt);
         let (contacts, free, statistics) = (&mut self.contacts, &self.free, &mut self.statistics);
         if !contacts.find(&mut self.poses, &mut self.boats, free, dt, statistics) {
             if contacts.detector.moves_too_far(free, dt) {
-                return ContactOutcome::TooLong;
+                return Err(NotTaken::TooLong);
             }
             contacts.clear_warm_start();
             self.velocities.copy_from_slice(free);
-            return ContactOutcome::Untouched;
+            return Ok(false);
         }
-        let (poses, inertia) = (&self.poses, &self.inertia);
-        let outcome = contacts.resolve(poses, free, inertia, dt, shorter_possible, statistics);
-        if outcome == ContactOutcome::Solved {
-            self.velocities.copy_from_slice(&contacts.solver.velocities);
-        }
-        outcome
+        let motion = Motion {
+            poses: &self.poses,
+            free,
+            inertia: &self.inertia,
+            dt,
+        };
+        contacts.resolve(&motion, is_divisible, statistics)?;
+        self.velocities.copy_from_slice(&contacts.solver.velocities);
+        Ok(true)
     }
 }

@@ -1,9 +1,10 @@
 //! Takes a substep with the scheme of the parameters.
 
 use super::state::Integrator;
-use super::substep::{StepOutcome, Substep};
+use super::substep::Substep;
 use super::{leapfrog, moreau, paper};
 use crate::clock::{TICKS_PER_SECOND, Ticks};
+use crate::contact::NotTaken;
 use crate::parameters::Scheme;
 
 /// Speeds below this, in cm/s or rad/s, count as rest. Drag alone would never end: their squares, and in the end they
@@ -14,20 +15,20 @@ const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
 
 impl Integrator {
     /// Takes one substep with the scheme of the parameters.
-    pub(crate) fn step(&mut self, substep: &Substep) -> StepOutcome {
+    ///
+    /// # Errors
+    /// [`NotTaken`].
+    pub(crate) fn step(&mut self, substep: &Substep) -> Result<(), NotTaken> {
         if substep.start.next_multiple_of(SECOND) < substep.start + substep.length {
             self.bring_to_rest();
         }
-        let outcome = match self.parameters.scheme {
+        match self.parameters.scheme {
             Scheme::Leapfrog => leapfrog::step(self, substep),
             Scheme::Moreau => moreau::step(self, substep),
             Scheme::Paper => paper::step(self, substep),
-        };
-        if self.contacts.is_exhausted {
-            return StepOutcome::Exhausted;
-        }
-        self.statistics.substeps += u64::from(outcome == StepOutcome::Taken);
-        outcome
+        }?;
+        self.statistics.substeps += 1;
+        Ok(())
     }
 
     /// Stops what only creeps. Once a second, at whole seconds, so that it costs nothing and pauses change nothing.

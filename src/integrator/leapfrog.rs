@@ -7,9 +7,9 @@
 
 use super::phase_schedule::Phase;
 use super::state::Integrator;
-use super::substep::{LastSubstep, Steering, StepOutcome, Substep};
+use super::substep::{LastSubstep, Steering, Substep};
 use crate::clock::seconds;
-use crate::contact::{ContactOutcome, InverseInertia};
+use crate::contact::{InverseInertia, NotTaken};
 use crate::geometry::{Vec2, Velocity};
 
 /// Part of `dt_s` below which a kick does not show what contacts press with: impulses that close small
@@ -17,7 +17,7 @@ use crate::geometry::{Vec2, Velocity};
 const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
-pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
     let half_ticks = flock.last.length + substep.length;
     let kick = 0.5 * seconds(half_ticks);
     let start = 2 * substep.start - flock.last.length.min(2 * substep.start);
@@ -28,12 +28,9 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     centered_velocities(flock, kick);
 
     let dt = seconds(substep.length);
-    let contacts = flock.solve_contacts(substep);
-    if contacts == ContactOutcome::TooLong {
-        return StepOutcome::TooLong;
-    }
+    let is_touched = flock.solve_contacts(substep)?;
     let persistent = &mut flock.last.persistent_acceleration;
-    if contacts == ContactOutcome::Untouched {
+    if !is_touched {
         persistent.clear();
     } else if kick >= SHORTEST_KICK * flock.parameters.dt_s {
         persistent.clear();
@@ -45,7 +42,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
     flock.step_length_s = kick;
     flock.drift(dt);
     remember(flock, substep);
-    StepOutcome::Taken
+    Ok(())
 }
 
 /// Replaces preferred speed and rudder by their means over the kick where the substep before had others.

@@ -20,4 +20,4 @@ pub(crate) use checkpoint::Checkpoint;
 pub use phase_schedule::{Phase, PhaseMoment, PhaseSchedule, sampled_analysis_window};
 pub(crate) use state::Integrator;
 pub use substep::Steering;
-pub(crate) use substep::{StepOutcome, Substep};
+pub(crate) use substep::Substep;

@@ -1,22 +1,20 @@
 //! Semi-implicit Euler with contacts in the velocities (Moreau's time stepping): first order.
 
 use super::state::Integrator;
-use super::substep::{StepOutcome, Substep};
+use super::substep::Substep;
 use crate::clock::seconds;
-use crate::contact::ContactOutcome;
+use crate::contact::NotTaken;
 
 /// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
-pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
     let dt = seconds(substep.length);
     flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
-    if flock.solve_contacts(substep) == ContactOutcome::TooLong {
-        return StepOutcome::TooLong;
-    }
+    flock.solve_contacts(substep)?;
     flock.step_length_s = dt;
     flock.drift(dt);
-    StepOutcome::Taken
+    Ok(())
 }
 
 /// Fills `free` with velocities after an explicit Euler step.

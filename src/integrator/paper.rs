@@ -7,42 +7,46 @@
 
 use super::moreau::explicit_velocities;
 use super::state::Integrator;
-use super::substep::{StepOutcome, Substep};
+use super::substep::Substep;
 use crate::clock::seconds;
-use crate::contact::ContactOutcome;
+use crate::contact::{Motion, NotTaken};
 
 /// Overlap (cm) that no tolerance distinguishes from touching: what a solver's residual of 1e-10 cm/s leaves in
 /// a substep, with room for a row of boats.
 const ROUNDING: f64 = 1e-10;
 
 /// One step of the appendix.
-pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> StepOutcome {
+pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
     let dt = seconds(substep.length);
     flock.step_length_s = dt;
     flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
+    let is_divisible = flock.is_divisible(dt);
     let (contacts, statistics) = (&mut flock.contacts, &mut flock.statistics);
     let (poses, velocities) = (&mut flock.poses, &flock.velocities);
     // The displacement that minimizes (A.4) is dt times the velocity nearest to the old one.
     let near = contacts.find(poses, &mut flock.boats, velocities, dt, statistics);
     let allowed = flock.parameters.overlap_tolerance_cm.max(ROUNDING);
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
-        let outcome = contacts.resolve(poses, velocities, &flock.inertia, dt, false, statistics);
-        if outcome == ContactOutcome::TooLong {
-            return StepOutcome::TooLong;
-        }
+        let motion = Motion {
+            poses,
+            free: velocities,
+            inertia: &flock.inertia,
+            dt,
+        };
+        contacts.resolve(&motion, is_divisible, statistics)?;
         flock
             .velocities
             .copy_from_slice(&flock.contacts.solver.velocities);
         flock.drift(dt);
-        return StepOutcome::Taken;
+        return Ok(());
     }
     if contacts.detector.moves_too_far(velocities, dt) {
-        return StepOutcome::TooLong;
+        return Err(NotTaken::TooLong);
     }
     contacts.clear_warm_start();
     flock.drift(dt);
     flock.velocities.copy_from_slice(&flock.free);
-    StepOutcome::Taken
+    Ok(())
 }

@@ -95,6 +95,16 @@ impl Integrator {
         self.update_boats();
     }
 
+    /// The first boat whose center is outside the water now and was inside before.
+    pub(crate) fn left_the_water(&self, before: &[Pose]) -> Option<usize> {
+        let detector = &self.contacts.detector;
+        let is_inside = |boat: usize, center| detector.is_in_water(boat as u32, center);
+        let left = |&boat: &usize| {
+            !is_inside(boat, self.poses[boat].position) && is_inside(boat, before[boat].position)
+        };
+        (0..self.poses.len()).find(left)
+    }
+
     /// Whether every pose and velocity is one that a flock may hold.
     pub(crate) fn is_in_range(&self) -> bool {
         self.poses.iter().all(Pose::is_in_range)

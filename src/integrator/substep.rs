@@ -1,4 +1,4 @@
-//! One substep, and what came of it.
+//! One substep, and what is remembered of it.
 
 use super::phase_schedule::Phase;
 use crate::clock::Ticks;
@@ -24,18 +24,6 @@ pub(crate) struct Substep<'a> {
     pub phase: Phase,
     /// What the rudders do.
     pub steering: Steering<'a>,
-}
-
-/// What came of a substep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum StepOutcome {
-    /// The substep was taken.
-    Taken,
-    /// It is too long for its contacts: a shorter one has to be tried. Deep overlaps may have been
-    /// undone, but no time has passed.
-    TooLong,
-    /// Its contacts were too much work; the motion is to be thrown away.
-    Exhausted,
 }
 
 /// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.

@@ -62,9 +62,10 @@ declare_fields! {
     dt_s: f64 = 0.02, "s", Range::Dependent("1e-6 to 1, to 0.1 for the schemes moreau and paper"), "chosen";
     /// Overlap that the paper scheme accepts without a projection.
     overlap_tolerance_cm: f64 = 0.01, "cm", Range::NonNegative, "chosen";
-    /// How well gaps hold at a substep's end, where they are curved functions of the motion: 0 linearizes them once;
-    /// 1 and 2 evaluate them again and solve again until overlaps are at most 1e-6 and 1e-9 cm, at most 20 times.
-    relinearizations: usize = 0, "", Range::Within(0.0, 2.0, "0, 1 or 2"), "chosen";
+    /// Deepest overlap that a substep may leave. Contacts that leave more are solved again from the gaps where their boats
+    /// end, then the substep is halved. Infinite: gaps are linearized once. The paper scheme leaves up to
+    /// overlap_tolerance_cm.
+    tolerance_cm: f64 = 1e-4, "cm", Range::Dependent("1e-10 or more, in a large pool 4e-15 of its outer radius; infinite: off"), "chosen";
     /// Constant rudder of the normal boats, positive turns counter-clockwise (Section 4.5); 0: off.
     turning_bias: f64 = 0.0, "", Range::Within(-1.0, 1.0, "a rudder in [-1, 1]"), "Section 4.5, off";
     /// Half-width of the uniform spread of the boats' forward speeds (Table 1: 5 cm/s); backward speeds scale along;
@@ -89,6 +90,9 @@ impl FlockParameters {
     /// The most boats a flock may have: placing them takes some ten seconds.
     pub const MOST_BOATS: usize = 100_000;
 
+    /// The least overlap in cm that contacts can be solved to.
+    const SMALLEST_TOLERANCE_CM: f64 = 1e-10;
+
     /// The values in the order of [`Self::FIELDS`].
     pub fn values(&self) -> Vec<Value> {
         let fields = Self::FIELDS.iter();
@@ -98,6 +102,15 @@ impl FlockParameters {
     /// Half-length of the hull's core segment, h = p·r, in cm.
     pub fn half_length_cm(&self) -> f64 {
         self.boat_shape * self.boat_radius_cm
+    }
+
+    /// Deepest overlap in cm that a substep may leave, by the scheme's own tolerance too.
+    pub fn allowed_overlap_cm(&self) -> f64 {
+        if self.scheme == Scheme::Paper {
+            self.tolerance_cm.max(self.overlap_tolerance_cm)
+        } else {
+            self.tolerance_cm
+        }
     }
 
     /// Whether boats with other parameters have the same water: the pool and its obstacles.
@@ -126,7 +139,20 @@ impl FlockParameters {
         obstacles::check(&self.discs, self.pool)?;
         obstacles::check(&self.walls, self.pool)?;
         self.check_spread()?;
+        self.check_tolerance()?;
         self.check_timing()
+    }
+
+    /// Gaps are differences of coordinates, and contacts are solved to 1e-10 cm/s.
+    fn check_tolerance(&self) -> Result<()> {
+        let outer = self.pool.outer_radius_cm;
+        let size = if outer.is_finite() { outer } else { 0.0 };
+        let reachable = Self::SMALLEST_TOLERANCE_CM.max(16.0 * f64::EPSILON * size);
+        let accepted = format!(
+            "{reachable:e} cm or more, which double precision holds in this pool, or infinity: gaps are linearized once"
+        );
+        let is_reachable = self.tolerance_cm >= reachable;
+        FlockError::unless(is_reachable, "tolerance_cm", self.tolerance_cm, accepted)
     }
 
     fn check_leaders(&self) -> Result<()> {

@@ -143,9 +143,7 @@ impl PyFlock {
         let flock = &mut *flock;
         let end = flock.end_of(seconds)?;
         let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
-        interruptible(py, |keep_going| {
-            flock.advance_while(keep_going, end, steering)
-        })
+        interruptible(py, |keep_going| flock.advance_to(keep_going, end, steering))
     }
 
     fn steering_law<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArray1<f64>>> {

@@ -95,7 +95,9 @@ fn recorded<'py, T: Real + Element>(
         }
     }
     let run = run(py, &mut recorder, pilot, &layouts, plan);
+    let statistics = recorder.flock().statistics().named_of_steps();
     let columns = columns(py, recorder.into_recording())?;
+    columns.set_item("statistics", statistics)?;
     // What was recorded until then goes with the error.
     run.or_else(|error| error.value(py).setattr("columns", &columns).and(Err(error)))?;
     Ok(columns)

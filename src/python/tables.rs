@@ -21,9 +21,11 @@ pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
 #[pyfunction]
 pub(super) fn physics_fields(physics: &Bound<'_, PyAny>) -> PyResult<Value> {
     let stepping = given::<Physics>(physics, "physics")?.stepping();
-    let fields = stepping.map(|(dt_s, passes)| {
-        let fields: [(_, Value); 2] = [("dt_s", dt_s.into()), ("relinearizations", passes.into())];
-        fields
+    let fields = stepping.map(|(dt_s, tolerance_cm)| {
+        [
+            ("dt_s", Value::from(dt_s)),
+            ("tolerance_cm", tolerance_cm.into()),
+        ]
     });
     Ok(fields.into_iter().flatten().collect())
 }

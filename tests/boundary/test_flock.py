@@ -166,11 +166,13 @@ def test_overlaps_are_refused_unless_allowed(flock):
 
 
 def test_motion_that_explodes_is_a_solver_error_and_undone(parameters):
-    p = parameters.replace(scheme="moreau", dt_s=0.1, c0=1e6, solver="gauss-seidel")
+    # At 1e6 cm/s a boat is beyond 1e9 cm after 1000 s.
+    p = parameters.replace(pool=(math.inf, 0.0), dt_s=0.1, c0=1e6, speed_cm_s=1e6, bw_s=0.0)
+    p = p.replace(scheme="moreau", nop1_s=0.0, nop2_s=0.0, c2=0.0, c4=0.0)
     flock = Flock(p, seed=1)
     pose = flock.pose
     with pytest.raises(RuntimeError, match="range") as raised:
-        flock.advance(60.0)
+        flock.advance(1200.0)
     assert isinstance(raised.value, SolverError)
     assert flock.time_s == 0.0
     assert np.array_equal(flock.pose, pose)

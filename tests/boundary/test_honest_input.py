@@ -222,7 +222,7 @@ DIRECTIONS = [list, tuple, np.array, pd.Series, iter, lambda each: (word for wor
 VALUES = {
     **{
         f"FlockParameters({name}={value!r})": parameters(**{name: value})
-        for name, number in [("n_boats", 8), ("n_leaders", 2), ("relinearizations", 2)]
+        for name, number in [("n_boats", 8), ("n_leaders", 2), ("tolerance_cm", 2)]
         for value in (kind(number) for kind in NUMBERS)
     },
     **{

@@ -15,9 +15,9 @@ from flockenv import FlockParameters, ParameterError
 
 NAMES = [field.name for field in dataclasses.fields(FlockParameters)]
 HUGE = pytest.param(10**5000, id="huge")  # has more digits than Python prints
-COUNTS = ["n_boats", "n_leaders", "relinearizations"]
+COUNTS = ["n_boats", "n_leaders"]
 CHOICES = ["target", "scheme", "noise_scheme", "solver"]
-OTHERS = ["pool", "leaders_reverse", "discs", "walls"]
+OTHERS = ["pool", "leaders_reverse", "discs", "walls", "tolerance_cm"]
 NUMBERS = [name for name in NAMES if name not in (*COUNTS, *CHOICES, *OTHERS)]
 
 
@@ -58,7 +58,19 @@ def test_numbers_out_of_range_are_refused_by_name(parameters, name, value):
         parameters.replace(**{name: value})
 
 
-@pytest.mark.parametrize("name", [*COUNTS, *NUMBERS])
+@pytest.mark.parametrize("value", [0.0, -1e-4, math.nan, -math.inf, 1e-11])
+def test_tolerances_that_numbers_cannot_hold_are_refused_with_what_they_can(parameters, value):
+    with pytest.raises(ParameterError, match=r"^tolerance_cm = .*1e-10 cm or more"):
+        parameters.replace(tolerance_cm=value)
+
+
+def test_an_infinite_tolerance_is_accepted_and_survives_its_files(parameters):
+    p = parameters.replace(tolerance_cm=math.inf)
+    assert FlockParameters.from_dict(p.to_dict()) == p
+    assert FlockParameters.from_toml(p.to_toml()) == p
+
+
+@pytest.mark.parametrize("name", [*COUNTS, *NUMBERS, "tolerance_cm"])
 @pytest.mark.parametrize(
     "value",
     [

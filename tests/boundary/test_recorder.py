@@ -37,8 +37,8 @@ def test_targets_change_after_the_sample_at_their_time():
 
 def test_boats_keep_their_share_of_the_way_between_the_walls():
     pool, noise = {"pool": (120.0, 40.0), "bw_s": 0.2}, {"c4": 0.05}
-    run = simulate(PARAMETERS, 3, 8.0, 5.0, schedule=[(6.4, noise), (3.2, pool)])
-    flock = Flock(PARAMETERS, 3)
+    run = simulate(PARAMETERS, 4, 8.0, 5.0, schedule=[(6.4, noise), (3.2, pool)])
+    flock = Flock(PARAMETERS, 4)
     for place in range(41):
         advance_to(flock, place / 5)
         assert same(run, place, flock)
@@ -48,7 +48,7 @@ def test_boats_keep_their_share_of_the_way_between_the_walls():
                 distance = np.hypot(pose[:, 0], pose[:, 1])
                 share = (distance - 48.5) / (90.0 - 48.5)
                 pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
-            moved = Flock(flock.parameters.replace(**{16: pool, 32: noise}[place]), 3)
+            moved = Flock(flock.parameters.replace(**{16: pool, 32: noise}[place]), 4)
             moved.set_state(pose, flock.velocity, flock.time_s, allow_overlap=True)
             flock = moved
     assert run.parameters == PARAMETERS

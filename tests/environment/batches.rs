@@ -114,9 +114,13 @@ fn resets_happen_as_a_whole() {
 
 #[test]
 fn a_flock_that_explodes_ends_its_own_episode_alone() {
-    // Constants so wild that an explicit step leaves the range of a state.
+    // Constants so wild that spins leave the range of a state.
     let wild = FlockParameters {
         c0: 1e6,
+        c1: 0.0,
+        c2: 1e6,
+        c3: 0.0,
+        speed_cm_s: 1e6,
         dt_s: 0.1,
         scheme: Scheme::Moreau,
         ..parameters(1)

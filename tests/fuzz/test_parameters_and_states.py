@@ -122,7 +122,7 @@ extreme = st.fixed_dictionaries(
         "scheme": st.sampled_from(["leapfrog", "moreau", "paper"]),
         "noise_scheme": st.sampled_from(["white", "per-step"]),
         "solver": st.sampled_from(["block-pivoting", "gauss-seidel", "clarabel"]),
-        "relinearizations": st.integers(0, 2),
+        "tolerance_cm": st.sampled_from([1e-9, 1e-6, 1e-4, 1.0, math.inf]),
         "turning_bias": st.floats(-1, 1),
         "leaders_reverse": st.booleans(),
         "target": st.sampled_from(["cw", "ccw"]),

@@ -5,6 +5,7 @@ follow the law or a rudder.
 """
 
 import hashlib
+import math
 import sys
 
 import numpy as np
@@ -32,7 +33,7 @@ def parameters_of(random: np.random.Generator) -> FlockParameters:
         "speed_cm_s": random.uniform(10.0, 30.0),
         "boat_shape": random.choice([0.0, 1.0, 2.0]),
         "turning_bias": random.choice([0.0, 0.1]),
-        "relinearizations": int(random.integers(0, 3)),
+        "tolerance_cm": float([math.inf, 1e-6, 1e-9][random.integers(0, 3)]),
     }
     if random.random() < 0.3:
         fields["discs"] = [(*random.uniform(-60.0, 60.0, 2), random.uniform(3.0, 10.0))]

@@ -136,10 +136,15 @@ fn corrupt_and_foreign_snapshots_change_nothing() {
     assert_eq!(turned.parameters().target, Target::Clockwise.into());
 }
 
-/// Constants so wild that an explicit step leaves the finite numbers.
+/// Constants so wild that spins leave the range of numbers.
 fn exploding(scheme: Scheme) -> FlockParameters {
     FlockParameters {
         c0: 1e6,
+        c1: 0.0,
+        c2: 1e6,
+        c3: 0.0,
+        speed_cm_s: 1e6,
+        turning_bias: 1.0,
         dt_s: 0.1,
         ..driven(scheme)
     }

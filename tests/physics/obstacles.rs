@@ -37,9 +37,9 @@ fn with_disc_inside(p: &FlockParameters) -> [Flock; 2] {
 fn a_disc_in_the_middle_is_an_inner_wall_bit_for_bit() {
     for scheme in SCHEMES {
         for noise in NOISES {
-            for relinearizations in [0, 2] {
+            for tolerance_cm in [f64::INFINITY, 1e-9] {
                 let mut p = busy(scheme, noise);
-                p.relinearizations = relinearizations;
+                p.tolerance_cm = tolerance_cm;
                 let [mut inner, mut inside] = with_disc_inside(&p);
                 for _ in 0..4 {
                     inner.advance(2.0, None).expect("finite motion");

@@ -70,7 +70,12 @@ fn with(name: &str, number: f64) -> FlockParameters {
 #[test]
 fn every_number_out_of_range_is_refused_by_name() {
     let is_real = |field: &&Field<FlockParameters>| matches!(field.kind, Kind::Real);
-    let fields = FlockParameters::FIELDS.iter().filter(is_real);
+    // An infinite tolerance has a meaning.
+    let is_bounded = |field: &&Field<FlockParameters>| field.name != "tolerance_cm";
+    let fields = FlockParameters::FIELDS
+        .iter()
+        .filter(is_real)
+        .filter(is_bounded);
     assert!(fields.clone().count() >= 20);
     for field in fields {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -2.0, 1e300] {
@@ -86,13 +91,43 @@ fn every_number_out_of_range_is_refused_by_name() {
 }
 
 #[test]
+fn a_tolerance_that_numbers_cannot_hold_is_refused_with_what_they_can() {
+    let refusal = |tolerance_cm, outer_radius_cm| {
+        let p = changed(table_3(), |p| {
+            (p.tolerance_cm, p.pool.outer_radius_cm) = (tolerance_cm, outer_radius_cm);
+        });
+        p.check().err().map(|error| error.to_string())
+    };
+    for tolerance in [
+        0.0,
+        -0.0,
+        f64::NAN,
+        -1e-4,
+        f64::NEG_INFINITY,
+        9e-11,
+        f64::MIN_POSITIVE,
+    ] {
+        let refused = refusal(tolerance, 180.0).expect("refused");
+        assert!(refused.starts_with("tolerance_cm = "), "{refused}");
+        assert!(refused.contains("1e-10 cm or more"), "{refused}");
+    }
+    for tolerance in [1e-10, 1e-9, 1e-4, 1.0, f64::INFINITY] {
+        assert_eq!(refusal(tolerance, 180.0), None, "{tolerance}");
+    }
+    // The last digit of a coordinate of 1e6 cm is 1e-10 cm; open water has no largest one.
+    let refused = refusal(1e-9, 1e6).expect("refused");
+    assert!(refused.contains("3.55"), "{refused}");
+    assert_eq!(refusal(1e-8, 1e6), None);
+    assert_eq!(refusal(1e-10, f64::INFINITY), None);
+}
+
+#[test]
 fn counts_pools_and_times_out_of_range_are_refused() {
     let check =
         |change: fn(&mut FlockParameters)| refused_field(changed(table_3(), change).check());
     assert_eq!(check(|p| p.n_boats = 0), "n_boats");
     assert_eq!(check(|p| p.n_boats = usize::MAX), "n_boats");
     assert_eq!(check(|p| p.n_leaders = 21), "n_leaders");
-    assert_eq!(check(|p| p.relinearizations = 3), "relinearizations");
     for (outer_radius_cm, inner_radius_cm) in [
         (90.0, 90.0),
         (48.5, 90.0),

@@ -8,8 +8,8 @@
 //! free boat is driven past the spin at which c1·w³ = (c2·s − c3·w)·u·ẋ.
 
 use crate::support::{
-    OPEN_WATER, R, VELOCITY_SCHEMES, annulus, backing, deepest_overlap, disc_at, flock_of, inert,
-    kinetic_energy, set_off, table_3, take_substeps,
+    OPEN_WATER, R, TOLERANCES, VELOCITY_SCHEMES, annulus, backing, deepest_overlap, disc_at,
+    flock_of, inert, kinetic_energy, set_off, table_3, take_substeps,
 };
 use flockenv::geometry::Velocity;
 use flockenv::parameters::{Pool, Scheme};
@@ -28,14 +28,14 @@ fn substeps(scheme: Scheme) -> &'static [f64] {
 fn rudders_thrown_about_in_a_channel_wedge_no_boat_out() {
     for scheme in VELOCITY_SCHEMES {
         for &dt_s in substeps(scheme) {
-            for relinearizations in [0, 1, 2] {
+            for tolerance_cm in TOLERANCES {
                 for seed in 0..2 {
                     let p = FlockParameters {
                         n_boats: 20,
                         n_leaders: 20,
                         pool: CHANNEL,
                         dt_s,
-                        relinearizations,
+                        tolerance_cm,
                         scheme,
                         ..table_3()
                     };
@@ -50,7 +50,7 @@ fn rudders_thrown_about_in_a_channel_wedge_no_boat_out() {
                         // Twice what an engine gives.
                         assert!(
                             fastest < 30.0,
-                            "{scheme:?} {dt_s} {relinearizations} {seed}: {fastest} cm/s"
+                            "{scheme:?} {dt_s} {tolerance_cm} {seed}: {fastest} cm/s"
                         );
                     }
                 }
@@ -63,12 +63,12 @@ fn rudders_thrown_about_in_a_channel_wedge_no_boat_out() {
 fn spinning_hulls_in_a_channel_never_gain_energy() {
     for scheme in VELOCITY_SCHEMES {
         for dt_s in [0.02, 0.1] {
-            for relinearizations in [0, 1, 2] {
+            for tolerance_cm in TOLERANCES {
                 let p = FlockParameters {
                     n_boats: 20,
                     pool: CHANNEL,
                     dt_s,
-                    relinearizations,
+                    tolerance_cm,
                     ..inert(scheme)
                 };
                 let mut flock = set_off(p, 1, |boat, _| {
@@ -84,7 +84,7 @@ fn spinning_hulls_in_a_channel_never_gain_energy() {
                     let most = 1.01 * (before + impulses * overlap / dt_s);
                     assert!(
                         now <= most,
-                        "{scheme:?} {dt_s} {relinearizations} {step}: {before} {now}"
+                        "{scheme:?} {dt_s} {tolerance_cm} {step}: {before} {now}"
                     );
                     before = now;
                 }
@@ -150,7 +150,7 @@ fn substeps_cut_for_their_contacts_go_on_from_a_snapshot() {
         n_boats: 20,
         pool: CHANNEL,
         dt_s: 0.5,
-        relinearizations: 1,
+        tolerance_cm: 1e-6,
         ..table_3()
     };
     let mut flock = Flock::new(p, 3).expect("room");

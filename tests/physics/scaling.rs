@@ -24,6 +24,7 @@ fn scaled(p: &FlockParameters, k: f64) -> FlockParameters {
         c2: p.c2 / k,
         c3: p.c3 / k,
         overlap_tolerance_cm: k * p.overlap_tolerance_cm,
+        tolerance_cm: k * p.tolerance_cm,
         speed_spread_cm_s: k * p.speed_spread_cm_s,
         current_cap_cm_s: k * p.current_cap_cm_s,
         ..p.clone()

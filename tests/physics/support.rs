@@ -12,6 +12,8 @@ use std::fmt::Debug;
 pub const SCHEMES: [Scheme; 3] = [Scheme::Leapfrog, Scheme::Moreau, Scheme::Paper];
 /// The schemes that solve contacts on velocities.
 pub const VELOCITY_SCHEMES: [Scheme; 2] = [Scheme::Leapfrog, Scheme::Moreau];
+/// Gaps linearized once, and the tolerances of results to publish and of references.
+pub const TOLERANCES: [f64; 3] = [f64::INFINITY, 1e-6, 1e-9];
 /// Both meanings of η.
 pub const NOISES: [Noise; 2] = [Noise::White, Noise::PerStep];
 /// No walls at all.
@@ -83,7 +85,7 @@ pub fn backing(scheme: Scheme) -> FlockParameters {
     }
 }
 
-/// No forces but those of contacts, open water.
+/// No forces but those of contacts, which are linear in the motion, open water.
 pub fn inert(scheme: Scheme) -> FlockParameters {
     FlockParameters {
         speed_cm_s: 0.0,
@@ -93,6 +95,7 @@ pub fn inert(scheme: Scheme) -> FlockParameters {
         c2: 0.0,
         c3: 0.0,
         overlap_tolerance_cm: 0.0,
+        tolerance_cm: f64::INFINITY,
         ..driven(scheme)
     }
 }

@@ -35,7 +35,7 @@ def test_leaders_are_compared_in_flocks_of_their_training(tiny: TrainingSettings
     """The physics of the training and its number of boats; a drawn noise has no single value."""
     flocks = tiny.held_out()
     trained = tiny.venv().slots[0].parameters
-    assert (flocks.dt_s, flocks.relinearizations) == (trained.dt_s, trained.relinearizations)
+    assert (flocks.dt_s, flocks.tolerance_cm) == (trained.dt_s, trained.tolerance_cm)
     assert (flocks.n_boats, flocks.bw_s, flocks.pool) == (6, trained.bw_s, trained.pool)
     changed = tiny.replace(environment={**tiny.environment, "bw_s": 0.2, "c4": 0.05})
     assert (changed.held_out().bw_s, changed.held_out().c4) == (0.2, 0.05)

@@ -138,10 +138,9 @@ impl Live {
             }
             let steering = self.rudder.as_deref().map_or(Steering::Law, Steering::Held);
             let end = self.sampling.time(self.taken);
-            if self
-                .flock
-                .advance_towards(end, steering, boat_substeps - done)?
-            {
+            let stop = self.flock.stop_towards(end, boat_substeps - done);
+            self.flock.advance_to(&|| true, stop, steering)?;
+            if stop == end {
                 self.sample()?;
                 taken += 1;
             }

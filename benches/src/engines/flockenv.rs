@@ -41,7 +41,7 @@ impl Engine for Ours {
     fn advance(&mut self, steps: usize) {
         let end = self.flock.time() + self.dt * steps as Ticks;
         if !self.is_lost {
-            self.is_lost = self.flock.advance_to(end, Steering::Law).is_err();
+            self.is_lost = self.flock.advance_to(&|| true, end, Steering::Law).is_err();
         }
     }
 

@@ -19,7 +19,7 @@ pub fn starts(scene: Scene, effort: Effort) -> Vec<Start> {
     on_all_cores(&seeds, |&seed| {
         let parameters = FlockParameters {
             dt_s: 0.002,
-            relinearizations: 2,
+            tolerance_cm: 1e-9,
             ..scene.parameters(BOATS)
         };
         let mut flock = Flock::new(parameters, seed).expect("the boats fit");
@@ -57,7 +57,7 @@ pub fn ends(configuration: &Configuration, scene: Scene, starts: &[Start]) -> En
 
 /// Where steps of 1e-4 s take them.
 pub fn reference(scene: Scene, starts: &[Start]) -> Ends {
-    let reference = Configuration::exact(Scheme::Leapfrog, 2, 1e-4);
+    let reference = Configuration::exact(Scheme::Leapfrog, 1e-9, 1e-4);
     let each = |start: &Start| ends(&reference, scene, std::slice::from_ref(start));
     on_all_cores(starts, each).into_iter().flatten().collect()
 }

@@ -26,6 +26,11 @@ pub(super) struct Problem {
     pub(super) guess: Vec<f64>,
 }
 
+/// Whether two contacts are of the same bodies, at the same ends.
+fn same_touch(a: &Contact, b: &Contact) -> bool {
+    (a.boat, a.partner, a.feature) == (b.boat, b.partner, b.feature)
+}
+
 impl Problem {
     /// The problem of the step that a flock in a jam takes next.
     pub(super) fn of(flock: &Flock) -> Self {
@@ -44,7 +49,7 @@ impl Problem {
         let carried = |contact: &Contact| {
             let known = before
                 .iter()
-                .find(|known| known.contact.key() == contact.key());
+                .find(|known| same_touch(&known.contact, contact));
             known.map_or(0.0, |known| known.force * p.dt_s)
         };
         Self {

@@ -4,7 +4,7 @@
 //! meets them alike. Ratios are taken turn by turn.
 
 use super::{Effort, push_row, table};
-use crate::configuration::STEP_S;
+use crate::configuration::{STEP_S, TOLERANCES_CM};
 use crate::table::{Table, number, quartiles, text};
 use crate::{Configuration, Engine, Scene, Start};
 use flockenv::FlockParameters;
@@ -145,9 +145,9 @@ pub fn larger_flocks() -> Vec<Configuration> {
     let single = peers
         .iter()
         .filter(|c| c.dt_s == STEP_S && c.cells()[0] == "rapier2d (f32)");
-    let ours = (0..=2).map(|r| Configuration::exact(Scheme::Leapfrog, r, STEP_S));
-    let mut all: Vec<Configuration> = ours.collect();
-    all.push(Configuration::exact(Scheme::Moreau, 0, STEP_S));
+    let ours = TOLERANCES_CM.map(|cm| Configuration::exact(Scheme::Leapfrog, cm, STEP_S));
+    let mut all = ours.to_vec();
+    all.push(Configuration::exact(Scheme::Moreau, f64::INFINITY, STEP_S));
     all.extend([Configuration::rapier(STEP_S), Configuration::box2d(STEP_S)]);
     all.extend(single);
     all

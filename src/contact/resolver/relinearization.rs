@@ -1,113 +1,138 @@
 //! Solves again where gaps are curved functions of the motion: until they hold at the substep's end.
 
-use super::ContactResolver;
-use crate::contact::{InverseInertia, Statistics};
-use crate::geometry::{Pose, Velocity};
+use super::{ContactResolver, Motion, Solution};
+use crate::contact::Statistics;
 use crate::parameters::FlockParameters;
+use std::hint::select_unpredictable;
 
-/// Relinearization passes after which a substep is taken as it is.
+/// Relinearization passes after which a substep counts as not solved.
 const MOST_PASSES: u32 = 20;
 
 /// How far to go, with scratch space.
 #[derive(Debug, Clone)]
 pub(super) struct Relinearization {
-    /// Overlap in cm at a substep's end at which to stop; `None`: off.
-    pub(super) allowed_overlap: Option<f64>,
+    /// Deepest overlap in cm that a substep may leave; infinite: gaps are linearized once.
+    pub(super) tolerance: f64,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
-    /// Contacts of one island that may close, and their gaps at the substep's end in cm.
+    /// Their contacts that may close, and the gaps of these at the substep's end in cm.
     end_gaps: Vec<(u32, f64)>,
 }
 
 impl Relinearization {
     /// For checked parameters.
     pub(super) fn new(parameters: &FlockParameters) -> Self {
-        let allowed = [None, Some(1e-6), Some(1e-9)];
         Self {
-            allowed_overlap: allowed[parameters.relinearizations],
+            tolerance: parameters.allowed_overlap_cm(),
             overlapping: Vec::new(),
             end_gaps: Vec::new(),
         }
+    }
+
+    /// Whether gaps are looked at where they have curved to.
+    pub(super) fn is_on(&self) -> bool {
+        self.tolerance < f64::INFINITY
     }
 }
 
 impl ContactResolver {
     /// Solves islands again until no gap at the substep's end, evaluated where the last solve moves the boats, overlaps
-    /// by more than `allowed`: with biases for which those gaps open to zero. The normals stay those of the substep's
-    /// start, along which forces act, and so does the factor.
+    /// by more than the tolerance: with biases for which those gaps open to zero. The normals stay those of the substep's
+    /// start, along which forces act, and so does the factor. `first` is what the first solve came to.
     pub(super) fn relinearize(
         &mut self,
-        poses: &[Pose],
-        free: &[Velocity],
-        inertia: &[InverseInertia],
-        dt: f64,
-        allowed: f64,
+        motion: &Motion,
+        first: Solution,
         statistics: &mut Statistics,
-    ) {
+    ) -> Solution {
         let hull = self.detector.hull();
+        let (poses, dt) = (motion.poses, motion.dt);
         self.trial.place(poses, &self.solver.velocities, dt, hull);
         let mut left = std::mem::take(&mut self.relinearization.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
-        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
-        let has_islands = self.solver.has_islands();
-        let least = if has_islands {
-            allowed
-        } else {
-            f64::NEG_INFINITY
-        };
-        for _ in 0..MOST_PASSES {
-            let mut deepest = 0.0;
-            left.retain(|&island| {
-                let overlap = self.aim(island, dt, least, left_over);
-                if overlap > deepest {
-                    deepest = overlap;
-                }
-                overlap > least
-            });
-            if deepest <= allowed || !self.solve(Some(&left), free, inertia, statistics) {
+        let (mut solution, mut passes) = (first, 0);
+        while self.is_overlapping(&mut left, dt) {
+            if passes == MOST_PASSES || solution != Solution::Solved {
+                solution = Solution::Overlapping;
                 break;
             }
-            if has_islands {
-                let (contacts, solver) = (&self.contacts, &self.solver);
-                let islands = left
-                    .iter()
-                    .map(|&island| solver.islands().contacts(island as usize));
-                let velocities = &solver.velocities;
-                self.trial
-                    .move_islands(contacts, islands, poses, velocities, dt, hull);
-            } else {
-                self.trial.place(poses, &self.solver.velocities, dt, hull);
+            passes += 1;
+            for &(k, end_gap) in &self.relinearization.end_gaps {
+                let rate = self.contacts[k as usize].gap_rate(&self.solver.velocities);
+                self.biases[k as usize] = end_gap / dt - rate;
+            }
+            solution = self.solve(Some(&left), motion, statistics);
+            let (contacts, solver) = (&self.contacts, &self.solver);
+            match solution {
+                Solution::Exhausted => break,
+                Solution::Solved if solver.has_islands() => {
+                    let islands = left
+                        .iter()
+                        .map(|&island| solver.islands().contacts(island as usize));
+                    self.trial
+                        .move_islands(contacts, islands, poses, &solver.velocities, dt, hull);
+                }
+                _ => self.trial.place(poses, &solver.velocities, dt, hull),
             }
         }
         self.relinearization.overlapping = left;
+        solution
     }
 
-    /// Sets the biases of an island so that its gaps at the substep's end open to zero, if one of them overlaps by more
-    /// than `least`. What cannot close at these velocities keeps its bias. Returns the deepest overlap at the substep's
-    /// end in cm. A shortened substep leaves its share `left_over` of an overlap from before, which does not count.
-    fn aim(&mut self, island: u32, dt: f64, least: f64, left_over: f64) -> f64 {
+    /// Whether the last solve leaves overlaps deeper than the tolerance.
+    pub(super) fn leaves_overlaps(&mut self, motion: &Motion) -> bool {
         let velocities = &self.solver.velocities;
-        let (mut deepest, mut pair) = (0.0, None);
+        self.trial
+            .place(motion.poses, velocities, motion.dt, self.detector.hull());
+        let mut islands = (0..self.solver.islands().count() as u32).collect();
+        self.is_overlapping(&mut islands, motion.dt)
+    }
+
+    /// Whether gaps at the substep's end overlap by more than the tolerance. Keeps of `islands` those in which they do,
+    /// with their gaps; all of them for a solver that knows no islands.
+    fn is_overlapping(&mut self, islands: &mut Vec<u32>, dt: f64) -> bool {
+        let tolerance = self.relinearization.tolerance;
+        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
+        let has_islands = self.solver.has_islands();
+        let mut deepest = 0.0;
         self.relinearization.end_gaps.clear();
+        islands.retain(|&island| {
+            let before = self.relinearization.end_gaps.len();
+            let overlap = self.deepest_end_overlap(island, left_over);
+            if overlap > deepest {
+                deepest = overlap;
+            }
+            let stays = overlap > tolerance || !has_islands;
+            if !stays {
+                // Their biases stay those that were solved for: whether contacts drive boats is judged by them.
+                self.relinearization.end_gaps.truncate(before);
+            }
+            stays
+        });
+        deepest > tolerance
+    }
+
+    /// Notes the gaps of an island at the substep's end, apart from those of contacts that cannot close at these
+    /// velocities or whose touch is gone. Returns the deepest overlap in cm. A shortened substep leaves its share
+    /// `left_over` of an overlap from before, which counts up to the tolerance only.
+    fn deepest_end_overlap(&mut self, island: u32, left_over: f64) -> f64 {
+        let (mut deepest, mut pair) = (0.0, None);
         for &k in self.solver.islands().contacts(island as usize) {
             let contact = &self.contacts[k as usize];
-            let gap = contact.gap.gap;
-            if self.trial.may_close(contact) && gap >= -self.penetration_slop {
+            let gap = contact.gap.gap.min(0.0);
+            if gap >= -self.penetration_slop && self.trial.may_close(&self.contacts, k as usize) {
                 let (detector, contacts) = (&self.detector, &self.contacts);
-                let end_gap = self.trial.gap(detector, contacts, k as usize, &mut pair)
-                    - left_over * gap.min(0.0);
-                if -end_gap > deepest {
-                    deepest = -end_gap;
+                let end_gap = self.trial.gap(detector, contacts, k as usize, &mut pair);
+                let is_deep = gap < -self.relinearization.tolerance;
+                let overlap = select_unpredictable(is_deep, left_over * gap, 0.0) - end_gap;
+                if overlap > deepest {
+                    deepest = overlap;
                 }
-                self.relinearization.end_gaps.push((k, end_gap));
-            }
-        }
-        // Elsewhere biases stay those that were solved for: whether contacts drive boats is judged by them.
-        if deepest > least {
-            for &(k, end_gap) in &self.relinearization.end_gaps {
-                let rate = self.contacts[k as usize].gap_rate(velocities);
-                self.biases[k as usize] = end_gap / dt - rate;
+                if end_gap < f64::INFINITY {
+                    let aim = end_gap - left_over * gap;
+                    self.relinearization.end_gaps.push((k, aim));
+                }
             }
         }
         deepest

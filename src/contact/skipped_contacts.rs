@@ -1,26 +1,27 @@
-//! Contacts that boats do not close at their free velocities: left out while the solution leaves them apart.
+//! Skipped contacts: boats do not close them at their free velocities. They are left out while the solution leaves them
+//! apart.
 
 use super::trial::Trial;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
 /// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
-/// are left out, with less more have to be taken back.
+/// are skipped, with less more have to be restored.
 const ADDED: f64 = 0.125;
 
-/// The contacts that are left out.
+/// The contacts that are skipped.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Parting {
+pub(super) struct SkippedContacts {
     contacts: Vec<Contact>,
 }
 
-impl Parting {
+impl SkippedContacts {
     /// Forgets them.
     pub(super) fn clear(&mut self) {
         self.contacts.clear();
     }
 
-    /// Whether none is left out.
+    /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.contacts.is_empty()
     }
@@ -58,7 +59,7 @@ impl Parting {
     }
 
     /// Whether none overlaps by more than `allowed` where a trial has moved the boats, with these velocities for `dt`.
-    pub(super) fn is_apart(
+    pub(super) fn are_apart(
         &self,
         trial: &Trial,
         detector: &ContactDetector,
@@ -73,11 +74,11 @@ impl Parting {
             debug_assert!(!is_far || !trial.overlaps(detector, touches, allowed));
             is_far || !trial.overlaps(detector, touches, allowed)
         };
-        trial.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
+        self.is_empty() || trial.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
     }
 
-    /// Hands them back to the others; returns how many.
-    pub(super) fn give_back(&mut self, contacts: &mut Vec<Contact>) -> u64 {
+    /// Puts them with the others again; returns how many there were.
+    pub(super) fn restore(&mut self, contacts: &mut Vec<Contact>) -> u64 {
         let count = self.contacts.len() as u64;
         contacts.append(&mut self.contacts);
         count

@@ -1,0 +1,49 @@
+//! Which touch is which: two bodies may touch at two places, and a contact stands for one of them.
+//!
+//! A touch is known by where it is along both cores. The group of ends that it belongs to names it only at one pose: a
+//! touch passes to the other group without moving where an end slides past the other hull's end, and where two hulls
+//! turn past a right angle.
+
+use super::Contact;
+use crate::geometry::{EndTouch, Gap};
+
+/// Coordinates along both cores in cm.
+pub(super) type Place = [f64; 2];
+
+/// Where a touch is.
+#[inline]
+pub(super) fn place(gap: &Gap) -> Place {
+    [gap.along, gap.along_j]
+}
+
+/// How far one touch is from another along both cores, in cm.
+#[inline]
+pub(super) fn distance(a: Place, b: Place) -> f64 {
+    (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
+}
+
+/// The number of the first of the two contacts of a pair to which contact k belongs; `None` if it is the only one.
+#[inline]
+pub(super) fn first_of_two(contacts: &[Contact], k: usize) -> Option<usize> {
+    let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contacts[k].is_twin(other));
+    if is_twin(k.checked_sub(1).and_then(|before| contacts.get(before))) {
+        Some(k - 1)
+    } else {
+        is_twin(contacts.get(k + 1)).then_some(k)
+    }
+}
+
+/// Whether the touches of a pair at other poses are those of its two contacts in the other order: such that places and gaps
+/// change least. A missing touch is nowhere, so that the one that is left goes to the nearer contact.
+#[inline]
+pub(super) fn are_swapped(touches: &[EndTouch; 2], contacts: &[Contact]) -> bool {
+    let moved = |touch: usize, contact: usize| {
+        let EndTouch { gap, along } = touches[touch];
+        if gap == f64::INFINITY {
+            return 0.0;
+        }
+        let known = &contacts[contact].gap;
+        distance(along, place(known)) + (gap - known.gap).abs()
+    };
+    moved(1, 0) + moved(0, 1) < moved(0, 0) + moved(1, 1)
+}
