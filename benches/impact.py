@@ -21,7 +21,7 @@ TIME_S, STARTS = 2.0, 40
 OUT = Path(__file__).parents[1] / "docs" / "speed_vs_error"
 
 
-def parameters(scheme: str, dt_s: float, relinearizations: int) -> flockenv.FlockParameters:
+def parameters(scheme: str, dt_s: float, tolerance_cm: float) -> flockenv.FlockParameters:
     """Return one boat without noise whose motor runs forward."""
     return flockenv.FlockParameters.preset("simulation").replace(
         n_boats=1,
@@ -32,7 +32,7 @@ def parameters(scheme: str, dt_s: float, relinearizations: int) -> flockenv.Floc
         nop2_s=0.0,
         scheme=scheme,
         dt_s=dt_s,
-        relinearizations=relinearizations,
+        tolerance_cm=tolerance_cm,
     )
 
 
@@ -62,10 +62,11 @@ def main() -> None:
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUT
     reference = ends(parameters("leapfrog", REFERENCE_S, 2))
     lines = []
-    for scheme, relinearizations in (("leapfrog", 0), ("leapfrog", 2), ("moreau", 0)):
-        line: dict[str, object] = {"scheme": f"{scheme} / r{relinearizations}"}
+    for scheme, tolerance_cm in (("leapfrog", math.inf), ("leapfrog", 1e-9), ("moreau", math.inf)):
+        gaps = "linear" if math.isinf(tolerance_cm) else f"{tolerance_cm:g} cm"
+        line: dict[str, object] = {"scheme": f"{scheme} / {gaps}"}
         for dt_s in STEPS_S:
-            p = parameters(scheme, dt_s, relinearizations)
+            p = parameters(scheme, dt_s, tolerance_cm)
             away = ends(p) - reference
             away[:, 2] *= p.gyration_radius_cm
             line[f"dt = {dt_s:g} s"] = f"{np.median(np.linalg.norm(away, axis=1)):.2g}"

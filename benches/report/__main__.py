@@ -28,8 +28,8 @@ ENGINES = {
     "cycle_half_second_cm": "cycle 0.5 s, cm",
 }
 SIZES = {
-    "leapfrog": ours("leapfrog", 0),
-    "leapfrog, 1 relinearization": ours("leapfrog", 1),
+    "leapfrog": ours("leapfrog", "linear"),
+    "leapfrog, 1e-6 cm": ours("leapfrog", "1e-6 cm"),
     "rapier2d-f64": RAPIER,
     "Box2D": BOX2D,
 }

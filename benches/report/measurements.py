@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
-KEY = ["engine", "setting", "scheme", "solver", "relinearizations", "dt_s"]
+KEY = ["engine", "setting", "scheme", "solver", "tolerance_cm", "dt_s"]
 # The step and setting that ratios refer to.
 STEP_S = 0.01
 # Beyond this an overlap is deep: hulls are then moved apart.
@@ -15,7 +15,7 @@ DEEP_CM = 0.01
 RAPIER = ("rapier2d-f64", "4 iterations / unit 10 cm")
 TIGHT_RAPIER = ("rapier2d-f64", "4 iterations / unit 1 cm")
 BOX2D = ("Box2D (f32)", "4 substeps / unit 10 cm")
-OURS = ("flockenv", "leapfrog / block-pivoting / r0")
+OURS = ("flockenv", "leapfrog / block-pivoting / linear")
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,6 @@ def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Seri
     return rows.iloc[0]
 
 
-def ours(scheme: str, relinearizations: int) -> tuple[str, str]:
+def ours(scheme: str, gaps: str) -> tuple[str, str]:
     """Our engine with the exact solver."""
-    return "flockenv", f"{scheme} / block-pivoting / r{relinearizations}"
+    return "flockenv", f"{scheme} / block-pivoting / {gaps}"

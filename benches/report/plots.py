@@ -14,11 +14,11 @@ from measurements import BOX2D, RAPIER, Measurements, ours
 
 # Name: engine and setting, color, marker, whether filled.
 SERIES = {
-    "flockenv leapfrog": (ours("leapfrog", 0), "#0072B2", "o", True),
-    "flockenv leapfrog, 1 relinearization": (ours("leapfrog", 1), "#56B4E9", "o", False),
-    "flockenv leapfrog, 2 relinearizations": (ours("leapfrog", 2), "#009E73", "o", False),
-    "flockenv moreau": (ours("moreau", 0), "#E69F00", "s", True),
-    "flockenv paper": (ours("paper", 0), "#CC79A7", "^", True),
+    "flockenv leapfrog": (ours("leapfrog", "linear"), "#0072B2", "o", True),
+    "flockenv leapfrog, 1e-6 cm": (ours("leapfrog", "1e-6 cm"), "#56B4E9", "o", False),
+    "flockenv leapfrog, 1e-9 cm": (ours("leapfrog", "1e-9 cm"), "#009E73", "o", False),
+    "flockenv moreau": (ours("moreau", "linear"), "#E69F00", "s", True),
+    "flockenv paper": (ours("paper", "linear"), "#CC79A7", "^", True),
     "rapier2d-f64": (RAPIER, "#D55E00", "D", True),
     "Box2D": (BOX2D, "#000000", "v", True),
     "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),

@@ -102,8 +102,8 @@ def gain_of_plan(rows: Any, place: int = 0) -> float:
 
 
 SPEED = "docs/speed_vs_error/"
-OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / r0", "dt_s": 0.01}
-MOREAU = OURS | {"setting": "moreau / block-pivoting / r0"}
+OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / linear", "dt_s": 0.01}
+MOREAU = OURS | {"setting": "moreau / block-pivoting / linear"}
 RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
 JAM = {"scene": "jam", "n": 27, **OURS}
 
@@ -145,8 +145,8 @@ def readme() -> list[Number]:
         *(
             Number(page, words, f"{SPEED}impact.csv", {"scheme": scheme}, "dt = 0.01 s", ".2g")
             for words, scheme in (
-                ("the default is off by {} cm", "leapfrog / r0"),
-                ("`moreau` by {} cm ([speed", "moreau / r0"),
+                ("the default is off by {} cm", "leapfrog / linear"),
+                ("`moreau` by {} cm ([speed", "moreau / linear"),
             )
         ),
         Number(
