@@ -149,7 +149,8 @@ def soak(driver: webdriver.Chrome, address: str, minutes: int) -> None:
         follow = "location.hash = arguments[0]"
         driver.execute_script(click if scene in LESSONS else follow, scene)
         end = time.monotonic() + 60.0
-        driver.execute_script("page.hand.value = 0.5; page.set('bw_s', '0.5')")
+        turn = "document.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}))"
+        driver.execute_script(f"{turn}; page.set('bw_s', '0.5')")
         if not driver.execute_script("return page.playing"):
             driver.execute_script("page.toggle()")
         time.sleep(max(end - time.monotonic(), 0.0))
