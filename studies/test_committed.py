@@ -36,13 +36,15 @@ def test_statements_follow_from_the_runs(name: str, copied: Path) -> None:
     study.main(script, ["--no-runs", "--out", str(copied)])
     if not (copied / folder / "claims.csv").exists():
         return
-    found = pd.read_csv(copied / folder / "claims.csv")
-    committed = pd.read_csv(study.HERE / folder / "claims.csv")
+    found, committed = (
+        pd.read_csv(each / folder / "claims.csv", dtype=str) for each in (copied, study.HERE)
+    )
     committed = committed[committed["figure"].isin(found["figure"])].reset_index(drop=True)
     assert found[KEY].equals(committed[KEY])
     assert found["verdict"].tolist() == committed["verdict"].tolist()
     for column in ("n_runs", "measured", "low", "high"):
-        pd.testing.assert_series_equal(found[column], committed[column], rtol=0.02, atol=1e-3)
+        ours, theirs = (pd.to_numeric(each[column]) for each in (found, committed))
+        pd.testing.assert_series_equal(ours, theirs, rtol=0.02, atol=1e-3)
 
 
 @pytest.mark.parametrize("path", TABLES, ids=lambda path: str(path.relative_to(study.HERE)))

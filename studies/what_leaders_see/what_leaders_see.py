@@ -50,20 +50,20 @@ ALL, CONSTANT, TUNED = "everything", "constant lean", "tuned law"
 CASES = (ALL, CONSTANT, *GROUPS, TUNED, *FAULTS)
 
 
-def policy(case: str) -> LeaningLaw | str:
-    """Return the leaders of a case."""
+def policy(case: str, minutes: float) -> LeaningLaw | str:
+    """Return the leaders of a case; a constant lean is the mean over episodes of this length."""
     learned = LeaningLaw.learned("wide")
     if case == TUNED:
         return TUNED
     left_out = tuple(learned.weights) if case == CONSTANT else GROUPS.get(case, ())
-    bias = mean_lean_rad() if case == CONSTANT else learned.bias
+    bias = mean_lean_rad(minutes) if case == CONSTANT else learned.bias
     weights = {name: w for name, w in learned.weights.items() if name not in left_out}
     bound = "clip" if case == CONSTANT else "tanh"
     return LeaningLaw("wide", bias, weights, gains=learned.gains, bound=bound)
 
 
 @cache
-def mean_lean_rad() -> float:
+def mean_lean_rad(minutes: float) -> float:
     """Return the learned leaders' mean lean in 256 flocks that no case has."""
     law, leans = LeaningLaw.learned("wide"), list[float]()
     weights = np.array([law.weights[name] for name in LEAN_FEATURES])
@@ -75,7 +75,7 @@ def mean_lean_rad() -> float:
 
     steers = SimpleNamespace(observation=law.observation, mirror_to_target=True, predict=noted)
     last = FIRST_SEED + FIRST * FLOCKS
-    run_episodes(flock(CELL), steers, range(last - 256, last), 480.0)
+    run_episodes(flock(CELL), steers, range(last - 256, last), 60.0 * minutes)
     return float(np.mean(leans))
 
 
@@ -94,7 +94,7 @@ def measure(row: Row) -> Row:
     runs = compare_leaders(
         flock(row),
         [row["n_leaders"]],
-        {row["case"]: policy(row["case"])},
+        {row["case"]: policy(row["case"], row["minutes"])},
         range(first, first + row["flocks"]),
         60.0 * row["minutes"],
         environment=FAULTS.get(row["case"]),
