@@ -100,7 +100,11 @@ for rollout in range(ROLLOUTS):
 
 # The actor's mean, which needs no PyTorch; TanhNormal squashes it.
 policy = NetworkPolicy.from_module(
-    network, env.observation_space, squashed=True, provenance={"learner": "TorchRL, PPO"}
+    network,
+    env.observation_space,
+    squashed=True,
+    has_spread=True,
+    provenance={"learner": "TorchRL, PPO"},
 )
 FILE.parent.mkdir(parents=True, exist_ok=True)
 policy.save(FILE)

@@ -197,11 +197,12 @@ def network_policy(
             "this policy is not accepted: one MLP that all leaders share (model_config = "
             "MlpConfig, share_policy_params)"
         )
+    network = networks[0].mlp.get_stateful_net()
     return NetworkPolicy.from_module(
-        networks[0].mlp.get_stateful_net(),
+        network,
         env.observation_space,
         squashed=getattr(algorithm, "use_tanh_normal", False),
-        has_spread=len(next(reversed([*networks[0].parameters()]))) == 2,
+        has_spread=[*network.parameters()][-1].shape[-1] == 2,
         provenance=provenance,
     )
 
