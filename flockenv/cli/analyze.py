@@ -30,7 +30,7 @@ def _written() -> tuple[str, ...]:
 class AnalyzeOptions(Overwriting, Printing):
     """Options of `flockenv analyze`."""
 
-    file: Path = argument("Tracks (.csv, .parquet) or a recording (.npz).")
+    file: Path = argument("Tracks (.csv, .tsv, .txt, .parquet) or a recording (.npz).")
     layout: Path | None = option(
         None, "TOML file with the columns and units of tracks. [beside the file]"
     )

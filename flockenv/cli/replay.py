@@ -20,7 +20,9 @@ _OF_PICTURES = ("colors", "speed", "start", "seconds")
 class ReplayOptions(Printing):
     """Options of `flockenv replay`."""
 
-    first: Path = argument("A recording (.npz), or tracks (.csv, .parquet).", metavar="RUN")
+    first: Path = argument(
+        "A recording (.npz), or tracks (.csv, .tsv, .txt, .parquet).", metavar="RUN"
+    )
     second: Path | None = argument("A second one, to play beside it.", None, metavar="OTHER")
     html: Path | None = option(
         None, "The page. [the first recording's name]", endings=lambda: (".html",)

@@ -158,10 +158,10 @@ def test_a_small_file_that_would_fill_the_memory_is_refused(name, tmp_path):
     if name.endswith(".gz"):
         with gzip.open(path, "wb") as file:
             file.write(b"frame,id,x,y,heading\n")
-            for _ in range(100):
+            for _ in range(70):
                 file.write(b"0,0,0,0,0\n" * 100_000)
     else:
-        zeros = np.zeros(3_000_000)
+        zeros = np.zeros(1_800_000)
         pd.DataFrame(dict.fromkeys(("frame", "id", "x", "y", "heading"), zeros)).to_parquet(path)
     assert path.stat().st_size < 1 << 20
     tracemalloc.start()
