@@ -93,24 +93,20 @@ class EnvOptions:
         counts
             Name of the argument that is the number of flocks; None for one flock.
         """
-        for name in options:
-            if name not in NAMES:
-                # TorchRL looks for these words.
-                raise UnknownOptionError(
-                    f"got an unexpected keyword argument {name!r}, which is no option of the "
-                    f"environment: {_instead(name, counts)}"
-                )
+        for name in (each for each in options if each not in NAMES):
+            # TorchRL looks for these words.
+            raise UnknownOptionError(
+                f"got an unexpected keyword argument {name!r}, which is no option of the "
+                f"environment: {_instead(name, counts)}"
+            )
         given = {name: listed(value) for name, value in options.items()}
-        own_reward = None
-        if callable(given.get("reward")):
-            own_reward = given["reward"]
-            given["reward"] = {}
-            if not takes_function:
-                raise ParameterError(
-                    f"reward = {shown(own_reward)} is not accepted: weights by name. Environments "
-                    "of many flocks take a function, LeadersVectorEnv and LeaderVecEnv; of one "
-                    "flock a subclass or a wrapper computes a reward of its own"
-                )
+        own_reward = _taken_function(given)
+        if own_reward is not None and not takes_function:
+            raise ParameterError(
+                f"reward = {shown(own_reward)} is not accepted: weights by name. Environments of "
+                "many flocks take a function, LeadersVectorEnv and LeaderVecEnv; of one flock a "
+                "subclass or a wrapper computes a reward of its own"
+            )
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
             settings["bw_s"] = tuple(given.pop("bw_s"))
@@ -131,6 +127,15 @@ class EnvOptions:
             )
         settings.setdefault("target", parameters.target)
         return cls(parameters, settings, own_reward)
+
+
+def _taken_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
+    """Take a reward that is a function out of the options, and return it."""
+    if not callable(given.get("reward")):
+        return None
+    function: Callable[[Any], ArrayLike] = given.pop("reward")
+    given["reward"] = {}
+    return function
 
 
 def _instead(name: str, counts: str | None) -> str:
