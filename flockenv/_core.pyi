@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "ACTION_MODES",
+    "BRANCH_OPTIONS",
     "COLLECTIVE_STATES",
     "FLOCK_FEATURES",
     "HAS_AVX2",
@@ -34,6 +35,7 @@ __all__ = [
     "ParameterError",
     "Parameters",
     "SolverError",
+    "Trainer",
     "__version__",
     "collective_states",
     "critical_bw_s",
@@ -76,6 +78,7 @@ OBSERVATION_VERSION: int
 # fields of `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
 PARAMETERS: tuple[dict[str, Any], ...]
 OPTIONS: tuple[dict[str, Any], ...]
+BRANCH_OPTIONS: tuple[dict[str, Any], ...]
 QUANTITIES: tuple[dict[str, Any], ...]
 # Of each law name, doc, color (None: any that is free) and is_of_pool; the first acts at every
 # substep.
@@ -151,6 +154,28 @@ class Law:
 class ObservedLaw:
     def __new__(cls, law: Law, blocks: dict[str, Any], mirror_to_target: bool = False) -> Self: ...
     def actions(self, observations: _Singles) -> _Singles: ...
+
+@final
+class Trainer:
+    def __new__(
+        cls, parameters: _Parameters, options: dict[str, Any], seed: int, first_seed: int
+    ) -> Self: ...
+    @staticmethod
+    def from_bytes(state: bytes, flock_hours: float | None = None) -> Trainer: ...
+    def to_bytes(self) -> bytes: ...
+    def advance(self, branches: int) -> None: ...
+    @property
+    def has_ended(self) -> bool: ...
+    @property
+    def flock_hours(self) -> tuple[float, float]: ...
+    @property
+    def curve(self) -> list[tuple[float, float]]: ...
+    @property
+    def law(self) -> Law: ...
+    @property
+    def options(self) -> dict[str, Any]: ...
+    @property
+    def parameters(self) -> Parameters: ...
 
 @final
 class EnvBatch:

@@ -64,6 +64,7 @@ pub mod parameters;
 pub mod policies;
 pub mod random;
 mod sealed_bytes;
+pub mod training;
 
 #[cfg(feature = "python")]
 mod python;

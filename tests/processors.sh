@@ -19,6 +19,6 @@ for processor in "${processors[@]}"; do
   setting=CARGO_TARGET_$(tr a-z- A-Z_ <<< "$target")
   export "${setting}_LINKER=$linker" "${setting}_RUNNER=$emulator -L /usr/$processor-linux-gnu"
   # Each needs what it is compiled for, so that a build for this machine stays where it is.
-  cargo test --locked --target "$target" --test physics -- same_bits determinism
+  cargo test --locked --target "$target" --test physics --test environment -- same_bits determinism
   echo "The same bits on $processor."
 done

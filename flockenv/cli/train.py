@@ -9,7 +9,7 @@ from flockenv.cli.console import errors, print_json, say
 from flockenv.cli.options import Printing, option, option_of, takes
 from flockenv.cli.parameters import changed_fields
 from flockenv.cli.progress import progress
-from flockenv.errors import ParameterError
+from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.policies.names import TUNED_LAW
 from flockenv.statistics import paired_difference
 
@@ -21,14 +21,17 @@ if TYPE_CHECKING:
 class TrainOptions(Printing):
     """Options of `flockenv train`."""
 
+    algorithm: str = option("ppo", "ppo, or branches, which needs no torch.")
     pool: str | None = option(None, "wide or narrow. [wide]")
     n_boats: int | None = option(None, "Boats of each flock. [27]")
     n_leaders: int | None = option(None, "Leaders of each flock. [3]")
     bw_s: float | None = option(None, "Noise: backward duration in s. [critical]")
-    flock_hours: float | None = option(None, "When to stop: hours of all flocks together. [500]")
+    flock_hours: float | None = option(
+        None, "When to stop: hours of all flocks together. [500, or those of the branches]"
+    )
     seed: int | None = option(None, "Seed of the training. [0]")
     change: list[str] | None = option(
-        None, "Set an option of the environment; repeatable.", "--set", metavar="NAME=VALUE"
+        None, "Set an option of the task; repeatable.", "--set", metavar="NAME=VALUE"
     )
     ppo: list[str] | None = option(None, "Set an option of PPO; repeatable.", metavar="NAME=VALUE")
     episodes: int = option(512, "Held-out flocks of the comparison with the laws.", min=2)
@@ -36,6 +39,7 @@ class TrainOptions(Printing):
     resume: bool = option(False, "Continue from the folder's last checkpoint.", "--resume")
 
     def __post_init__(self) -> None:
+        refuse_unknown([self.algorithm], ("ppo", "branches"), "algorithm")
         if self.settings().keys() - {"flock_hours"} and self.resume:
             raise ParameterError(
                 "--resume takes settings from the folder; only --flock-hours may differ"
@@ -60,19 +64,28 @@ class TrainOptions(Printing):
 
 @takes(TrainOptions)
 def train(options: TrainOptions) -> None:
-    """Train one policy for all leaders with PPO (extra `train`).
+    """Train one policy for all leaders, with PPO (extra `train`) or in paired branches.
 
-    This is `examples/train_leaders.py` with options. Writes `model.zip` (for `--policy` of
+    PPO is `examples/train_leaders.py` with options. It writes `model.zip` (for `--policy` of
     `flockenv compare`, with `--trust`), `settings.toml`, a checkpoint, the training's episodes,
     `curve.png`, and `comparison.csv`: the signed order of the trained leaders, the paper's law and
     the tuned law in held-out flocks. `--resume` continues an interrupted training.
 
-    Example: `flockenv train --pool wide --n-leaders 3 --flock-hours 60`
+    `--algorithm branches` needs nothing but flockenv, and gives the same weights to the bit on
+    every processor. It writes `policy.json` and `curve.csv` instead of a model. `--set` sets its
+    options, too: `action_mode=rudder` trains from nothing.
+
+    Example: `flockenv train --algorithm branches --pool wide --n-leaders 3`
     """
+    given, out = options.settings(), options.out
+    if options.algorithm == "branches":
+        from flockenv.cli.train_branches import train_branches
+
+        train_branches(given, out, options.episodes, options, resume=options.resume)
+        return
     from flockenv import training
     from flockenv.comparison.report import overlap_notes
 
-    given, out = options.settings(), options.out
     kept = f"{out} holds the last checkpoint: --resume continues from it."
     with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
         shown = 0.0

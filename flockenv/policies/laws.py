@@ -185,7 +185,8 @@ class LeaningLaw(LawPolicy):
     """The damped law about a heading that leans outward of the target's tangent.
 
     The lean is bias + Σ weight·feature in rad, bounded to ±1.2 rad. The observation's block
-    ``lean_features`` has the features: standardized, in the frame of the target.
+    ``lean_features`` has the features: standardized, in the frame of the target. In a file whose
+    gains are null the sum is the rudder itself, bounded to ±1.
 
     Parameters
     ----------
@@ -343,9 +344,12 @@ class LeaningLaw(LawPolicy):
         self.judged: dict[str, object] | None = values.get("judged")
         self.provenance: dict[str, str] = values.get("provenance", {})
         self.decision_period_s = values.get("decision_period_s")
-        self.action_mode = "rudder" if self.decision_period_s is None else "lean"
+        steers = values["gains"] is None
+        self.action_mode = "lean" if self.decision_period_s is not None and not steers else "rudder"
         others = dict.fromkeys(("phase", "target", "neighbors", "order"), False) | {"neighbors": 0}
-        layout = {"own": self.action_mode == "rudder", **others, "lean_features": True}
+        # The law that steers to a lean reads the boat's own course.
+        own = self.action_mode == "rudder" and not steers
+        layout = {"own": own, **others, "lean_features": True}
         super().__init__(law, layout, mirror_to_target=True)
 
     def to_json(self) -> str:

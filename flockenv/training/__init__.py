@@ -8,7 +8,8 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.training.curve import TRAINED, compare_with_laws, draw_curve, learning_curve
+from flockenv.learning_curve import draw_curve
+from flockenv.training.curve import TRAINED, compare_with_laws, learning_curve
 from flockenv.training.run import (
     CHECKPOINT,
     MODEL,

@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 from stable_baselines3.common.monitor import load_results
 
-from flockenv._io.atomic_write import atomic_write
-from flockenv._io.extras import require
 from flockenv.comparison import compare_leaders
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
 from flockenv.training.settings import TrainingSettings
@@ -43,29 +41,6 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     return order.to_frame().assign(flock_hours=hours.groupby(group).last())[
         ["flock_hours", "signed_order"]
     ]
-
-
-def draw_curve(curve: "pd.DataFrame", laws: dict[str, float], path: Path) -> None:
-    """Draw a learning curve, with the laws' orders as level lines.
-
-    Parameters
-    ----------
-    curve
-        As of `learning_curve`.
-    laws
-        Mean signed order by the name of a law.
-    path
-        Of a PNG file.
-    """
-    figure: Any = require("matplotlib.figure", "plot").Figure((6.4, 3.6), layout="constrained")
-    axes = figure.subplots()
-    axes.plot(curve["flock_hours"], curve["signed_order"], label="leaders that explore")
-    for (name, order), style in zip(laws.items(), ("--", ":", "-.", "-"), strict=False):
-        axes.axhline(order, color="0.4", lw=1, ls=style, label=name)
-    axes.set(xlabel="simulated time of all flocks (hours)", ylabel="mean signed order")
-    axes.legend(frameon=False, fontsize=8)
-    with atomic_write(path) as file:
-        figure.savefig(file, dpi=150, format="png")
 
 
 def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> "pd.DataFrame":

@@ -164,7 +164,7 @@ impl Law {
     fn damped(&self) -> Option<&DampedLaw> {
         match self {
             Self::Damped(law) => Some(law),
-            _ => self.leaning().map(|law| &law.gains),
+            _ => self.leaning().and_then(|law| law.gains.as_ref()),
         }
     }
 
@@ -182,7 +182,8 @@ impl Law {
         let rudder = match self {
             Self::EverySubstep | Self::Paper => steering_law(course.misalignment),
             Self::Damped(law) => law.rudder(course),
-            Self::Leaning(law) => law.gains.rudder(course),
+            // One without gains chooses rudders itself.
+            Self::Leaning(law) => law.gains.map_or(0.0, |gains| gains.rudder(course)),
         };
         f64::from(rudder as f32)
     }

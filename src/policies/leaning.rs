@@ -1,4 +1,4 @@
-//! The leaning law: a heading that leans outward of the target's tangent, linearly in what a leader sees.
+//! The leaning law: a heading that leans outward of the target's tangent, or a rudder, linearly in what a leader sees.
 
 use crate::boat::DampedLaw;
 use crate::environment::LARGEST_LEAN;
@@ -38,7 +38,7 @@ pub struct Judged {
 }
 
 /// The damped law about a heading that leans outward of the target's tangent: by bias + Σ weight·feature in rad, where
-/// the features are the standardized lean features.
+/// the features are the standardized lean features. Without gains the sum is the rudder itself, for a clockwise target.
 ///
 /// As it is stored: JSON, with the weights by the names of their features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,17 +51,19 @@ pub struct LeaningLaw {
     /// How it was judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
-    /// The damped law that steers to the heading.
-    pub gains: DampedLaw,
+    /// The damped law that steers to the heading; `None`: leaders choose rudders. A file says so: without gains it is
+    /// not whole.
+    #[serde(deserialize_with = "Option::deserialize")]
+    pub gains: Option<DampedLaw>,
     /// How the lean is bounded.
     pub bound: Bound,
-    /// For how many s a lean is held, a whole number of control steps; `None`: one control step. Leans that are held are
-    /// steered to with the gains tuned in the pool, as by the action mode "lean".
+    /// For how many s a lean or a rudder is held, a whole number of control steps; `None`: one control step. Leans that
+    /// are held are steered to with the gains tuned in the pool, as by the action mode "lean".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decision_period_s: Option<f64>,
-    /// Lean in rad where every feature has its usual value.
+    /// Lean in rad, or rudder, where every feature has its usual value.
     pub bias: f64,
-    /// Rad per standard deviation of each feature.
+    /// Rad, or rudder, per standard deviation of each feature.
     #[serde(with = "by_feature")]
     pub weights: [f64; LEAN_FEATURES],
     /// Its provenance: short texts by name.
@@ -123,6 +125,32 @@ mod by_feature {
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {
+    /// A law by its numbers: the weights of the features, then the bias.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for what [`Self::check`] refuses.
+    pub fn new(
+        pool: Option<&str>,
+        gains: Option<DampedLaw>,
+        decision_period_s: Option<f64>,
+        numbers: &[f64; LEAN_FEATURES + 1],
+    ) -> Result<Self> {
+        LeanFeatures::check_pool(pool)?;
+        let law = Self {
+            format: FORMAT,
+            pool: pool.unwrap_or_default().to_owned(),
+            judged: None,
+            gains,
+            bound: Bound::Tanh,
+            decision_period_s,
+            bias: numbers[LEAN_FEATURES],
+            weights: std::array::from_fn(|place| numbers[place]),
+            provenance: BTreeMap::new(),
+        };
+        law.check()?;
+        Ok(law)
+    }
+
     /// The law of a JSON text.
     ///
     /// # Errors
@@ -167,7 +195,7 @@ impl LeaningLaw {
     /// [`FlockError::Parameter`] for numbers that are not finite, pools whose features are not standardized, and leans that
     /// are held with other gains than those tuned in the pool.
     pub fn check(&self) -> Result<()> {
-        self.gains.check()?;
+        self.gains.map_or(Ok(()), |gains| gains.check())?;
         LeanFeatures::check_pool(Some(&self.pool))?;
         let weights = LeanFeatures::names().zip(self.weights);
         for (name, value) in weights.chain([("bias", self.bias)]) {
@@ -176,7 +204,9 @@ impl LeaningLaw {
         let Some(period) = self.decision_period_s else {
             return Ok(());
         };
-        let is_tuned = DampedLaw::TUNED.contains(&(self.pool.as_str(), self.gains));
+        let is_tuned = self
+            .gains
+            .is_none_or(|gains| DampedLaw::TUNED.contains(&(self.pool.as_str(), gains)));
         let accepted = "none, unless the gains are the tuned ones of the pool";
         FlockError::unless(is_tuned, "decision_period_s", period, accepted)?;
         let is_time = period > 0.0 && period <= 1e6;
@@ -184,13 +214,17 @@ impl LeaningLaw {
         FlockError::unless(is_time, "decision_period_s", period, accepted)
     }
 
-    /// The lean over [`LARGEST_LEAN`] for standardized features, in [−1, 1], with the precision of actions.
+    /// The lean over [`LARGEST_LEAN`], or the rudder, for standardized features, in [−1, 1], with the precision of actions.
     pub fn action(&self, features: &[f32]) -> f32 {
         let terms = self.weights.iter().zip(features);
         let lean: f64 = terms.fold(self.bias, |lean, (weight, &feature)| {
             lean + weight * f64::from(feature)
         });
-        let action = lean / LARGEST_LEAN;
+        let action = if self.gains.is_some() {
+            lean / LARGEST_LEAN
+        } else {
+            lean
+        };
         let bounded = match self.bound {
             Bound::Tanh => libm::tanh(action),
             Bound::Clip => action.clamp(-1.0, 1.0),

@@ -10,7 +10,7 @@ use crate::error::{FlockError, Result};
 pub struct ObservedLaw {
     law: Law,
     size: usize,
-    /// `None` where the law's actions are leans, to which the environment steers.
+    /// `None` where the law's actions are leans, to which the environment steers, or rudders.
     courses: Option<CourseReader>,
     /// Where the lean features start, if the law looks at them.
     features: Option<usize>,
@@ -30,8 +30,9 @@ impl ObservedLaw {
         let accepted = "a leaning law reads this block; switch it on";
         FlockError::unless(is_met, "observation", "lean_features: off", accepted)?;
         let leaning = law.leaning();
-        let holds = leaning.is_some_and(|law| law.decision_period_s.is_some());
-        let courses = (!holds).then(|| CourseReader::new(layout)).transpose()?;
+        let acts =
+            leaning.is_some_and(|law| law.decision_period_s.is_some() || law.gains.is_none());
+        let courses = (!acts).then(|| CourseReader::new(layout)).transpose()?;
         Ok(Self {
             size: layout.size(),
             courses,

@@ -13,11 +13,11 @@ use crate::parameters::FlockParameters;
 #[derive(Debug, Clone)]
 pub struct Pilot {
     law: Law,
-    /// Control steps from one lean to the next.
+    /// Control steps from one decision to the next.
     period: u32,
-    /// Control steps since the last lean.
+    /// Control steps since the last decision.
     held: u32,
-    /// How far each leader's heading leans outward, in rad.
+    /// How far each leader's heading leans outward, in rad; the rudder for a clockwise target where the law chooses it.
     leans: Vec<f64>,
     views: Views,
 }
@@ -75,19 +75,26 @@ impl Pilot {
         let order = features.and_then(|_| flock.order_parameters(false).ok());
         let view = FlockView::new(flock, &[], order.as_ref());
         if self.held == 0 {
-            self.lean(&view);
+            self.decide(&view);
         }
         self.held = (self.held + 1) % self.period;
+        let steers = self.law.leaning().is_some_and(|law| law.gains.is_none());
         let leans = self.leans.iter().enumerate();
-        let courses = leans.map(|(leader, &lean)| self.views.courses.course(&view, leader, lean));
-        Ok(courses.map(|course| self.law.rudder(&course)).collect())
+        let rudders = leans.map(|(leader, &lean)| {
+            if steers {
+                return view.targets.of(leader).sign() * lean;
+            }
+            let course = self.views.courses.course(&view, leader, lean);
+            self.law.rudder(&course)
+        });
+        Ok(rudders.collect())
     }
 
-    fn lean(&mut self, view: &FlockView) {
+    fn decide(&mut self, view: &FlockView) {
         if let (Some(law), Some(features)) = (self.law.leaning(), &mut self.views.features) {
+            let largest = law.gains.map_or(1.0, |_| LARGEST_LEAN);
             for (leader, lean) in self.leans.iter_mut().enumerate() {
-                let seen = features.observed(view, leader);
-                *lean = LARGEST_LEAN * f64::from(law.action(&seen));
+                *lean = largest * f64::from(law.action(&features.observed(view, leader)));
             }
         }
     }

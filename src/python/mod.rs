@@ -11,6 +11,7 @@ mod observation;
 mod parameters;
 mod recording;
 mod tables;
+mod training;
 mod value;
 
 use pyo3::prelude::*;
@@ -30,6 +31,7 @@ mod _core {
     use crate::integrator::Phase;
     use crate::parameters::{Field, FlockParameters, Preset, Value};
     use crate::policies::{Law, NamedLaw};
+    use crate::training::BranchSettings;
 
     #[pymodule_export]
     use super::analysis::{
@@ -55,6 +57,8 @@ mod _core {
         critical_bw_s, decisions_in, physics_fields, pool_radii_cm, preset_sources,
         rudders_of_levels,
     };
+    #[pymodule_export]
+    use super::training::PyTrainer;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -72,6 +76,8 @@ mod _core {
         module.add("PARAMETERS", Value::List(fields.collect()))?;
         let fields = EnvSettings::FIELDS.iter().map(Field::named);
         module.add("OPTIONS", Value::List(fields.collect()))?;
+        let fields = BranchSettings::FIELDS.iter().map(Field::named);
+        module.add("BRANCH_OPTIONS", Value::List(fields.collect()))?;
         let quantities = QUANTITIES.iter().map(Quantity::named);
         module.add("QUANTITIES", Value::List(quantities.collect()))?;
         let features = flock_feature_entries().into_iter();

@@ -50,9 +50,11 @@ def run_shell(cli):
 
 @pytest.fixture
 def _minutes_in_seconds(monkeypatch):
-    """Let trainings on the pages take three rollouts, and comparisons two flocks each."""
+    """Let trainings on pages take three rollouts or a round, and comparisons two flocks."""
     from stable_baselines3 import PPO
 
+    from flockenv.branches import BranchTraining
+    from flockenv.cli import train_branches
     from flockenv.comparison import case
 
     learn, compare = PPO.learn, case.compare_leaders
@@ -68,6 +70,10 @@ def _minutes_in_seconds(monkeypatch):
         ),
     )
     monkeypatch.setattr(case, "compare_leaders", compared)
+    ended = property(lambda training: len(training.curve["flock_hours"]) > 0)
+    monkeypatch.setattr(BranchTraining, "has_ended", ended)
+    against = train_branches.compare_with_laws
+    monkeypatch.setattr(train_branches, "compare_with_laws", lambda *of: against(*of[:2], 2))
 
 
 @pytest.mark.filterwarnings("ignore:PettingZoo in TorchRL is tested")

@@ -9,5 +9,6 @@ mod episodes;
 mod leader_targets;
 mod observations;
 mod pilots;
+mod same_bits_of_training;
 mod stored_states;
 mod support;

@@ -19,7 +19,7 @@ fn holding(period_s: f64) -> Law {
         panic!("the law is tuned in this pool");
     };
     let mut law = learned();
-    law.gains = gains;
+    law.gains = Some(gains);
     law.decision_period_s = Some(period_s);
     Law::Leaning(Box::new(law))
 }
@@ -95,7 +95,7 @@ fn laws_whose_gains_are_no_numbers_lead_nobody() {
             let mut own = gains;
             *[&mut own.gain, &mut own.backward_gain, &mut own.damping][place] = wrong;
             let mut leaning = learned();
-            leaning.gains = own;
+            leaning.gains = Some(own);
             for law in [Law::Damped(own), Law::Leaning(Box::new(leaning))] {
                 assert!(law.check().is_err(), "{law:?}");
                 assert!(ObservedLaw::new(law.clone(), &layout).is_err());

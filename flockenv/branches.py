@@ -1,0 +1,275 @@
+"""Training of leaders in pairs of flocks that branch from one state, in the core, without torch."""
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+import tomli_w
+from numpy.typing import NDArray
+
+from flockenv import _core
+from flockenv._io.arguments import whole
+from flockenv._io.atomic_write import atomic_write, write_text
+from flockenv._io.interrupts import end_if_interrupted
+from flockenv._io.plain_file import open_plain
+from flockenv._io.toml import read_toml_file
+from flockenv.comparison import run_episodes
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.parameters import FlockParameters
+from flockenv.policies import LeaningLaw
+from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
+from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.runs.store import RESULTS_VERSION
+
+CHECKPOINT, CURVE, POLICY, SETTINGS = "checkpoint.bin", "curve.csv", "policy.json", "settings.toml"
+"""Files of a training."""
+
+TRAINED = "trained"
+"""Name of the trained leaders in a comparison."""
+
+OPTIONS: tuple[str, ...] = tuple(each["name"] for each in _core.BRANCH_OPTIONS)
+"""Names of the options of a training; docs/training_reference.md says what each is."""
+
+_SEEDS = POLICY_SEEDS["paired branches"]
+#: Between two checkpoints, in s.
+_PATIENCE_S = 5.0
+_EPISODE_S = 480.0
+_LARGEST_FILE = 1 << 30
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a training is.
+
+    Attributes
+    ----------
+    flock_hours, total
+        Simulated time of all flocks together, now and at the end.
+    signed_order
+        Mean of the last round, in which leaders try offsets.
+    """
+
+    flock_hours: float
+    total: float
+    signed_order: float
+
+
+Report = Callable[[Progress], object]
+
+
+class BranchTraining:
+    """A training under way: `advance` it, and take its `policy` whenever you like.
+
+    The same seed gives the same weights to the bit, on every processor and on any number of
+    threads. The leaders' leans or rudders are linear in the 29 lean features.
+
+    Parameters
+    ----------
+    parameters
+        Of the flocks, in the pool ``"wide"`` or ``"narrow"``.
+    seed
+        Seed of the training, from 0 to 2³² - 1.
+    options
+        Options of the training that differ from the usual ones of the ``action_mode``.
+
+    Raises
+    ------
+    ParameterError
+        For unknown options and values that are not accepted.
+    """
+
+    def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: Any) -> None:
+        refuse_unknown(options, OPTIONS, "option of the training")
+        first = _SEEDS.seeds(1, run=whole(seed, "seed"))[0]
+        self._core = _core.Trainer(parameters, options, seed, first)
+        self.parameters = parameters
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Every option by name."""
+        return self._core.options
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it has taken its flock-hours."""
+        return self._core.has_ended
+
+    @property
+    def curve(self) -> dict[str, NDArray[np.float64]]:
+        """The columns ``flock_hours`` and ``signed_order`` of every round, while leaders try."""
+        rows = np.array(self._core.curve, float).reshape(-1, 2)
+        return {"flock_hours": rows[:, 0], "signed_order": rows[:, 1]}
+
+    @property
+    def progress(self) -> Progress:
+        """How far it is."""
+        done, total = self._core.flock_hours
+        order = self.curve["signed_order"]
+        return Progress(done, total, float(order[-1]) if len(order) else math.nan)
+
+    def advance(self) -> None:
+        """Take a round: a branch of every pair, and a step of the weights.
+
+        Ctrl-C ends it as if it had not begun.
+        """
+        self._core.advance(self.options["pairs"])
+
+    def policy(self, provenance: Mapping[str, str] | None = None) -> LeaningLaw:
+        """Return the law of the mean weights over the second half of the rounds until now.
+
+        Parameters
+        ----------
+        provenance
+            Short texts by name for the policy's file.
+        """
+        values = json.loads(self._core.law.to_json())
+        return LeaningLaw.from_json(json.dumps({**values, "provenance": dict(provenance or {})}))
+
+    def to_bytes(self) -> bytes:
+        """Return the training after its last whole round, for `from_bytes`."""
+        return self._core.to_bytes()
+
+    @classmethod
+    def from_bytes(cls, state: bytes, *, flock_hours: float | None = None) -> Self:
+        """Return a training that goes on to the same bits, or until other `flock_hours`.
+
+        A FlockError refuses a state that is damaged, of another format, or not finite.
+        """
+        training = cls.__new__(cls)
+        training._core = _core.Trainer.from_bytes(state, flock_hours)
+        training.parameters = FlockParameters.from_dict(training._core.parameters.values)
+        return training
+
+
+def training_flocks(pool: str = "wide", **changes: Any) -> FlockParameters:
+    """Return 27 boats with three leaders at a pool's critical noise, with the physics of trainings.
+
+    Parameters
+    ----------
+    pool
+        ``"wide"`` or ``"narrow"``.
+    changes
+        Other fields of `flockenv.FlockParameters`.
+    """
+    usual: dict[str, Any] = {"pool": pool, "n_boats": 27, "n_leaders": 3}
+    usual |= _core.physics_fields("training")
+    if "bw_s" not in changes:
+        usual["bw_s"] = FlockParameters.critical_bw_s("simulation", pool)
+    return FlockParameters(**{**usual, **changes})
+
+
+def train(
+    training: BranchTraining,
+    folder: Path,
+    command: str = "",
+    report: Report = lambda progress: None,
+) -> LeaningLaw:
+    """Go on with a training to its end, and return the policy.
+
+    The folder gets ``checkpoint.bin`` every few seconds, and ``policy.json``, ``curve.csv`` and
+    ``settings.toml``. Ctrl-C leaves a checkpoint of the last whole round.
+
+    Parameters
+    ----------
+    training
+        The training.
+    folder
+        Where to write.
+    command
+        Goes into the provenance of the policy.
+    report
+        Called after each round.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = {"results_version": RESULTS_VERSION, "training": training.options}
+    write_text(
+        folder / SETTINGS, tomli_w.dumps({**settings, "flocks": training.parameters.to_dict()})
+    )
+    start, stored = time.process_time(), time.monotonic()
+    try:
+        while not training.has_ended:
+            training.advance()
+            report(training.progress)
+            if time.monotonic() - stored > _PATIENCE_S:
+                _store(training, folder)
+                stored = time.monotonic()
+            end_if_interrupted()
+    finally:
+        _store(training, folder)
+    policy = training.policy(_provenance(training, command, time.process_time() - start))
+    policy.save(folder / POLICY)
+    rows = ["flock_hours,signed_order"]
+    rows += [
+        f"{hours:.6g},{order:.5f}" for hours, order in zip(*training.curve.values(), strict=True)
+    ]
+    write_text(folder / CURVE, "\n".join(rows) + "\n")
+    return policy
+
+
+def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTraining:
+    """Return the training of a folder's checkpoint, with other `flock_hours` if they are given.
+
+    Raises
+    ------
+    ParameterError
+        If there is no checkpoint, or it is damaged or of another results version.
+    """
+    path = folder / CHECKPOINT
+    if not path.exists():
+        raise ParameterError(f"{folder} holds no checkpoint of branches to resume")
+    version = read_toml_file(folder / SETTINGS, str(folder / SETTINGS)).get("results_version")
+    if version != RESULTS_VERSION:
+        raise ParameterError(
+            f"{folder} was trained in results version {shown(version)}, and this flockenv has "
+            f"version {RESULTS_VERSION}: start again"
+        )
+    with open_plain(path) as file:
+        state = file.read(_LARGEST_FILE)
+    try:
+        return BranchTraining.from_bytes(state, flock_hours=flock_hours)
+    except FlockError as error:
+        raise ParameterError(f"{path} is no checkpoint: {error}") from error
+
+
+def compare_with_laws(
+    policy: LeaningLaw, parameters: FlockParameters, flocks: int
+) -> dict[str, NDArray[np.float64]]:
+    """Return the signed order of each of some fresh flocks, by what leads them for 8 minutes.
+
+    Parameters
+    ----------
+    policy
+        The trained leaders.
+    parameters
+        Of the flocks.
+    flocks
+        How many, with the same starts and noises for the laws and the trained leaders.
+    """
+    led: dict[str, Any] = {PAPERS_LAW: PAPERS_LAW, TUNED_LAW: TUNED_LAW, TRAINED: policy}
+    seeds = range(flocks)
+    options = {"target": "random"}
+    return {
+        name: run_episodes(parameters, each, seeds, _EPISODE_S, options=options)["signed_order"]
+        for name, each in led.items()
+    }
+
+
+def _store(training: BranchTraining, folder: Path) -> None:
+    with atomic_write(folder / CHECKPOINT) as file:
+        file.write(training.to_bytes())
+
+
+def _provenance(training: BranchTraining, command: str, cpu_s: float) -> dict[str, str]:
+    done = training.progress.flock_hours
+    return {
+        "command": command,
+        "flockenv": _core.__version__,
+        "results_version": str(RESULTS_VERSION),
+        "flock_hours": f"{done:.6g}",
+        "cpu_s": f"{cpu_s:.0f}",
+    }

@@ -1,0 +1,116 @@
+"""`flockenv train --algorithm branches`."""
+
+import shlex
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flockenv._io.atomic_write import write_text
+from flockenv.branches import (
+    CHECKPOINT,
+    OPTIONS,
+    POLICY,
+    TRAINED,
+    BranchTraining,
+    Progress,
+    compare_with_laws,
+    stored_training,
+    train,
+    training_flocks,
+)
+from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.options import Printing, option_of
+from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.parameters import FlockParameters
+from flockenv.policies.names import TUNED_LAW
+
+#: Between two lines on the training, in s.
+_BETWEEN_LINES_S = 3.0
+
+
+def train_branches(
+    given: dict[str, Any], out: Path, flocks: int, printing: Printing, *, resume: bool
+) -> None:
+    """Train, write the policy with its curve, and compare it with the laws in so many flocks."""
+    start, command = time.process_time(), _command(given)
+    if resume:
+        say(f"Resuming from {out / CHECKPOINT}", errors)
+        training = stored_training(out, given.get("flock_hours"))
+    else:
+        training = _training(given)
+        if (out / CHECKPOINT).exists():
+            raise ParameterError(f"{out} holds a run already: resume it, or name another folder")
+    policy = train(training, out, command, _lines(printing.shows_nothing))
+    orders = compare_with_laws(policy, training.parameters, flocks)
+    _write(out, training, orders)
+    gain, error = _mean(orders[TRAINED] - orders[TUNED_LAW])
+    if printing.as_json:
+        means = {name: _mean(each)[0] for name, each in orders.items()}
+        print_json({"signed_order": means, "gain": [gain, error], "policy": str(out / POLICY)})
+        return
+    for name, each in orders.items():
+        mean, own = _mean(each)
+        say(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
+    say(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
+    say(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
+
+
+def _training(given: dict[str, Any]) -> BranchTraining:
+    """Return the training that the options ask for."""
+    if "ppo" in given:
+        raise ParameterError("--ppo is for --algorithm ppo")
+    changes = dict(given.get("environment", {}))
+    names = [each.name for each in fields(FlockParameters)]
+    refuse_unknown(changes, [*OPTIONS, *names], "option of the training")
+    own = {name: changes.pop(name) for name in OPTIONS if name in changes}
+    own |= {name: given[name] for name in ("flock_hours", "seed") if name in given}
+    flock = {name: given[name] for name in ("pool", "n_leaders") if name in given}
+    return BranchTraining(training_flocks(**flock, **changes), **own)
+
+
+def _lines(is_quiet: bool) -> Callable[[Progress], None]:
+    """Return what says how far the training is, every few seconds unless it is quiet."""
+    last = 0.0
+
+    def report(now: Progress) -> None:
+        nonlocal last
+        if not is_quiet and time.monotonic() - last > _BETWEEN_LINES_S:
+            last = time.monotonic()
+            done = f"{now.flock_hours:.0f} of {now.total:.0f} flock-hours"
+            say(f"{done}: signed order {now.signed_order:.3f} while leaders try", errors)
+
+    return report
+
+
+def _mean(values: Any) -> tuple[float, float]:
+    """Return a mean and its standard error."""
+    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
+
+
+def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
+    """Write the comparison, and the picture of the curve where matplotlib is installed."""
+    rows = ["seed," + ",".join(orders)]
+    for seed, row in enumerate(zip(*orders.values(), strict=True)):
+        rows.append(f"{seed}," + ",".join(f"{order:.5f}" for order in row))
+    write_text(out / "comparison.csv", "\n".join(rows) + "\n")
+    if find_spec("matplotlib") is not None:
+        from flockenv.learning_curve import draw_curve
+
+        laws = {name: float(each.mean()) for name, each in orders.items() if name != TRAINED}
+        draw_curve(training.curve, laws, out / "curve.png")
+
+
+def _command(given: Mapping[str, Any]) -> str:
+    """Return the command line that trains again."""
+    words = ["flockenv", "train", "--algorithm", "branches"]
+    for name, value in given.items():
+        if isinstance(value, dict):
+            words += [word for key in value for word in ("--set", f"{key}={value[key]}")]
+        else:
+            words += [option_of(name), str(value)]
+    return shlex.join(words)

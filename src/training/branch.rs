@@ -1,0 +1,253 @@
+//! One branch of a pair: two flocks from one state with one noise, whose leaders try opposite offsets.
+
+use super::BranchSettings;
+use super::regression::{Features, SIZE};
+use super::settings::Decisions;
+use crate::contact::KeepGoing;
+use crate::environment::observation::LEAN_FEATURES;
+use crate::environment::{EnvSettings, FlockEnv, ResetRequest, Start, TargetChoice};
+use crate::error::{FlockError, Result};
+use crate::parameters::{FlockParameters, Target};
+use crate::policies::LeaningLaw;
+use crate::random::{Stream, StreamRng};
+use rand_chacha::rand_core::Rng;
+
+/// What every branch of a training has in common.
+#[derive(Debug, Clone)]
+pub(super) struct Task {
+    pub settings: BranchSettings,
+    pub parameters: FlockParameters,
+    pub env_settings: EnvSettings,
+    pub decisions: Decisions,
+    pub seed: u64,
+    pub first_seed: u64,
+}
+
+/// A pair of flocks between two branches.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pair {
+    /// Where both continue; `None`: at rest, placed at random.
+    pub snapshot: Option<Vec<u8>>,
+    pub is_clockwise: bool,
+    /// Branches until the end of the episode.
+    pub left: usize,
+    /// Number of the episode.
+    pub episode: u64,
+}
+
+/// What a branch has shown.
+#[derive(Debug, Clone)]
+pub(super) struct Shown {
+    /// Sum over what was tried of its offset times the features there, in both flocks.
+    pub tried: Features,
+    /// Order of the flock with the offsets less that of the one with the opposite ones, summed over decisions.
+    pub difference: f64,
+    /// Features where something was tried, mean of both flocks.
+    pub features: Vec<Features>,
+    /// Mean order of both.
+    pub order: f64,
+}
+
+/// One of both flocks after its branch.
+struct Side {
+    features: Vec<Features>,
+    order: f64,
+    judged: f64,
+    env: FlockEnv,
+}
+
+fn coin(random: &mut StreamRng) -> bool {
+    random.next_u32() & 1 == 1
+}
+
+impl Task {
+    /// The pair of this number before its first branch. Pairs end their first episodes at different times.
+    pub(super) fn pair(&self, number: usize) -> Pair {
+        let branches = self.settings.branches();
+        Pair {
+            snapshot: None,
+            is_clockwise: number.is_multiple_of(2),
+            left: 1 + number / 2 % branches,
+            episode: 0,
+        }
+    }
+
+    /// A branch of a pair in a round: what it has shown, and the pair after it. It depends on nothing else, and changes
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`FlockError::Placement`], [`FlockError::Solver`], [`FlockError::Snapshot`] and [`FlockError::Interrupted`].
+    pub(super) fn branch(
+        &self,
+        keep_going: KeepGoing,
+        law: &LeaningLaw,
+        (round, number): (usize, usize),
+        pair: &Pair,
+    ) -> Result<(Shown, Pair)> {
+        let mut random = Stream::TRAINING.rng(self.seed);
+        random.set_stream((round * self.settings.pairs + number) as u64);
+        let tries = self.decisions.trial / self.decisions.hold * self.parameters.n_leaders;
+        let offsets: Vec<f64> = (0..tries)
+            .map(|_| {
+                if coin(&mut random) {
+                    self.settings.offset
+                } else {
+                    -self.settings.offset
+                }
+            })
+            .collect();
+        let request = self.request(number, pair);
+        let [plus, minus] = [1.0, -1.0].map(|sign| {
+            self.lead(
+                keep_going,
+                law,
+                &request,
+                offsets.iter().map(|x| sign * x).collect(),
+            )
+        });
+        let (plus, minus) = (plus?, minus?);
+        let shown = self.shown(&offsets, &plus, &minus);
+        let continued = if coin(&mut random) { plus } else { minus };
+        let next = self.next(pair, &continued, coin(&mut random))?;
+        Ok((shown, next))
+    }
+
+    /// Checks that pairs can start their next branches.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for flocks of another task.
+    pub(super) fn check(&self, pairs: &[Pair]) -> Result<()> {
+        let env = FlockEnv::new(&self.env_settings, self.parameters.clone());
+        for (number, pair) in pairs
+            .iter()
+            .enumerate()
+            .filter(|(_, pair)| pair.snapshot.is_some())
+        {
+            env.prepare(&self.env_settings, &self.request(number, pair), &|| true)?;
+        }
+        Ok(())
+    }
+
+    fn request(&self, number: usize, pair: &Pair) -> ResetRequest {
+        let target = if pair.is_clockwise {
+            Target::Clockwise
+        } else {
+            Target::CounterClockwise
+        };
+        let flock = number as u64 + self.settings.pairs as u64 * pair.episode;
+        let start = pair.snapshot.clone().map(|bytes| Start::Snapshot {
+            bytes,
+            noise_seed: None,
+        });
+        ResetRequest {
+            seed: Some(self.first_seed.wrapping_add(flock)),
+            target: Some(TargetChoice::Fixed(target.into())),
+            bw_s: None,
+            start: start.unwrap_or_default(),
+        }
+    }
+
+    /// Leads one flock through a branch; `offsets` has those of all leaders, one hold after another.
+    fn lead(
+        &self,
+        keep_going: KeepGoing,
+        law: &LeaningLaw,
+        request: &ResetRequest,
+        offsets: Vec<f64>,
+    ) -> Result<Side> {
+        let leaders = self.parameters.n_leaders;
+        let Decisions {
+            branch,
+            hold,
+            seen: seen_for,
+            blind,
+            ..
+        } = self.decisions;
+        let mut env = FlockEnv::new(&self.env_settings, self.parameters.clone());
+        let mut seen = vec![0.0; leaders * LEAN_FEATURES];
+        env.start(
+            env.prepare(&self.env_settings, request, keep_going)?,
+            &mut seen,
+        );
+        let mut features = vec![[0.0; SIZE]; offsets.len()];
+        let (mut actions, mut rewards) = (vec![0.0; leaders], vec![0.0; leaders]);
+        let (mut order, mut judged) = (0.0, 0.0);
+        for decision in 0..branch {
+            if !keep_going() {
+                return Err(FlockError::Interrupted);
+            }
+            let first = decision / hold * leaders;
+            for (leader, row) in seen.chunks_exact(LEAN_FEATURES).enumerate() {
+                let action = f64::from(law.action(row));
+                let offset = offsets.get(first + leader);
+                let is_seen = decision % hold < seen_for;
+                if let Some(felt) = features.get_mut(first + leader).filter(|_| is_seen) {
+                    add(felt, row, (1.0 - action * action) / seen_for as f64);
+                }
+                actions[leader] = action + offset.copied().unwrap_or(0.0);
+            }
+            env.step(
+                keep_going,
+                &self.env_settings,
+                Some(&actions),
+                &mut seen,
+                &mut rewards,
+            )?;
+            order += rewards[0];
+            judged += if decision >= blind { rewards[0] } else { 0.0 };
+        }
+        Ok(Side {
+            features,
+            order,
+            judged,
+            env,
+        })
+    }
+
+    fn shown(&self, offsets: &[f64], plus: &Side, minus: &Side) -> Shown {
+        let both = plus.features.iter().zip(&minus.features);
+        let features: Vec<Features> = both
+            .map(|(a, b)| std::array::from_fn(|k| 0.5 * (a[k] + b[k])))
+            .collect();
+        let mut tried = [0.0; SIZE];
+        for (offset, felt) in offsets.iter().zip(&features) {
+            for (sum, value) in tried.iter_mut().zip(felt) {
+                *sum += 2.0 * offset * value;
+            }
+        }
+        Shown {
+            tried,
+            difference: plus.judged - minus.judged,
+            features,
+            order: 0.5 * (plus.order + minus.order) / self.decisions.branch as f64,
+        }
+    }
+
+    /// The pair after a branch, which continues from one of its flocks or starts again.
+    fn next(&self, pair: &Pair, continued: &Side, is_clockwise: bool) -> Result<Pair> {
+        if pair.left <= 1 {
+            return Ok(Pair {
+                snapshot: None,
+                is_clockwise,
+                left: self.settings.branches(),
+                episode: pair.episode + 1,
+            });
+        }
+        let episode = continued.env.episode();
+        let none = || FlockError::Episode("the branch has no flock".to_owned());
+        Ok(Pair {
+            snapshot: Some(episode.ok_or_else(none)?.flock().snapshot()),
+            left: pair.left - 1,
+            ..pair.clone()
+        })
+    }
+}
+
+/// Adds what is observed, and 1 for the bias, times a factor.
+fn add(sum: &mut Features, row: &[f32], factor: f64) {
+    let [features @ .., bias] = sum;
+    for (sum, &value) in features.iter_mut().zip(row) {
+        *sum += factor * f64::from(value);
+    }
+    *bias += factor;
+}

@@ -1,0 +1,60 @@
+//! Sums and the solution of a ridge regression, each in one order of its terms.
+
+use crate::environment::observation::LEAN_FEATURES;
+
+/// Numbers of the features, and of the weights: the last one belongs to the bias.
+pub(super) const SIZE: usize = LEAN_FEATURES + 1;
+
+/// Features, weights, or a row of a matrix.
+pub(super) type Features = [f64; SIZE];
+pub(super) type Matrix = [Features; SIZE];
+
+/// The sum of products, from the first to the last.
+pub(super) fn dot(a: &Features, b: &Features) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+}
+
+/// The sum of values times the rows' numbers.
+pub(super) fn product(matrix: &Matrix, x: &Features) -> Features {
+    std::array::from_fn(|row| dot(&matrix[row], x))
+}
+
+/// Adds a multiple of x xᵀ.
+pub(super) fn add_square(matrix: &mut Matrix, factor: f64, x: &Features) {
+    for (row, a) in matrix.iter_mut().zip(x) {
+        for (sum, b) in row.iter_mut().zip(x) {
+            *sum += factor * a * b;
+        }
+    }
+}
+
+/// The solution of (A + λ I) g = b for a positive semidefinite A, where λ is a part of A's mean diagonal: Cholesky's
+/// factor, then both triangles.
+pub(super) fn ridge(matrix: &Matrix, part: f64, b: &Features) -> Features {
+    let trace = (0..SIZE).fold(0.0, |sum, k| sum + matrix[k][k]);
+    let ridge = part * trace / SIZE as f64 + f64::MIN_POSITIVE.sqrt();
+    let mut factor = [[0.0; SIZE]; SIZE];
+    for row in 0..SIZE {
+        for column in 0..=row {
+            let own = if row == column { ridge } else { 0.0 };
+            let sum = (0..column).fold(matrix[row][column] + own, |sum, k| {
+                sum - factor[row][k] * factor[column][k]
+            });
+            factor[row][column] = if row == column {
+                sum.sqrt()
+            } else {
+                sum / factor[column][column]
+            };
+        }
+    }
+    let mut x = *b;
+    for row in 0..SIZE {
+        let sum = (0..row).fold(x[row], |sum, k| sum - factor[row][k] * x[k]);
+        x[row] = sum / factor[row][row];
+    }
+    for row in (0..SIZE).rev() {
+        let sum = (row + 1..SIZE).fold(x[row], |sum, k| sum - factor[k][row] * x[k]);
+        x[row] = sum / factor[row][row];
+    }
+    x
+}

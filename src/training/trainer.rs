@@ -1,0 +1,274 @@
+//! A training, round after round.
+
+use super::BranchSettings;
+use super::branch::{Pair, Shown, Task};
+use super::regression::{Features, Matrix, SIZE, add_square, dot, product, ridge};
+use crate::boat::DampedLaw;
+use crate::contact::KeepGoing;
+use crate::environment::{ActionMode, LARGEST_LEAN};
+use crate::error::{FlockError, Result};
+use crate::parallel;
+use crate::parameters::FlockParameters;
+use crate::policies::LeaningLaw;
+use crate::sealed_bytes::{Magic, seal, unseal};
+
+const MAGIC: Magic = *b"flocktr1";
+
+/// What a training remembers between two rounds.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+struct Memory {
+    /// Weights before the first round and after each.
+    weights: Vec<Features>,
+    /// Mean order of each round.
+    orders: Vec<f64>,
+    /// Sums of squares of what was tried, and of its products with the differences; rounds before count less.
+    tried: Matrix,
+    differences: Features,
+    /// Sum of the features' squares, and how many rounds count in it.
+    features: Matrix,
+    rounds: f64,
+    pairs: Vec<Pair>,
+}
+
+impl Memory {
+    /// Whether a training of so many pairs, each with so many branches in an episode, can have it.
+    fn fits(&self, pairs: usize, branches: usize) -> bool {
+        let sums = self
+            .tried
+            .iter()
+            .chain(&self.features)
+            .chain([&self.differences]);
+        let numbers = sums.chain(&self.weights).flatten().chain(&self.orders);
+        let mut all = numbers.chain([&self.rounds]);
+        all.all(|number| number.is_finite())
+            && self.weights.len() == self.orders.len() + 1
+            && self.pairs.len() == pairs
+            && self
+                .pairs
+                .iter()
+                .all(|pair| (1..=branches).contains(&pair.left))
+    }
+}
+
+/// Trains leaders whose leans or rudders are linear in the lean features.
+///
+/// In a round each pair of flocks goes through a branch: from one state, with one noise, and with opposite offsets of
+/// the leaders' actions. The difference of the orders is regressed on the offsets times the features, which says by how
+/// much each weight raises the order; the weights take a step that way.
+#[derive(Debug, Clone)]
+pub struct Trainer {
+    task: Task,
+    memory: Memory,
+    /// Branches of the round under way.
+    under_way: Vec<(Shown, Pair)>,
+}
+
+impl Trainer {
+    /// A training from its start. The seed decides what is tried; flocks have the first seed and those that follow.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn new(
+        settings: BranchSettings,
+        parameters: FlockParameters,
+        seed: u64,
+        first_seed: u64,
+    ) -> Result<Self> {
+        settings.check(&parameters)?;
+        let task = Task {
+            env_settings: settings.env_settings(),
+            decisions: settings.decisions()?,
+            settings,
+            parameters,
+            seed,
+            first_seed,
+        };
+        let pairs = (0..task.settings.pairs).map(|number| task.pair(number));
+        let memory = Memory {
+            weights: vec![[0.0; SIZE]],
+            orders: Vec::new(),
+            tried: [[0.0; SIZE]; SIZE],
+            differences: [0.0; SIZE],
+            features: [[0.0; SIZE]; SIZE],
+            rounds: 0.0,
+            pairs: pairs.collect(),
+        };
+        let under_way = Vec::new();
+        let trainer = Self {
+            task,
+            memory,
+            under_way,
+        };
+        trainer.law()?;
+        Ok(trainer)
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &BranchSettings {
+        &self.task.settings
+    }
+
+    /// The flocks' parameters.
+    pub fn parameters(&self) -> &FlockParameters {
+        &self.task.parameters
+    }
+
+    /// Simulated time of all flocks together until now and at the end, in hours.
+    pub fn flock_hours(&self) -> (f64, f64) {
+        let settings = &self.task.settings;
+        let part = self.under_way.len() as f64 / settings.pairs as f64;
+        let hours = settings.round_hours();
+        (
+            hours * (self.memory.orders.len() as f64 + part),
+            hours * settings.rounds() as f64,
+        )
+    }
+
+    /// Whether it is over.
+    pub fn has_ended(&self) -> bool {
+        self.memory.orders.len() >= self.task.settings.rounds()
+    }
+
+    /// Flock-hours and mean order of each round.
+    pub fn curve(&self) -> impl Iterator<Item = (f64, f64)> {
+        let hours = self.task.settings.round_hours();
+        (1..)
+            .zip(&self.memory.orders)
+            .map(move |(round, &order)| (hours * f64::from(round), order))
+    }
+
+    /// Takes up to so many more branches of pairs, and a step where a round is over.
+    ///
+    /// # Errors
+    /// [`FlockError::Interrupted`] where `keep_going` said no, and those of the flocks; nothing has changed then.
+    pub fn advance(&mut self, keep_going: KeepGoing, branches: usize) -> Result<()> {
+        if self.has_ended() {
+            return Ok(());
+        }
+        let (round, first) = (self.memory.orders.len(), self.under_way.len());
+        let last = self
+            .memory
+            .pairs
+            .len()
+            .min(first.saturating_add(branches.max(1)));
+        let law = self.law_of(&self.memory.weights[round])?;
+        let work = |number: usize| {
+            self.task.branch(
+                keep_going,
+                &law,
+                (round, number),
+                &self.memory.pairs[number],
+            )
+        };
+        let shown: Result<Vec<_>> = parallel::map((first..last).collect(), work)
+            .into_iter()
+            .collect();
+        self.under_way.extend(shown?);
+        if self.under_way.len() == self.memory.pairs.len() {
+            self.take_step();
+        }
+        Ok(())
+    }
+
+    /// Ends a round: a step along the natural gradient.
+    fn take_step(&mut self) {
+        let (settings, memory) = (&self.task.settings, &mut self.memory);
+        let sums = memory.tried.iter_mut().chain(&mut memory.features);
+        for sum in sums.chain([&mut memory.differences]).flatten() {
+            *sum *= settings.memory;
+        }
+        memory.rounds = settings.memory * memory.rounds + 1.0;
+        let mut order = 0.0;
+        for ((shown, next), pair) in self.under_way.drain(..).zip(&mut memory.pairs) {
+            add_square(&mut memory.tried, 1.0, &shown.tried);
+            for (sum, tried) in memory.differences.iter_mut().zip(&shown.tried) {
+                *sum += tried * shown.difference;
+            }
+            let share = 1.0 / (settings.pairs * shown.features.len()) as f64;
+            for each in &shown.features {
+                add_square(&mut memory.features, share, each);
+            }
+            order += shown.order / settings.pairs as f64;
+            *pair = next;
+        }
+        let gradient = ridge(&memory.tried, settings.ridge, &memory.differences);
+        let square = dot(&gradient, &product(&memory.features, &gradient)) / memory.rounds;
+        let left = 1.0 - memory.orders.len() as f64 / settings.rounds() as f64;
+        let rate = settings.step * left.max(0.0) / (square.max(0.0).sqrt() + 1e-12);
+        let weights = &memory.weights[memory.orders.len()];
+        let next = std::array::from_fn(|k| weights[k] + rate * gradient[k]);
+        memory.weights.push(next);
+        memory.orders.push(order);
+    }
+
+    /// The law of the mean weights over the second half of the rounds until now.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for weights that are not finite.
+    pub fn law(&self) -> Result<LeaningLaw> {
+        let half = &self.memory.weights[self.memory.orders.len().div_ceil(2)..];
+        let mean: Features = std::array::from_fn(|k| {
+            half.iter().fold(0.0, |sum, weights| sum + weights[k]) / half.len() as f64
+        });
+        self.law_of(&mean)
+    }
+
+    fn law_of(&self, weights: &Features) -> Result<LeaningLaw> {
+        let Task {
+            settings,
+            parameters,
+            ..
+        } = &self.task;
+        let pool = parameters.pool.name();
+        let numbers = |largest| weights.map(|weight| largest * weight);
+        if settings.action_mode == ActionMode::Rudder {
+            let period = Some(settings.decision_period_s);
+            return LeaningLaw::new(pool, None, period, &numbers(1.0));
+        }
+        // Leans that are not held lead better than those of the training.
+        let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
+        LeaningLaw::new(pool, Some(gains), None, &numbers(LARGEST_LEAN))
+    }
+
+    /// The training between two rounds as bytes; of the round under way the branches are taken again.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let Task {
+            settings,
+            parameters,
+            seed,
+            first_seed,
+            ..
+        } = &self.task;
+        seal(
+            &MAGIC,
+            &(settings, parameters, seed, first_seed, &self.memory),
+        )
+    }
+
+    /// A training from its bytes, which goes on to the same bits.
+    ///
+    /// # Errors
+    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed training with finite weights.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let (settings, parameters, seed, first_seed, memory) = unseal(&MAGIC, bytes)?;
+        let mut trainer = Self::new(settings, parameters, seed, first_seed)?;
+        let Task { settings, .. } = &trainer.task;
+        let why = "the training has weights that are not finite, or parts are missing";
+        let memory: Memory = memory;
+        FlockError::unless_fitting(memory.fits(settings.pairs, settings.branches()), why)?;
+        trainer.memory = memory;
+        trainer.law()?;
+        trainer.task.check(&trainer.memory.pairs)?;
+        Ok(trainer)
+    }
+
+    /// The same training with another end.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`].
+    pub fn until(mut self, flock_hours: f64) -> Result<Self> {
+        self.task.settings.flock_hours = flock_hours;
+        self.task.settings.check(&self.task.parameters)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,69 @@
+"""`flockenv train --algorithm branches` needs nothing but the package, and goes on where it was."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TINY = [
+    *("--algorithm", "branches", "--pool", "narrow", "--n-boats", "6", "--n-leaders", "2"),
+    *("--set", "pairs=2", "--set", "branch_s=32", "--set", "hold_s=8", "--set", "trial_s=16"),
+    *("--episodes", "2"),
+]
+ALONE = """
+import sys
+for name in ("torch", "stable_baselines3", "pandas", "scipy", "matplotlib", "filelock"):
+    sys.modules[name] = None
+from flockenv import branches
+from flockenv.cli import main
+branches._EPISODE_S = 8.0
+main()
+"""
+
+
+@pytest.fixture(autouse=True)
+def _short_comparisons(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flockenv.branches._EPISODE_S", 8.0)
+
+
+def test_it_needs_no_other_package_and_resumes_to_the_same_policy(cli, tmp_path: Path) -> None:
+    out = tmp_path / "alone"
+    arguments = ["train", *TINY, "--flock-hours", "0.07", "--seed", "3", "--out", str(out)]
+    done = subprocess.run(
+        [sys.executable, "-c", ALONE, *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "trained minus tuned law: " in done.stdout
+    assert not (out / "curve.png").exists()
+    assert len((out / "curve.csv").read_text().splitlines()) == 1 + 2
+    assert len((out / "comparison.csv").read_text().splitlines()) == 1 + 2
+
+    half = tmp_path / "half"
+    cli.succeeds("train", *TINY, "--flock-hours", "0.03", "--seed", "3", "--out", half)
+    more = ["--resume", "--flock-hours", "0.07", "--episodes", "2", "--json", "--out", half]
+    found = json.loads(cli.succeeds("train", "--algorithm", "branches", *more).stdout)
+    assert set(found["signed_order"]) == {"paper's law", "tuned law", "trained"}
+    assert (half / "curve.png").stat().st_size > 0
+    policies = [json.loads((folder / "policy.json").read_text()) for folder in (out, half)]
+    assert policies[0]["weights"] == policies[1]["weights"]
+    assert policies[0]["provenance"]["command"] == (
+        "flockenv train --algorithm branches --pool narrow --n-leaders 2 --flock-hours 0.07 "
+        "--seed 3 --set pairs=2 --set branch_s=32 --set hold_s=8 --set trial_s=16 --set n_boats=6"
+    )
+
+
+def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
+    for arguments, words in (
+        (["--algorithm", "branch"], "'branch' is no algorithm"),
+        (["--algorithm", "branches", "--flock-hours", "0"], "flock_hours = 0"),
+        (["--algorithm", "branches", "--set", "holds=8"], "did you mean 'hold_s'"),
+        (["--algorithm", "branches", "--ppo", "gamma=0.9"], "--ppo is for --algorithm ppo"),
+        (["--algorithm", "branches", "--resume"], "no checkpoint of branches"),
+        (["--algorithm", "branches", "--resume", "--seed", "3"], "only --flock-hours may differ"),
+    ):
+        done = cli("train", *arguments, "--out", tmp_path / "run")
+        assert done.returncode == 2, done.stderr
+        assert words in done.stderr
+        assert not (tmp_path / "run").exists()
