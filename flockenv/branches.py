@@ -65,8 +65,8 @@ Report = Callable[[Progress], object]
 class BranchTraining:
     """A training under way: `advance` it, and take its `policy` whenever you like.
 
-    The same seed gives the same weights to the bit, on every processor and on any number of
-    threads. The leaders' leans or rudders are linear in the 29 lean features.
+    The same seed gives the same weights to the bit, on any number of threads. The leaders' leans or
+    rudders are linear in the 29 lean features.
 
     Parameters
     ----------

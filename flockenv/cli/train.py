@@ -71,8 +71,8 @@ def train(options: TrainOptions) -> None:
     `curve.png`, and `comparison.csv`: the signed order of the trained leaders, the paper's law and
     the tuned law in held-out flocks. `--resume` continues an interrupted training.
 
-    `--algorithm branches` needs nothing but flockenv, and gives the same weights to the bit on
-    every processor. It writes `policy.json` and `curve.csv` instead of a model. `--set` sets its
+    `--algorithm branches` needs nothing but flockenv, and gives the same weights to the bit on any
+    number of threads. It writes `policy.json` and `curve.csv` instead of a model. `--set` sets its
     options, too: `action_mode=rudder` trains from nothing.
 
     Example: `flockenv train --algorithm branches --pool wide --n-leaders 3`
