@@ -5,7 +5,7 @@ use super::touches::{are_swapped, first_of_two};
 use super::{Contact, Partner};
 use crate::geometry::{
     EndTouch, Feature, Gap, Hull, HullPose, NeighborList, Obstacle, Vec2, Velocity, end_touches,
-    inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps, smaller,
+    inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps, smaller, smallest_gap,
 };
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
@@ -120,8 +120,7 @@ impl ContactDetector {
     /// Whether what was found as a contact overlaps at other poses by more than `allowed`.
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
         let gap = if contact.has_ends() {
-            let [stern, bow] = self.touches_at(contact, boats);
-            smaller(stern.gap, bow.gap)
+            self.smallest_gap_at(contact, boats)
         } else {
             self.gap_at(contact, boats).gap
         };
@@ -271,6 +270,19 @@ impl ContactDetector {
             obstacle.gaps(pose, self.hull, margin, &mut |feature, gap| {
                 contacts.push(Contact::new(boat, Partner::Obstacle(number), feature, gap));
             });
+        }
+    }
+
+    /// The smaller gap of a contact's boat and another boat or an obstacle at other poses.
+    #[inline]
+    pub(super) fn smallest_gap_at(&self, contact: &Contact, boats: &[HullPose]) -> f64 {
+        let boat = &boats[contact.boat as usize];
+        match contact.second() {
+            Some(second) => smallest_gap((boat, self.hull), (&boats[second], self.hull)),
+            None => {
+                let [stern, bow] = self.obstacle_touches(contact, boat);
+                smaller(stern.gap, bow.gap)
+            }
         }
     }
 

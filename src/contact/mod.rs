@@ -30,6 +30,6 @@ pub use detection::ContactDetector;
 pub use island::Islands;
 pub(crate) use island::{join, root};
 pub use problem::{ContactProblem, InverseInertia};
-pub(crate) use resolver::{ContactResolver, Motion, NotTaken};
+pub(crate) use resolver::{ContactResolver, Divisibility, Motion, NotTaken};
 pub use statistics::Statistics;
 pub(crate) use warm_start::CachedImpulse;

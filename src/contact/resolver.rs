@@ -28,6 +28,15 @@ pub(crate) enum NotTaken {
     Exhausted,
 }
 
+/// For which reasons a substep may be shortened.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Divisibility {
+    /// Contacts would drive boats, or are too much work.
+    pub if_driven: bool,
+    /// Overlaps are left.
+    pub if_overlapping: bool,
+}
+
 /// What a solve came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Solution {
@@ -230,10 +239,10 @@ impl ContactResolver {
     pub(crate) fn resolve(
         &mut self,
         motion: &Motion,
-        shorter_possible: bool,
+        divisibility: Divisibility,
         statistics: &mut Statistics,
     ) -> Result<(), NotTaken> {
-        self.solver.give_up_early(shorter_possible);
+        self.solver.give_up_early(divisibility.if_driven);
         if self.solver.is_exhausted() {
             return Err(NotTaken::Exhausted);
         }
@@ -242,9 +251,10 @@ impl ContactResolver {
             match self.solve_and_check(motion, statistics) {
                 Solution::Solved => break,
                 Solution::Closing => self.restore_skipped(statistics),
-                Solution::Exhausted | Solution::Overlapping | Solution::Driven
-                    if shorter_possible =>
-                {
+                Solution::Exhausted | Solution::Driven if divisibility.if_driven => {
+                    return Err(NotTaken::TooLong);
+                }
+                Solution::Overlapping if divisibility.if_overlapping => {
                     return Err(NotTaken::TooLong);
                 }
                 Solution::Exhausted => return Err(NotTaken::Exhausted),
@@ -254,7 +264,11 @@ impl ContactResolver {
                     if self.solve(None, motion, statistics) == Solution::Exhausted {
                         return Err(NotTaken::Exhausted);
                     }
-                    is_unsolved |= self.leaves_overlaps(motion);
+                    let is_overlapping = self.leaves_overlaps(motion);
+                    if is_overlapping && divisibility.if_overlapping {
+                        return Err(NotTaken::TooLong);
+                    }
+                    is_unsolved |= is_overlapping;
                     break;
                 }
                 Solution::Overlapping => {

@@ -2,7 +2,7 @@
 
 use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
-use crate::geometry::{Hull, HullPose, Pose, Velocity, smaller};
+use crate::geometry::{Hull, HullPose, Pose, Velocity};
 
 /// Poses at a substep's end, on trial.
 #[derive(Debug, Clone, Default)]
@@ -126,8 +126,7 @@ impl Trial {
             return detector.gap_at(contact, &self.hulls).gap;
         }
         let Some(first) = first_of_two(contacts, k) else {
-            let [stern, bow] = detector.touches_at(contact, &self.hulls);
-            return smaller(stern.gap, bow.gap);
+            return detector.smallest_gap_at(contact, &self.hulls);
         };
         let gaps = match *pair {
             Some((known, gaps)) if known == first => gaps,

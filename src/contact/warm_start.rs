@@ -35,7 +35,13 @@ impl CachedImpulse {
 
     #[inline]
     fn is_of(&self, contact: &Contact) -> bool {
-        (self.boat == contact.boat) & (self.partner == contact.partner)
+        (self.boat == contact.boat) && self.partner == contact.partner
+    }
+
+    /// Whether the impulse was nearer to the one contact than to the other.
+    #[inline]
+    fn is_nearer(&self, one: &Contact, other: &Contact) -> bool {
+        distance(place(&one.gap), self.place) < distance(place(&other.gap), self.place)
     }
 }
 
@@ -81,40 +87,40 @@ impl WarmStartCache {
             return;
         }
         let (mut next, mut is_indexed, mut k) = (0, false, 0);
-        for pair in contacts.chunk_by(Contact::is_twin) {
+        while let Some(contact) = contacts.get(k) {
             let last = self.entries.len().min(next + AHEAD);
-            let ahead = self.entries[next..last].iter();
-            let found = ahead
-                .enumerate()
-                .find(|(_, entry)| entry.is_of(&pair[0]))
-                .map(|(passed, _)| next + passed);
-            let entries = match found {
-                Some(start) => {
-                    let entries = self.entries_from(start);
-                    next = entries.end;
-                    entries
-                }
-                None => {
-                    if !is_indexed {
-                        self.index();
-                        is_indexed = true;
-                    }
-                    self.search(&pair[0])
-                }
-            };
-            for entry in &self.entries[entries] {
-                impulses[k + nearest(pair, entry)] += entry.impulse.max(0.0);
+            let mut start = next;
+            while start < last && !self.entries[start].is_of(contact) {
+                start += 1;
             }
-            k += pair.len();
+            let entries = if start < last {
+                let entries = self.entries_from(start, contact);
+                next = entries.end;
+                entries
+            } else {
+                if !is_indexed {
+                    self.index();
+                    is_indexed = true;
+                }
+                self.search(contact)
+            };
+            let second = contacts.get(k + 1).filter(|other| other.is_twin(contact));
+            for entry in &self.entries[entries] {
+                if entry.impulse > 0.0 {
+                    let is_second = second.is_some_and(|second| entry.is_nearer(second, contact));
+                    impulses[k + usize::from(is_second)] += entry.impulse;
+                }
+            }
+            k += 1 + usize::from(second.is_some());
         }
     }
 
-    /// The entries of the same two bodies, from the first of them on.
+    /// The entries of a contact's two bodies, of which there are two at most, from the first of them on.
     #[inline]
-    fn entries_from(&self, start: usize) -> Range<usize> {
-        let pair = |entry: &CachedImpulse| (entry.boat, entry.partner);
-        let (first, rest) = (pair(&self.entries[start]), &self.entries[start..]);
-        start..start + rest.iter().take_while(|entry| pair(entry) == first).count()
+    fn entries_from(&self, start: usize, contact: &Contact) -> Range<usize> {
+        let second = self.entries.get(start + 1);
+        let is_two = second.is_some_and(|entry| entry.is_of(contact));
+        start..start + 1 + usize::from(is_two)
     }
 
     // Out of line, like the search, so that looking up contacts in order stays in registers.
@@ -147,13 +153,6 @@ impl WarmStartCache {
             }
             index = self.before[index as usize];
         }
-        first.map_or(0..0, |first| self.entries_from(first))
+        first.map_or(0..0, |first| self.entries_from(first, contact))
     }
-}
-
-/// Which of the contacts of two bodies is nearest to where an impulse was.
-#[inline]
-fn nearest(pair: &[Contact], entry: &CachedImpulse) -> usize {
-    let far = |contact: &Contact| distance(place(&contact.gap), entry.place);
-    usize::from(matches!(pair, [first, second] if far(second) < far(first)))
 }

@@ -163,6 +163,25 @@ impl<'a> Pair<'a> {
         }
     }
 
+    /// The square of their distance, infinite if no end faces the other core.
+    #[inline]
+    fn square_towards(&self, side: f64) -> f64 {
+        let square = |touch: Touch| touch.between.norm_squared();
+        let follows = if self.cosine >= 0.0 { side } else { -side };
+        let of_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
+        let of_b = self.end_of_b(follows).map_or(f64::INFINITY, square);
+        smaller(of_a, of_b)
+    }
+
+    /// Whether the cores cross, or come so near where groups of ends have these squared distances that it makes no
+    /// difference.
+    #[inline]
+    fn are_crossed(&self, squares: [f64; 2]) -> bool {
+        let lengths = self.hull_a.half_length + self.hull_b.half_length;
+        smaller(squares[0], squares[1]) < TOUCHING_CORES * TOUCHING_CORES
+            || (self.apart.norm_squared() <= lengths * lengths && self.cores_cross())
+    }
+
     fn cores_cross(&self) -> bool {
         let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
         let sine = cross(self.a.axis, self.b.axis);
@@ -258,19 +277,28 @@ impl From<&Gap> for EndTouch {
 pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
-    let lengths = hull_a.half_length + hull_b.half_length;
     let touches = [-1.0, 1.0].map(|side| pair.nearest_towards(side));
     let squares =
         touches.map(|touch| touch.map_or(f64::INFINITY, |touch| touch.between.norm_squared()));
-    let near = smaller(squares[0], squares[1]) < TOUCHING_CORES * TOUCHING_CORES;
-    let may_cross = pair.apart.norm_squared() <= lengths * lengths;
-    if near || (may_cross && pair.cores_cross()) {
+    if pair.are_crossed(squares) {
         return [EndTouch::from(&crossed_gap(a, hull_a, b, hull_b)); 2];
     }
     [0, 1].map(|group| EndTouch {
         gap: squares[group].sqrt() - (hull_a.radius + hull_b.radius),
         along: touches[group].map_or([0.0; 2], |touch| [touch.along_a, touch.along_b]),
     })
+}
+
+/// The smaller gap of the two groups of ends, infinite if no end faces the other hull.
+#[inline]
+pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
+    let ((a, hull_a), (b, hull_b)) = (first, second);
+    let pair = Pair::new(first, second);
+    let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
+    if pair.are_crossed(squares) {
+        return crossed_gap(a, hull_a, b, hull_b).gap;
+    }
+    smaller(squares[0], squares[1]).sqrt() - (hull_a.radius + hull_b.radius)
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the

@@ -10,7 +10,7 @@ mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
 pub use capsule::{Hull, HullPose, resized_gyration_radius_cm};
-pub(crate) use gap::{EndTouch, end_touches};
+pub(crate) use gap::{EndTouch, end_touches, smallest_gap};
 pub use gap::{Feature, Gap, Placed, pair_gap, pair_gaps};
 pub(crate) use lap_frame::LapFrame;
 pub(crate) use neighbors::NeighborList;

@@ -3,15 +3,20 @@
 use super::state::Integrator;
 use super::substep::Substep;
 use crate::clock::seconds;
-use crate::contact::{Motion, NotTaken};
+use crate::contact::{Divisibility, Motion, NotTaken};
 
-/// Part of `dt_s` below which no substep is cut for the sake of its contacts.
+/// Part of `dt_s` below which no substep is cut because its contacts would drive boats, or take too much work.
 const SHORTEST_SHARE: f64 = 1.0 / 16.0;
+/// The same for overlaps that it leaves.
+const SHORTEST_OVERLAPPING_SHARE: f64 = 1.0 / 256.0;
 
 impl Integrator {
-    /// Whether a substep of this length may be cut for the sake of its contacts.
-    pub(super) fn is_divisible(&self, dt: f64) -> bool {
-        dt > SHORTEST_SHARE * self.parameters.dt_s
+    /// For which reasons a substep of this length may be cut for the sake of its contacts.
+    pub(super) fn divisibility(&self, dt: f64) -> Divisibility {
+        Divisibility {
+            if_driven: dt > SHORTEST_SHARE * self.parameters.dt_s,
+            if_overlapping: dt > SHORTEST_OVERLAPPING_SHARE * self.parameters.dt_s,
+        }
     }
 
     /// Turns free velocities into velocities that respect the contacts of a substep; whether there are any.
@@ -20,7 +25,7 @@ impl Integrator {
     /// [`NotTaken`].
     pub(super) fn solve_contacts(&mut self, substep: &Substep) -> Result<bool, NotTaken> {
         let dt = seconds(substep.length);
-        let is_divisible = self.is_divisible(dt);
+        let divisibility = self.divisibility(dt);
         let (contacts, free, statistics) = (&mut self.contacts, &self.free, &mut self.statistics);
         if !contacts.find(&mut self.poses, &mut self.boats, free, dt, statistics) {
             if contacts.detector.moves_too_far(free, dt) {
@@ -36,7 +41,7 @@ impl Integrator {
             inertia: &self.inertia,
             dt,
         };
-        contacts.resolve(&motion, is_divisible, statistics)?;
+        contacts.resolve(&motion, divisibility, statistics)?;
         self.velocities.copy_from_slice(&contacts.solver.velocities);
         Ok(true)
     }

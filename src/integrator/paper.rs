@@ -22,7 +22,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     flock.draw_substep_noise(substep);
     flock.fill_drives(substep);
     explicit_velocities(flock, dt);
-    let is_divisible = flock.is_divisible(dt);
+    let divisibility = flock.divisibility(dt);
     let (contacts, statistics) = (&mut flock.contacts, &mut flock.statistics);
     let (poses, velocities) = (&mut flock.poses, &flock.velocities);
     // The displacement that minimizes (A.4) is dt times the velocity nearest to the old one.
@@ -35,7 +35,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
             inertia: &flock.inertia,
             dt,
         };
-        contacts.resolve(&motion, is_divisible, statistics)?;
+        contacts.resolve(&motion, divisibility, statistics)?;
         flock
             .velocities
             .copy_from_slice(&flock.contacts.solver.velocities);

@@ -3,7 +3,7 @@
 //!
 //! Scenes go through presets, pools, the three physics, backward durations of 0.2 to 2.8 s and speeds of 5 to 60 cm/s, half a
 //! minute each. The long form, `cargo test --release -- --ignored soak`, takes SOAK_STEPS control steps, ten million unless
-//! the environment says otherwise.
+//! the environment says otherwise, from scene SOAK_FIRST on.
 
 use crate::support::{bits, changed, kinetic_energy};
 use flockenv::geometry::Velocity;
@@ -105,7 +105,9 @@ impl Soak {
             }
             if !runs {
                 let substeps = (flock.statistics().substeps - substeps) as i32;
-                let gain = kinetic_energy(&flock) / energy - 1.0;
+                // What was left of an overlap opens at some tolerance/dt.
+                let opening = p.n_boats as f64 * (p.allowed_overlap_cm() / p.dt_s).powi(2);
+                let gain = (kinetic_energy(&flock) - opening) / energy - 1.0;
                 self.gain = self.gain.max(gain);
                 let most = (1.0 + MOST_GAIN).powi(substeps) - 1.0;
                 assert!(gain <= most, "scene {k}, step {step}: {gain}");
@@ -121,9 +123,9 @@ impl Soak {
     }
 }
 
-fn soak(steps: usize) -> Soak {
+fn soak(first: usize, steps: usize) -> Soak {
     let mut soak = Soak::default();
-    for k in 0..steps.div_ceil(STEPS) {
+    for k in first..first + steps.div_ceil(STEPS) {
         soak.run(k);
     }
     assert!(soak.steps * 10 >= steps * 9, "{soak:?}");
@@ -132,7 +134,7 @@ fn soak(steps: usize) -> Soak {
 
 #[test]
 fn thirty_thousand_control_steps_keep_every_promise() {
-    let soak = soak(30_000);
+    let soak = soak(0, 30_000);
     assert_eq!((soak.unsolved, soak.failed), (0, 0), "{soak:?}");
 }
 
@@ -140,7 +142,9 @@ fn thirty_thousand_control_steps_keep_every_promise() {
 #[ignore = "ten million control steps: an hour of computing"]
 #[allow(clippy::print_stderr, reason = "counts of a run of an hour")]
 fn soak_ten_million_control_steps() {
-    let steps =
-        std::env::var("SOAK_STEPS").map_or(10_000_000, |steps| steps.parse().expect("a count"));
-    eprintln!("{:?}", soak(steps));
+    let number = |name: &str, default| {
+        std::env::var(name).map_or(default, |number| number.parse().expect("a count"))
+    };
+    let (first, steps) = (number("SOAK_FIRST", 0), number("SOAK_STEPS", 10_000_000));
+    eprintln!("{:?}", soak(first, steps));
 }
