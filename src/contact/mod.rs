@@ -13,13 +13,13 @@ mod detection;
 mod island;
 mod near_obstacles;
 mod passivity;
+mod predicted_poses;
 mod problem;
 mod resolver;
 mod skipped_contacts;
 pub mod solver;
 mod statistics;
 mod touches;
-mod trial;
 mod velocity_bias;
 mod warm_start;
 

@@ -7,9 +7,9 @@ use super::depenetration::{
     Depenetration, PENETRATION_SLOP, orbital_angular_momentum, smallest_gap,
 };
 use super::passivity::{self, Passivity};
+use super::predicted_poses::PredictedPoses;
 use super::skipped_contacts::SkippedContacts;
 use super::solver::ContactSolver;
-use super::trial::Trial;
 use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
@@ -94,7 +94,7 @@ pub(crate) struct ContactResolver {
     warm_start_cache: WarmStartCache,
     depenetration: Box<Depenetration>,
     passivity: Passivity,
-    trial: Trial,
+    predicted: PredictedPoses,
     relinearization: Relinearization,
     /// Overlaps beyond this (cm) are undone by moving poses.
     penetration_slop: f64,
@@ -119,7 +119,7 @@ impl ContactResolver {
             warm_start_cache: WarmStartCache::default(),
             depenetration: Box::new(Depenetration::new(parameters)),
             passivity: Passivity::default(),
-            trial: Trial::default(),
+            predicted: PredictedPoses::default(),
             relinearization: Relinearization::new(parameters),
             // Overlaps that the paper's scheme accepts are left alone.
             penetration_slop: match parameters.scheme {
@@ -159,7 +159,7 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) -> bool {
-        self.trial.set_old();
+        self.predicted.set_old();
         let builds_before = self.detector.neighbors.builds();
         let margin = self
             .detector
@@ -227,9 +227,10 @@ impl ContactResolver {
         dt: f64,
         allowed: f64,
     ) -> bool {
-        self.trial
+        self.predicted
             .place(poses, velocities, dt, self.detector.hull());
-        self.trial.overlaps(&self.detector, &self.contacts, allowed)
+        self.predicted
+            .overlaps(&self.detector, &self.contacts, allowed)
     }
 
     /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`.
@@ -315,10 +316,10 @@ impl ContactResolver {
             return solution;
         }
         let tolerance = self.relinearization.tolerance;
-        let (trial, detector) = (&self.trial, &self.detector);
+        let (predicted, detector) = (&self.predicted, &self.detector);
         let velocities = &self.solver.velocities;
         let skipped = &self.skipped;
-        if !skipped.are_apart(trial, detector, velocities, motion.dt, tolerance) {
+        if !skipped.are_apart(predicted, detector, velocities, motion.dt, tolerance) {
             return Solution::Closing;
         }
         if self.stop_driving(motion) {
@@ -361,7 +362,7 @@ impl ContactResolver {
         motion: &Motion,
         statistics: &mut Statistics,
     ) -> Solution {
-        self.trial.set_old();
+        self.predicted.set_old();
         let Self {
             contacts,
             biases,
@@ -395,9 +396,9 @@ impl ContactResolver {
         Solution::Overlapping
     }
 
-    /// Moves the boats to the end of a substep that was solved, if a trial has put them there.
+    /// Moves the boats to the end of a substep that was solved, if the prediction is of it.
     pub(crate) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
-        self.trial.take_end(poses, hulls)
+        self.predicted.take_end(poses, hulls)
     }
 
     /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.

@@ -1,7 +1,7 @@
 //! Skipped contacts: boats do not close them at their free velocities. They are left out while the solution leaves them
 //! apart.
 
-use super::trial::Trial;
+use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
@@ -58,10 +58,10 @@ impl SkippedContacts {
         contacts.truncate(kept);
     }
 
-    /// Whether none overlaps by more than `allowed` where a trial has moved the boats, with these velocities for `dt`.
+    /// Whether none overlaps by more than `allowed` where the boats are predicted, with these velocities for `dt`.
     pub(super) fn are_apart(
         &self,
-        trial: &Trial,
+        predicted: &PredictedPoses,
         detector: &ContactDetector,
         velocities: &[Velocity],
         dt: f64,
@@ -71,10 +71,11 @@ impl SkippedContacts {
             // A wall that leads on to another one may have left out the nearer touch.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
             let is_far = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
-            debug_assert!(!is_far || !trial.overlaps(detector, touches, allowed));
-            is_far || !trial.overlaps(detector, touches, allowed)
+            debug_assert!(!is_far || !predicted.overlaps(detector, touches, allowed));
+            is_far || !predicted.overlaps(detector, touches, allowed)
         };
-        self.is_empty() || trial.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
+        self.is_empty()
+            || predicted.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
     }
 
     /// Puts them with the others again; returns how many there were.

@@ -47,7 +47,8 @@ impl ContactResolver {
     ) -> Solution {
         let hull = self.detector.hull();
         let (poses, dt) = (motion.poses, motion.dt);
-        self.trial.place(poses, &self.solver.velocities, dt, hull);
+        self.predicted
+            .place(poses, &self.solver.velocities, dt, hull);
         let mut left = std::mem::take(&mut self.relinearization.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
@@ -70,10 +71,16 @@ impl ContactResolver {
                     let islands = left
                         .iter()
                         .map(|&island| solver.islands().contacts(island as usize));
-                    self.trial
-                        .move_islands(contacts, islands, poses, &solver.velocities, dt, hull);
+                    self.predicted.move_islands(
+                        contacts,
+                        islands,
+                        poses,
+                        &solver.velocities,
+                        dt,
+                        hull,
+                    );
                 }
-                _ => self.trial.place(poses, &solver.velocities, dt, hull),
+                _ => self.predicted.place(poses, &solver.velocities, dt, hull),
             }
         }
         self.relinearization.overlapping = left;
@@ -83,7 +90,7 @@ impl ContactResolver {
     /// Whether the last solve leaves overlaps deeper than the tolerance.
     pub(super) fn leaves_overlaps(&mut self, motion: &Motion) -> bool {
         let velocities = &self.solver.velocities;
-        self.trial
+        self.predicted
             .place(motion.poses, velocities, motion.dt, self.detector.hull());
         let mut islands = (0..self.solver.islands().count() as u32).collect();
         self.is_overlapping(&mut islands, motion.dt)
@@ -121,9 +128,12 @@ impl ContactResolver {
         for &k in self.solver.islands().contacts(island as usize) {
             let contact = &self.contacts[k as usize];
             let gap = contact.gap.gap.min(0.0);
-            if gap >= -self.penetration_slop && self.trial.may_close(&self.contacts, k as usize) {
+            if gap >= -self.penetration_slop && self.predicted.may_close(&self.contacts, k as usize)
+            {
                 let (detector, contacts) = (&self.detector, &self.contacts);
-                let end_gap = self.trial.gap(detector, contacts, k as usize, &mut pair);
+                let end_gap = self
+                    .predicted
+                    .gap(detector, contacts, k as usize, &mut pair);
                 let is_deep = gap < -self.relinearization.tolerance;
                 let overlap = select_unpredictable(is_deep, left_over * gap, 0.0) - end_gap;
                 if overlap > deepest {

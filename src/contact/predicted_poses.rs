@@ -4,9 +4,9 @@ use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
 use crate::geometry::{Hull, HullPose, Pose, Velocity};
 
-/// Poses at a substep's end, on trial.
+/// Poses at the end of a substep, as the last solve predicts them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Trial {
+pub(super) struct PredictedPoses {
     poses: Vec<Pose>,
     hulls: Vec<HullPose>,
     /// Whether boats with the velocities that were solved for last end there.
@@ -18,7 +18,7 @@ pub(super) struct Trial {
     is_listed: Vec<bool>,
 }
 
-impl Trial {
+impl PredictedPoses {
     /// Moves boats from these poses with these velocities for `dt`.
     pub(super) fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64, hull: Hull) {
         let moved = poses
@@ -70,7 +70,7 @@ impl Trial {
         self.is_end = false;
     }
 
-    /// Hands out the poses and hulls of the last trial, if boats end there, for those at the substep's start.
+    /// Hands out the poses and hulls predicted last, if boats end there, for those at the substep's start.
     pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         if self.is_end {
             std::mem::swap(poses, &mut self.poses);
@@ -106,7 +106,7 @@ impl Trial {
                 })
     }
 
-    /// Whether boats with the velocities that were solved for last end at the trial's poses.
+    /// Whether boats with the velocities that were solved for last end at the predicted poses.
     pub(super) fn is_end(&self) -> bool {
         self.is_end
     }
