@@ -25,9 +25,9 @@ fn holding(period_s: f64) -> Law {
 }
 
 fn laws() -> Vec<(Law, Option<f64>)> {
-    let named = Law::NAMED.iter().map(|each| each.name).skip(1);
+    let named = Law::NAMED.iter().map(|each| each.name);
     let mut laws: Vec<_> = named
-        .filter(|name| *name != "learned")
+        .filter(|name| ![Law::EVERY_SUBSTEP, "learned"].contains(name))
         .map(|name| (Law::named(name, Some("narrow")).unwrap(), None))
         .collect();
     laws.push((Law::Leaning(Box::new(learned())), None));
