@@ -97,6 +97,11 @@ def test_a_folder_holds_one_sweep(cli, tmp_path: Path) -> None:
     assert cli("sweep", other, "--out", out).returncode == 2
 
 
+def _with_a_terminal() -> None:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # Also under nohup.
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
 def test_the_end_of_the_terminal_keeps_the_runs_under_way(cli, tmp_path: Path) -> None:
     """Like SIGTERM: the run under way is stored, no other one is started."""
     spec, out = tmp_path / "noise.toml", tmp_path / "out"
@@ -105,7 +110,7 @@ def test_the_end_of_the_terminal_keeps_the_runs_under_way(cli, tmp_path: Path) -
     call = [sys.executable, "-c", cli.CALL, "sweep", str(spec), "--workers", "1", "--out", str(out)]
     process = subprocess.Popen(
         call, stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=True,
-        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+        preexec_fn=_with_a_terminal,
     )  # fmt: skip
     os.close(terminal)
     deadline = time.monotonic() + 60

@@ -18,6 +18,14 @@ from flockenv._io.interrupts import end_if_interrupted, interrupted, noted_inter
 press = partial(signal.raise_signal, signal.SIGINT)
 
 
+@pytest.fixture(autouse=True)
+def _hangs_up():
+    """Under nohup the end of a terminal is ignored, also by what tests start."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_is_noted_until_work_can_end(number, capfd):
     before = signal.getsignal(number)
