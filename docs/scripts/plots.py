@@ -16,11 +16,11 @@ IMPACT = DOCS / "speed_vs_error/impact.csv"
 LEARNERS = DOCS / "throughput/learners.csv"
 MANY_AGENTS = DOCS / "throughput/many_agents.csv"
 SHOWN = {
-    "leapfrog": "leapfrog / exact / r0",
-    "leapfrog, r1": "leapfrog / exact / r1",
-    "leapfrog, r2": "leapfrog / exact / r2",
-    "moreau": "moreau / exact / r0",
-    "paper": "paper / exact / r0",
+    "leapfrog, linear": "leapfrog / exact / linear",
+    "leapfrog, 1e-6 cm": "leapfrog / exact / 1e-6 cm",
+    "leapfrog, 1e-9 cm": "leapfrog / exact / 1e-9 cm",
+    "moreau": "moreau / exact / linear",
+    "paper": "paper / exact / linear",
     "rapier, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
     "rapier, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
     "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
@@ -63,7 +63,7 @@ def impact(figure: Figure) -> None:
     """Draw the error of a boat that hits the wall against the step."""
     axes = figure.subplots()
     for row, color, marker in zip(
-        (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / r2"),
+        (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / 1e-9 cm"),
         (OURS, OURS_TOO),
         "os",
         strict=True,
@@ -71,7 +71,7 @@ def impact(figure: Figure) -> None:
         steps = [column for column in row if column != "scheme"]
         errors = [float(row[step]) for step in steps]
         lengths = [float(step.removeprefix("dt = ").removesuffix(" s")) for step in steps]
-        name = row["scheme"].removesuffix(" / r0")
+        name = row["scheme"].removesuffix(" / linear")
         axes.plot(lengths, errors, marker + "-", color=color, label=name)
     axes.set(xscale="log", yscale="log", xlabel="dt [s]", ylabel="error after an impact [cm]")
     axes.set_xticks(lengths, [f"{length:g}" for length in lengths], minor=False)

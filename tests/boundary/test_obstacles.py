@@ -1,5 +1,7 @@
 """Law: discs and walls are fields like others: checked once, and stored wherever parameters are."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
@@ -46,9 +48,9 @@ def test_snapshots_and_recordings_hold_them(arena, tmp_path):
 
 def test_recorded_contacts_of_other_obstacles_are_refused(arena):
     run = simulate(arena, 3, 40.0, contacts=True)
-    fields = {name: getattr(run, name) for name in run.__dataclass_fields__}
+    values = {each.name: getattr(run, each.name) for each in fields(run)}
     with pytest.raises(ParameterError, match="contacts"):
-        Recording(**(fields | {"parameters": arena.replace(discs=(), walls=())}))
+        Recording(**(values | {"parameters": arena.replace(discs=(), walls=())}))
 
 
 def test_sweeps_vary_them(tmp_path):

@@ -154,9 +154,16 @@ def test_tracks_of_another_kind_are_refused(given, words):
 
 
 @pytest.mark.parametrize("policy", [DampedLaw, RandomRudders])
-def test_a_class_is_no_policy(policy):
-    with pytest.raises(ParameterError, match=r"policy = <class .* is not accepted"):
-        simulate(PARAMETERS, 3, 0.1, policy=policy)
+def test_a_class_of_policies_stands_for_what_it_makes(policy):
+    assert simulate(PARAMETERS, 3, 1.0, policy=policy) == simulate(
+        PARAMETERS, 3, 1.0, policy=policy()
+    )
+
+
+@pytest.mark.parametrize("policy", [int, dict, FlockParameters])
+def test_a_class_of_something_else_is_no_policy(policy):
+    with pytest.raises(ParameterError, match=r"policy = .* is not accepted: a policy's name"):
+        simulate(PARAMETERS, 3, 1.0, policy=policy)
 
 
 @pytest.mark.parametrize("seed", ["1", None, True])

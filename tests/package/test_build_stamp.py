@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="needs make
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:
     """A folder in which everything is built, as far as make can see."""
-    for name in ("Makefile", "pyproject.toml"):
+    for name in ("Makefile", "pyproject.toml", "requirements.lock"):
         shutil.copy(REPOSITORY / name, tmp_path)
     for name in ("Cargo.toml", "Cargo.lock", "src/lib.rs", "flockenv/_core.abi3.so"):
         (tmp_path / name).parent.mkdir(exist_ok=True)

@@ -10,7 +10,12 @@ from flockenv import LeadersVectorEnv, ParameterError
 from flockenv.runs.seeds import POLICY_SEEDS, check_evaluation_seeds
 
 REPOSITORY = Path(__file__).parents[2]
-MAKERS = [*(REPOSITORY / "baselines").glob("*.py"), *(REPOSITORY / "flockenv").rglob("*.py")]
+MAKERS = [
+    path
+    for folder in ("baselines", "flockenv", "studies")
+    for path in (REPOSITORY / folder).rglob("*.py")
+    if not path.name.startswith("test_")
+]
 
 
 def test_no_two_uses_meet():
@@ -25,7 +30,7 @@ def test_each_use_that_makes_policies_has_one_script():
         for use in re.findall(r'POLICY_SEEDS\["([^"]+)"\]', path.read_text()):
             scripts[use].add(path.name)
     # Those that train policies draw from one range, and judge none of each other's.
-    shared = ("training", "evaluation", "paper")
+    shared = ("training", "paired branches", "evaluation", "paper")
     assert all(len(found) == 1 for use, found in scripts.items() if use not in shared), scripts
 
 
