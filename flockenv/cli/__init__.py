@@ -28,7 +28,7 @@ COMMANDS: Mapping[str, str] = {
     "presets": "Print every preset: values, units, meanings and sources (sections of Tarcai et al. "
     "2011).",
     "sweep": "Run a grid of parameters and seeds, as one table.",
-    "train": "Train one policy for all leaders with PPO (extra `train`).",
+    "train": "Train one policy for all leaders, with PPO (extra `train`) or in paired branches.",
 }
 """The commands, and the first line of each one's help."""
 
