@@ -16,7 +16,8 @@ def test_a_lean_of_zero_is_the_tuned_law(script, tmp_path):
     table = pd.read_csv(tmp_path / "evaluation-3.csv").set_index("policy")
     assert list(table.index) == ["paper's law", "tuned law", "seed 7"]
     assert table.loc["seed 7", "signed_order"] == table.loc["tuned law", "signed_order"]
-    assert table.loc["seed 7", "gain"] == 0.0 > table.loc["paper's law", "gain"]
+    # Three flocks do not say which of the other two is better.
+    assert table.loc["seed 7", "gain"] == 0.0 != table.loc["paper's law", "gain"]
 
 
 def test_the_mean_of_trainings_keeps_the_luck_that_they_share(script):
