@@ -47,7 +47,8 @@ def test_a_switch_of_colors_has_a_key_and_a_legend(page):
     assert page.picture(".run canvas") == before
 
 
-def test_a_forces_drawn_length_reports_its_size(page, law):
+def test_a_forces_drawn_area_reports_its_size(page, law):
+    """A bar is at most a boat long, and wider for what is more."""
     page.choose("#trails", "0")
     page.click("#forces")
     page.wait_until_drawn()
@@ -62,16 +63,27 @@ def test_a_forces_drawn_length_reports_its_size(page, law):
         np.hypot(*(points[sample == k] - p).T) < 40.0 for k, p in zip(sample, points, strict=True)
     ]
     alone = np.flatnonzero([each.sum() == 1 for each in near])
-    lengths = []
+    longest = 1.0 + law.parameters.boat_shape
+    shown = []
     for force in np.linspace(0.5, 3.0, 6) * scale:
         c = alone[np.abs(law.contacts.force[alone] - force).argmin()]
         page.script("player.seek(arguments[0]); player.show()", law.time_s[sample[c]])
         start = np.array(page.pixels(0, *map(float, points[c])))
-        along = np.arange(0.0, 6.0 * hull_px, 0.5)[:, None] * law.contacts.normal[c] * (1, -1)
-        drawn = 0.5 * sum(page.color(0, *place) == FORCE for place in start + along)
-        lengths.append((float(law.contacts.force[c]), drawn))
-    for force, length in lengths:
-        assert length == pytest.approx(hull_px * force / scale, abs=2.0)
+        normal = law.contacts.normal[c] * (1, -1)
+        places = np.arange(0.0, 6.0 * hull_px, 0.5)[:, None]
+        along = start + places * normal
+        across = start + 0.2 * hull_px * normal + (places - 3.0 * hull_px) * (-normal[1], normal[0])
+        # From the contact, and from edge to edge: a mark may lie on the bar between.
+        (_, end), (left, right) = (
+            0.5 * np.flatnonzero([page.color(0, *at) == FORCE for at in line])[[0, -1]]
+            for line in (along, across)
+        )
+        shown.append((float(law.contacts.force[c]) / scale, end, right - left))
+    assert min(shown)[0] < longest < max(shown)[0]
+    for widths, length, width in shown:
+        assert length == pytest.approx(hull_px * min(widths, longest), abs=2.0)
+        # Both edges are blended with the mark around the bar.
+        assert 0.0 <= 0.15 * hull_px * max(widths / longest, 1.0) - width < 3.0
 
 
 def test_trails_can_be_switched_off(page):
@@ -83,7 +95,7 @@ def test_trails_can_be_switched_off(page):
 
 def test_phases_are_words_with_a_title(page, law):
     words = [each.text for each in page.driver.find_elements("css selector", ".phase")]
-    assert words == ["forward", "drift", "backward", "drift"]
+    assert words == ["forward", "off", "backward", "off"]
     assert page.text(".phases").startswith("motors")
     for name in ("fw", "nop1", "bw", "nop2"):
         title = page.find(f".phase[data-phase={name}]").get_attribute("title")
