@@ -384,7 +384,11 @@ def test_a_screen_reader_hears_names_values_and_what_the_flock_does(open_live):
     tree = tree_of(live)
     assert [name for role, name, _ in tree if role == "slider"] == ["backward duration"]
     pictures = [name for role, name, _ in tree if role in ("image", "img")]
-    said = {f"27 boats; {share} clockwise." for share in ("all", "nearly all", "most")}
+    said = {
+        f"27 boats; {share} {way}."
+        for share in ("all", "nearly all", "most")
+        for way in ("clockwise", "counter-clockwise")
+    }
     assert said & set(pictures)
     assert live.text("#doing") in said
     # It changes with the flock, which is another one here.
