@@ -34,8 +34,8 @@ HEAVY = FlockParameters(n_boats=300, n_leaders=1, speed_cm_s=1e5, c1=6.0)
     "work",
     [
         lambda: Flock(HEAVY, 1).advance(60.0),
-        lambda: flockenv.simulate(HEAVY, 60.0, 1),
-        lambda: flockenv.simulate(HEAVY, 60.0, 1, policy="damped"),
+        lambda: flockenv.simulate(HEAVY, 1, 60.0),
+        lambda: flockenv.simulate(HEAVY, 1, 60.0, policy="damped law"),
     ],
 )
 def test_costly_substeps_can_be_interrupted(work, signaled_in_the_core):
