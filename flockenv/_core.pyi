@@ -14,8 +14,10 @@ __all__ = [
     "LAWS",
     "LEAN_FEATURES",
     "OBSERVATION_VERSION",
+    "OKABE_ITO",
     "OPTIONS",
     "ORDERED_WITHIN",
+    "PALETTE",
     "PARAMETERS",
     "PHASES",
     "PRESETS",
@@ -70,6 +72,9 @@ ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]
 STYLE_SHEET: str
+# Colors by name as "#rrggbb": of frames and of pages on light ground, and of plots in turn.
+PALETTE: dict[str, str]
+OKABE_ITO: dict[str, str]
 LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]

@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 import flockenv
+from flockenv.rendering.palette import OKABE_ITO
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
 
@@ -415,8 +416,7 @@ def histograms(column: pd.Series) -> NDArray[np.float64]:
 
 # --- pictures -------------------------------------------------------------------------------------
 
-COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-"""Okabe and Ito's, which the color-blind tell apart."""
+COLORS = (*OKABE_ITO.values(),)
 
 _STYLE: dict[str, Any] = {
     "font.size": 8,

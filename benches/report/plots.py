@@ -1,4 +1,4 @@
-"""The figures. The colors, Okabe and Ito's, suit every kind of eye; shapes differ too."""
+"""The figures: colors and shapes tell the series apart."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ import matplotlib.pyplot as plt
 import pandas as pd
 from measurements import BOX2D, RAPIER, Measurements, ours
 
+from flockenv.rendering.palette import OKABE_ITO
+
 # Name: engine and setting, color, marker, whether filled.
 SERIES = {
-    "flockenv leapfrog": (ours("leapfrog", "linear"), "#0072B2", "o", True),
-    "flockenv leapfrog, 1e-6 cm": (ours("leapfrog", "1e-6 cm"), "#56B4E9", "o", False),
-    "flockenv leapfrog, 1e-9 cm": (ours("leapfrog", "1e-9 cm"), "#009E73", "o", False),
-    "flockenv moreau": (ours("moreau", "linear"), "#E69F00", "s", True),
-    "flockenv paper": (ours("paper", "linear"), "#CC79A7", "^", True),
-    "rapier2d-f64": (RAPIER, "#D55E00", "D", True),
-    "Box2D": (BOX2D, "#000000", "v", True),
+    "flockenv leapfrog": (ours("leapfrog", "linear"), OKABE_ITO["blue"], "o", True),
+    "flockenv leapfrog, 1e-6 cm": (ours("leapfrog", "1e-6 cm"), OKABE_ITO["sky blue"], "o", False),
+    "flockenv leapfrog, 1e-9 cm": (ours("leapfrog", "1e-9 cm"), OKABE_ITO["green"], "o", False),
+    "flockenv moreau": (ours("moreau", "linear"), OKABE_ITO["orange"], "s", True),
+    "flockenv paper": (ours("paper", "linear"), OKABE_ITO["purple"], "^", True),
+    "rapier2d-f64": (RAPIER, OKABE_ITO["vermilion"], "D", True),
+    "Box2D": (BOX2D, OKABE_ITO["black"], "v", True),
     "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),
     "MuJoCo": (("MuJoCo", "Newton"), "#B8A400", "X", True),
 }
@@ -81,7 +83,11 @@ def _pareto(m: Measurements) -> plt.Figure:
 
 def _order_of_schemes(m: Measurements) -> plt.Figure:
     figure, axis = plt.subplots(figsize=(7, 5), layout="constrained")
-    names = {"leapfrog": ("#0072B2", "o"), "moreau": ("#E69F00", "s"), "paper": ("#CC79A7", "^")}
+    names = {
+        "leapfrog": (OKABE_ITO["blue"], "o"),
+        "moreau": (OKABE_ITO["orange"], "s"),
+        "paper": (OKABE_ITO["purple"], "^"),
+    }
     for scheme, style in names.items():
         rows = _rows(m.slide, ours(scheme, 2))
         axis.plot(rows.dt_s, rows.slide_median_cm, label=scheme, **_style(*style, True))
@@ -105,7 +111,9 @@ def _order_parameters(m: Measurements) -> plt.Figure:
         (axes[1], "c_v_error_cm2_s2", "c_v_half_width_cm2_s2", "error of C_v [cm²/s²]"),
     ]:
         axis.axvline(0, color="black", linewidth=1)
-        axis.errorbar(rows[value], names, xerr=rows[width], fmt="o", color="#0072B2", capsize=3)
+        axis.errorbar(
+            rows[value], names, xerr=rows[width], fmt="o", color=OKABE_ITO["blue"], capsize=3
+        )
         axis.set_xlabel(label)
     return figure
 
@@ -121,9 +129,14 @@ def _growth(m: Measurements) -> plt.Figure:
     axes[0].legend(frameon=False, fontsize=7)
     of_factor = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
-        (m.growth.bytes_per_boat, "held, with room to grow", "#000000", "s"),
-        (m.growth.bytes_in_use_per_boat - of_factor, "in use, besides the factor", "#0072B2", "o"),
-        (of_factor, "in use, of the factor", "#D55E00", "D"),
+        (m.growth.bytes_per_boat, "held, with room to grow", OKABE_ITO["black"], "s"),
+        (
+            m.growth.bytes_in_use_per_boat - of_factor,
+            "in use, besides the factor",
+            OKABE_ITO["blue"],
+            "o",
+        ),
+        (of_factor, "in use, of the factor", OKABE_ITO["vermilion"], "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
     axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, 5e3))
@@ -137,6 +150,6 @@ def _parts(m: Measurements) -> plt.Figure:
     rows = m.parts.iloc[::-1]
     figure, axis = plt.subplots(figsize=(7.6, 4.2), layout="constrained")
     spread = [rows.us_per_step - rows.us_q1, rows.us_q3 - rows.us_per_step]
-    axis.barh(rows.scene, rows.us_per_step, xerr=spread, color="#56B4E9", capsize=3)
+    axis.barh(rows.scene, rows.us_per_step, xerr=spread, color=OKABE_ITO["sky blue"], capsize=3)
     axis.set_xlabel("µs per step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
     return figure

@@ -6,6 +6,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from flockenv.rendering.palette import OKABE_ITO
 from studies.plots import Plot, listed, rows
 
 REPOSITORY = Path(__file__).parents[2]
@@ -27,7 +28,7 @@ SHOWN = {
     "pymunk": "pymunk 10 iterations",
     "MuJoCo": "MuJoCo Newton",
 }
-OURS, OURS_TOO, THEIRS = "#0072b2", "#d55e00", "0.45"
+OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
 N_OURS = 5
 
 

@@ -13,6 +13,7 @@ from flockenv.cli.console import print_json, say
 from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.recording import Recording
+from flockenv.rendering.palette import PALETTE
 
 
 def _pictures() -> list[str]:
@@ -102,7 +103,7 @@ def _draw_frame(recording: Recording, axes: Any) -> None:
     x, y, heading = recording.pose[first, boats].T
     length = 2.0 * (1.0 + parameters.boat_shape) * parameters.boat_radius_cm
     ahead = length * np.cos(heading), length * np.sin(heading)
-    colors = np.where(boats < parameters.n_leaders, "#F0A202", "#0072B2")
+    colors = np.where(boats < parameters.n_leaders, PALETTE["leader"], PALETTE["normal"])
     places = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
     axes.quiver(x, y, *ahead, color=colors, width=0.008, **places)
     names = recording.ids if recording.ids is not None else np.arange(parameters.n_boats)

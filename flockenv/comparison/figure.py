@@ -12,13 +12,15 @@ from matplotlib.figure import Figure
 from flockenv._io.atomic_write import atomic_write
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.policies.names import LAWS
+from flockenv.rendering.palette import OKABE_ITO
 from flockenv.statistics import CONFIDENCE
 
 COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 """The color that a policy has in every figure."""
 
-# Of Okabe and Ito's, which every kind of eye distinguishes, and three that differ from them.
-OWN_COLORS = ("#d55e00", "#cc79a7", "#56b4e9", "#332288", "#661100", "#ddcc77")
+_FREE = [color for color in OKABE_ITO.values() if color not in COLORS.values()]
+# Without black, which axes have, and with three that differ from Okabe and Ito's.
+OWN_COLORS = (*_FREE[:-1], "#332288", "#661100", "#ddcc77")
 """Colors of other policies, in turn."""
 
 _ORDER = r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$"

@@ -1,5 +1,7 @@
-//! The colors of frames and pages, declared once: Okabe and Ito's set, which color-blind eyes distinguish too, on
+//! The colors of frames, pages and plots, declared once: Okabe and Ito's set, which color-blind eyes distinguish too, on
 //! pale water, and their counterparts on dark ground, which pages alone have.
+
+use std::fmt;
 
 use crate::geometry::{Pose, lap_frame};
 use crate::parameters::named_choice;
@@ -8,11 +10,43 @@ use crate::parameters::named_choice;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
-impl Rgb {
-    const fn hex(code: u32) -> Self {
-        Self((code >> 16) as u8, (code >> 8) as u8, code as u8)
+const fn hex(code: u32) -> Rgb {
+    Rgb((code >> 16) as u8, (code >> 8) as u8, code as u8)
+}
+
+/// As in a style sheet: `#0072b2`.
+impl fmt::Display for Rgb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(r, g, b) = self;
+        write!(f, "#{r:02x}{g:02x}{b:02x}")
     }
 }
+
+/// Okabe and Ito's blue.
+pub const BLUE: Rgb = hex(0x0072B2);
+/// Okabe and Ito's vermilion.
+pub const VERMILION: Rgb = hex(0xD55E00);
+/// Okabe and Ito's bluish green.
+pub const GREEN: Rgb = hex(0x009E73);
+/// Okabe and Ito's reddish purple.
+pub const PURPLE: Rgb = hex(0xCC79A7);
+/// Okabe and Ito's orange.
+pub const ORANGE: Rgb = hex(0xE69F00);
+/// Okabe and Ito's sky blue.
+pub const SKY_BLUE: Rgb = hex(0x56B4E9);
+/// Okabe and Ito's black.
+pub const BLACK: Rgb = hex(0x000000);
+
+/// Okabe and Ito's colors by name, in the order in which plots take them. Their yellow is too pale for lines on white.
+pub const OKABE_ITO: &[(&str, Rgb)] = &[
+    ("blue", BLUE),
+    ("vermilion", VERMILION),
+    ("green", GREEN),
+    ("purple", PURPLE),
+    ("orange", ORANGE),
+    ("sky blue", SKY_BLUE),
+    ("black", BLACK),
+];
 
 /// A color on light ground, and on dark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,61 +60,61 @@ pub struct Swatch {
 }
 
 macro_rules! declare_palette {
-    ($($(#[doc = $doc:literal])+ $constant:ident = $name:literal $light:literal $dark:literal,)+) => {
-        $($(#[doc = $doc])+ pub const $constant: Rgb = Rgb::hex($light);)+
+    ($($(#[doc = $doc:literal])+ $constant:ident = $name:literal: $light:expr, $dark:expr;)+) => {
+        $($(#[doc = $doc])+ pub const $constant: Rgb = $light;)+
 
         /// Every color.
         pub const PALETTE: &[Swatch] = &[
-            $(Swatch { name: $name, light: Rgb::hex($light), dark: Rgb::hex($dark) },)+
+            $(Swatch { name: $name, light: $light, dark: $dark },)+
         ];
     };
 }
 
 declare_palette! {
     /// What surrounds the pool, and the obstacle in its middle.
-    GROUND = "ground" 0xF7F5F0 0x14191F,
+    GROUND = "ground": hex(0xF7F5F0), hex(0x14191F);
     /// The walls.
-    WALL = "wall" 0x7C8690 0x6B7680,
+    WALL = "wall": hex(0x7C8690), hex(0x6B7680);
     /// The water.
-    WATER = "water" 0xDCEAF3 0x213544,
+    WATER = "water": hex(0xDCEAF3), hex(0x213544);
     /// Grid lines of open water.
-    GRID = "grid" 0xC6D8E4 0x34495A,
+    GRID = "grid": hex(0xC6D8E4), hex(0x34495A);
     /// Text.
-    INK = "ink" 0x1F2A36 0xE8EDF2,
+    INK = "ink": hex(0x1F2A36), hex(0xE8EDF2);
     /// Text that stands back.
-    FAINT = "faint" 0x667079 0x99A5AF,
+    FAINT = "faint": hex(0x667079), hex(0x99A5AF);
     /// The arrow that shows the target.
-    TARGET = "target" 0xC3C9CE 0x3A4651,
+    TARGET = "target": hex(0xC3C9CE), hex(0x3A4651);
     /// Boats that head clockwise.
-    CLOCKWISE = "clockwise" 0x0072B2 0x3D9BD6,
+    CLOCKWISE = "clockwise": BLUE, hex(0x3D9BD6);
     /// Boats that head counter-clockwise.
-    COUNTER_CLOCKWISE = "counter-clockwise" 0xD55E00 0xE8742A,
+    COUNTER_CLOCKWISE = "counter-clockwise": VERMILION, hex(0xE8742A);
     /// Boats that head along the radius: outward as in a jam, or inward.
-    RADIAL = "radial" 0x9AA4AE 0x8B98A5,
+    RADIAL = "radial": hex(0x9AA4AE), hex(0x8B98A5);
     /// Normal boats whose color shows their role.
-    NORMAL = "normal" 0x0072B2 0x3D9BD6,
+    NORMAL = "normal": BLUE, hex(0x3D9BD6);
     /// Direction marks of boats.
-    MARK = "mark" 0xFFFFFF 0xFFFFFF,
+    MARK = "mark": hex(0xFFFFFF), hex(0xFFFFFF);
     /// Leaders: their ring, or their hull where color shows the role.
-    LEADER = "leader" 0xF0A202 0xF0A202,
+    LEADER = "leader": hex(0xF0A202), hex(0xF0A202);
     /// Leaders with a counter-clockwise target, where others have a clockwise one.
-    OPPONENT = "opponent" 0x5B1A63 0x5B1A63,
+    OPPONENT = "opponent": hex(0x5B1A63), hex(0x5B1A63);
     /// Direction marks of leaders in amber.
-    LEADER_MARK = "leader-mark" 0x1F2A36 0x14191F,
+    LEADER_MARK = "leader-mark": hex(0x1F2A36), hex(0x14191F);
     /// Outlines of hulls.
-    OUTLINE = "outline" 0x1F2A36 0x0C1116,
+    OUTLINE = "outline": hex(0x1F2A36), hex(0x0C1116);
     /// Bars of contact forces.
-    FORCE = "force" 0xC2185B 0xFF5C9A,
+    FORCE = "force": hex(0xC2185B), hex(0xFF5C9A);
     /// The ring around the boat that is chosen.
-    PIN = "pin" 0x1F2A36 0xFFFFFF,
+    PIN = "pin": hex(0x1F2A36), hex(0xFFFFFF);
     /// The first run's lines.
-    RUN_1 = "run-1" 0x5E2CA5 0xD0B3FF,
+    RUN_1 = "run-1": hex(0x5E2CA5), hex(0xD0B3FF);
     /// The second run's lines.
-    RUN_2 = "run-2" 0x2E7D32 0x7BD88F,
+    RUN_2 = "run-2": hex(0x2E7D32), hex(0x7BD88F);
     /// Rails of gauges, and borders.
-    TRACK = "track" 0xDDDCD6 0x2C353E,
+    TRACK = "track": hex(0xDDDCD6), hex(0x2C353E);
     /// Faces of buttons and cards.
-    FACE = "face" 0xFFFFFF 0x1D242C,
+    FACE = "face": hex(0xFFFFFF), hex(0x1D242C);
 }
 
 named_choice! {
@@ -113,7 +147,7 @@ pub fn style_sheet() -> String {
     let colors = |of: fn(&Swatch) -> Rgb| -> String {
         let lines = PALETTE.iter().map(|each| (each.name, of(each)));
         lines
-            .map(|(name, Rgb(r, g, b))| format!("--{name}:#{r:02x}{g:02x}{b:02x};"))
+            .map(|(name, color)| format!("--{name}:{color};"))
             .collect()
     };
     format!(

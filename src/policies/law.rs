@@ -2,6 +2,7 @@
 
 use super::LeaningLaw;
 use crate::boat::{Course, DampedLaw, steering_law};
+use crate::draw::palette::{BLUE, GREEN, ORANGE, Rgb};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
@@ -25,9 +26,8 @@ pub struct NamedLaw {
     pub name: &'static str,
     /// For documentation.
     pub doc: &'static str,
-    /// The color that it has in every picture: one of Okabe and Ito's, which every kind of eye distinguishes; `None`: the
-    /// next that is free.
-    pub color: Option<&'static str>,
+    /// The color that it has in every picture; `None`: the next that is free.
+    pub color: Option<Rgb>,
     origin: Origin,
 }
 
@@ -62,7 +62,7 @@ impl NamedLaw {
         let each = [
             ("name", Value::from(self.name)),
             ("doc", self.doc.into()),
-            ("color", self.color.into()),
+            ("color", self.color.map(|color| color.to_string()).into()),
             ("is_of_pool", self.is_of_pool().into()),
         ];
         each.into_iter().collect()
@@ -84,7 +84,7 @@ impl Law {
         NamedLaw {
             name: "paper's law",
             doc: "The paper's law at every decision, from what a leader observes, as all that follow.",
-            color: Some("#0072b2"),
+            color: Some(BLUE),
             origin: Origin::Everywhere(|| Self::Paper),
         },
         NamedLaw {
@@ -96,7 +96,7 @@ impl Law {
         NamedLaw {
             name: "tuned law",
             doc: "The damped law with the gains tuned in the pool.",
-            color: Some("#e69f00"),
+            color: Some(ORANGE),
             origin: Origin::OfPool(|pool| {
                 DampedLaw::tuned("law", "tuned law", pool).map(Self::Damped)
             }),
@@ -104,7 +104,7 @@ impl Law {
         NamedLaw {
             name: "learned",
             doc: "The pretrained leaders of the pool.",
-            color: Some("#009e73"),
+            color: Some(GREEN),
             origin: Origin::OfPool(|pool| {
                 LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law)))
             }),

@@ -16,12 +16,15 @@ mod value;
 
 use pyo3::prelude::*;
 
+use crate::draw::palette::Rgb;
+use crate::parameters::Value;
+
 #[pymodule]
 mod _core {
     use super::*;
     use crate::analysis::CollectiveState;
     use crate::analysis::quantities::{QUANTITIES, Quantity};
-    use crate::draw::palette::style_sheet;
+    use crate::draw::palette::{OKABE_ITO, PALETTE, style_sheet};
     use crate::environment::observation::{
         LeanFeatures, OBSERVATION_VERSION, flock_feature_entries,
     };
@@ -29,7 +32,7 @@ mod _core {
         ActionMode, EnvSettings, LARGEST_LEAN, ORDERED_WITHIN, RewardTerm, TOWARDS_TARGET,
     };
     use crate::integrator::Phase;
-    use crate::parameters::{Field, FlockParameters, Preset, Value};
+    use crate::parameters::{Field, FlockParameters, Preset};
     use crate::policies::{Law, NamedLaw};
     use crate::training::BranchSettings;
 
@@ -66,6 +69,9 @@ mod _core {
         error::add_exceptions(module)?;
         module.add("ACTION_MODES", ActionMode::names())?;
         module.add("STYLE_SHEET", style_sheet())?;
+        let colors = PALETTE.iter().map(|swatch| (swatch.name, swatch.light));
+        module.add("PALETTE", by_name(colors))?;
+        module.add("OKABE_ITO", by_name(OKABE_ITO.iter().copied()))?;
         module.add("COLLECTIVE_STATES", CollectiveState::names())?;
         let laws = Law::NAMED.iter().map(NamedLaw::named);
         module.add("LAWS", Value::List(laws.collect()))?;
@@ -94,6 +100,12 @@ mod _core {
         module.add("HAS_AVX2", has_avx2())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
+}
+
+/// Colors by name, as in a style sheet.
+fn by_name(colors: impl Iterator<Item = (&'static str, Rgb)>) -> Value {
+    let texts = colors.map(|(name, color)| (name, Value::from(color.to_string())));
+    texts.collect()
 }
 
 /// Whether this processor has AVX2.

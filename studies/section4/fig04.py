@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 import flockenv
 from flockenv.statistics.structure import structure_series
 from studies.section4.states import STATES
-from studies.study import Options, Row, main, picture, simulated
+from studies.study import COLORS, Options, Row, main, picture, simulated
 
 _TITLES = ("jamming", "clustering", "ordered motion", "disordered motion")
 _NOISE_S = (0.4, 1.4, 1.0, 2.8)
@@ -54,7 +54,7 @@ def snapshot(axes: Any, run: flockenv.Recording, sample: int) -> None:
         (x0, x1), (y0, y1) = x + step[0] * _ENDS, y + step[1] * _ENDS
         width = 2 * p.boat_radius_cm * scale
         axes.plot([x0, x1], [y0, y1], color="0.6", linewidth=width, solid_capstyle="round")
-        axes.plot([x1], [y1], "o", color="#d55e00", markersize=0.5 * width)
+        axes.plot([x1], [y1], "o", color=COLORS[1], markersize=0.5 * width)
     axes.set(xlim=(-92, 92), ylim=(-92, 92), aspect="equal")
     axes.set_axis_off()
 

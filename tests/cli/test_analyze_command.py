@@ -9,6 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
 import flockenv
+from flockenv.rendering.palette import PALETTE
 
 
 @pytest.fixture
@@ -29,7 +30,7 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     assert "mean Ψ_o 0." in analyzed.stdout
     pixels = imread(tmp_path / "order.png")[..., :3]
     # The lines, and in the first frame the boats and the leader.
-    for color in ("C0", "C1", "C2", "#0072B2", "#F0A202"):
+    for color in ("C0", "C1", "C2", PALETTE["normal"], PALETTE["leader"]):
         assert (abs(pixels - to_rgb(color)).max(axis=-1) < 0.02).sum() > 100
     recording = flockenv.Recording.load(tmp_path / "again.npz")
     assert recording.ids.tolist() == ["0", "1", "2", "3", "4", "5"]
@@ -65,7 +66,7 @@ def test_the_first_frame_shows_which_way_is_up(cli, tmp_path):
         done = cli.succeeds("analyze", tmp_path / "t.csv", "--plot", tmp_path / f"{down}.png")
         assert "mean cosine between heading and motion: 1.00" in done.stderr
         pixels = imread(tmp_path / f"{down}.png")[..., :3]
-        boat = abs(pixels - to_rgb("#0072B2")).max(axis=-1) < 0.02
+        boat = abs(pixels - to_rgb(PALETTE["normal"])).max(axis=-1) < 0.02
         height, width = boat.shape
         place = np.argwhere(boat[:, : width // 2]).mean(axis=0) / (height, width // 2)
         assert (place[0] < 0.5) == (down == "false")

@@ -1,0 +1,11 @@
+"""Colors of pictures by name, as `src/draw/palette.rs` declares them."""
+
+from collections.abc import Mapping
+
+from flockenv import _core
+
+PALETTE: Mapping[str, str] = _core.PALETTE
+"""Colors of frames, and of pages on light ground: water, boats, leaders, and so on."""
+
+OKABE_ITO: Mapping[str, str] = _core.OKABE_ITO
+"""Colors of plots, in turn, which every kind of eye distinguishes."""
