@@ -363,8 +363,8 @@ def simulated(row: Mapping[str, Any], **options: Any) -> flockenv.Recording:
 
 
 def seed_of(row: Mapping[str, Any]) -> int:
-    """Return the simulator's seed of a row."""
-    return FIRST_SEED + int(row["seed"])
+    """Return the simulator's seed of a row, counted from its ``first_seed`` if it has one."""
+    return int(row.get("first_seed", FIRST_SEED)) + int(row["seed"])
 
 
 # --- what is measured of a run --------------------------------------------------------------------

@@ -41,6 +41,7 @@ class SeedRange:
 
 # Runs are numbered by 32 bits, as CMA-ES and NumPy take them. A search takes at most 2^24 seeds.
 _RUNS = 1 << 32
+_FIRST_JUDGMENT = FIRST_TRAINING_SEED - (1 << 16)
 
 
 def _search(use: str, place: int) -> SeedRange:
@@ -53,7 +54,9 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         SeedRange("evaluation", 0, 3_000_000_000),
         # Of studies, which no policy was made with. Words that `release_seeds` hashes may fall
         # here, too: "train_leaders" does, so that trainings were judged with some of them.
-        SeedRange("paper", 3_000_000_000, FIRST_TRAINING_SEED - 3_000_000_000),
+        SeedRange("paper", 3_000_000_000, _FIRST_JUDGMENT - 3_000_000_000),
+        # They judge constants of the model that were searched and chosen with the two below.
+        SeedRange("calibration judgment", _FIRST_JUDGMENT, 1 << 16),
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),
         _search("evolution strategy", 2),
@@ -63,9 +66,11 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         _search("paired branches", 6),
         _search("offline data", 7),
         _search("roles", 8),
+        SeedRange("calibration search", FIRST_TRAINING_SEED + 9 * (_RUNS << 24), 1 << 24),
+        SeedRange("calibration choice", FIRST_TRAINING_SEED + 10 * (_RUNS << 24), 1 << 24),
     )
 }
-"""Seeds of what makes and judges policies, by use; no two ranges meet."""
+"""Seeds of what makes and judges policies and constants, by use; no two ranges meet."""
 
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:

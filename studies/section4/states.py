@@ -46,6 +46,24 @@ def _most_frequent(names: Any) -> str:
     return str(names.value_counts().index[0])
 
 
+def ways(found: pd.DataFrame) -> Any:
+    """Return +1 for cycles that are ordered clockwise, -1 for the other way, 0 for the rest."""
+    return np.where(found["state"] == "ordered", np.sign(found["m"]), 0.0)
+
+
+def cycle_min(found: pd.DataFrame) -> float:
+    """Return the length of a cycle in minutes; NaN for a run of one cycle."""
+    return np.diff(found["time_s"]).mean() / 60.0 if len(found) > 1 else math.nan
+
+
+def longest_min(found: pd.DataFrame) -> float:
+    """Return the longest stretch of order one way in minutes; 0 without order."""
+    taken = ways(found)
+    bounds = np.flatnonzero(np.diff(taken, prepend=9.0, append=9.0))
+    lengths = [end - start for start, end in pairwise(bounds) if taken[start] != 0]
+    return max(lengths, default=0) * cycle_min(found)
+
+
 def onset(found: pd.DataFrame) -> Row:
     """Return how much earlier Ψ_o is halfway to order than Ψ_v, and how long each rises (s).
 
@@ -82,18 +100,14 @@ def measure(row: Row) -> Row:
     """Return shares of states, the longest order, changes of direction, and how order comes."""
     found = cycles(simulated(row, sample_hz=5.0))
     every = found["state"].to_numpy()
-    ways = np.where(every == "ordered", np.sign(found["m"]), 0.0)
-    bounds = np.flatnonzero(np.diff(ways, prepend=9.0, append=9.0))
-    period_s = np.diff(found["time_s"]).mean() if len(found) > 1 else math.nan
-    lengths = [e - s for s, e in pairwise(bounds) if ways[s] != 0]
-    taken = ways[ways != 0]
+    taken = ways(found)[ways(found) != 0]
     ordered = every == "ordered"
     return {
         **{state: (every == state).mean() for state in STATES},
-        "longest_min": max(lengths, default=0) * period_s / 60.0,
+        "longest_min": longest_min(found),
         "turns": int((taken[1:] != taken[:-1]).sum()),
         "left": int((ordered[:-1] & ~ordered[1:]).sum()),
-        "ordered_min": ordered.sum() * period_s / 60.0,
+        "ordered_min": ordered.sum() * cycle_min(found),
         "psi_o_late": found["psi_o"][len(found) // 2 :].mean(),
         "psi_o": found["psi_o"].mean(),
         **onset(found),
