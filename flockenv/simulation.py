@@ -1,15 +1,17 @@
 """`simulate`: a seeded run from a random start, recorded."""
 
+import hashlib
+import json
 import math
 from collections.abc import Callable, Iterable, Mapping
 from numbers import Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import check_function, items, truth
+from flockenv._io.arguments import check_function, items, truth, whole
 from flockenv.errors import ParameterError, shown
 from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
@@ -124,11 +126,13 @@ def simulate(
     if progress is not None:
         check_function(progress, "progress")
     leaders = Leaders.of(policy, parameters)
+    start = _state_of(start)
     changes = _changes(parameters, schedule, seed)
     for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
         leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
     flock = _started(parameters, seed, start, noise_seed)
+    start_sha256 = _start_digest(start, flock)
     plan = {
         "sample_hz": sample_hz,
         "single_precision": _is_single(dtype),
@@ -152,6 +156,10 @@ def simulate(
             seed=flock.seed,
             version=_core.__version__,
             policy=leaders.title,
+            noise_seed=None if noise_seed is None else whole(noise_seed, "noise_seed"),
+            control_hz=None if control_hz is None else float(control_hz),
+            start_sha256=start_sha256,
+            schedule_sha256=_schedule_digest(parameters, changes, columns["time_s"]),
         )
 
     try:
@@ -233,8 +241,43 @@ def _is_single(dtype: DTypeLike) -> bool:
     return bool(precision == np.float32)
 
 
+def _schedule_digest(
+    now: FlockParameters,
+    changes: list[tuple[float, str | tuple[str, ...] | FlockParameters]],
+    times_s: NDArray[np.float64],
+) -> str | None:
+    """Return the SHA-256 of what changed when, from these parameters; None if nothing did."""
+    named, length_s = [], round(times_s[-1] - times_s[0], 9)
+    # A change acts after the sample at its time: a run that ended early has not seen it.
+    for time_s, each in ((time_s, each) for time_s, each in changes if time_s < length_s):
+        before, now = now, each if isinstance(each, FlockParameters) else now.replace(target=each)
+        if now != before:
+            named.append((time_s, now.to_dict()))
+    return hashlib.sha256(json.dumps(named, sort_keys=True).encode()).hexdigest() if named else None
+
+
+def _state_of(start: Start | None) -> bytes | Mapping[str, object] | None:
+    """Return the last sample of a recording, and any other start as it is."""
+    if not isinstance(start, Recording):
+        return start
+    return start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
+
+
+def _start_digest(start: bytes | Mapping[str, object] | None, flock: Flock) -> str | None:
+    """Return the SHA-256 of a snapshot, or of pose, velocity and time; None of a random start."""
+    if start is None:
+        return None
+    if isinstance(start, bytes):
+        return hashlib.sha256(start).hexdigest()
+    state = (flock.pose, flock.velocity, np.float64(flock.time_s))
+    return hashlib.sha256(b"".join(each.tobytes() for each in state)).hexdigest()
+
+
 def _started(
-    parameters: FlockParameters, seed: int, start: Start | None, noise_seed: int | None
+    parameters: FlockParameters,
+    seed: int,
+    start: bytes | Mapping[str, object] | None,
+    noise_seed: int | None,
 ) -> Flock:
     """Return the flock at the start of a run."""
     if noise_seed is not None and not isinstance(start, bytes):
@@ -243,8 +286,6 @@ def _started(
         )
     if start is None:
         return Flock(parameters, seed)
-    if isinstance(start, Recording):
-        start = start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
     if isinstance(start, Mapping):
         return Flock.from_state(parameters, seed, dict(start))
     if not isinstance(start, bytes):

@@ -1,5 +1,6 @@
 """What a recording's arrays must be."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
@@ -28,6 +29,13 @@ MOTION = {
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 REACH = (-1e9, 1e9)
 """What a flock's poses and velocities are within."""
+ORIGIN: dict[str, np.dtype[Any]] = {
+    "noise_seed": np.dtype(np.uint64),
+    "control_hz": np.dtype(np.float64),
+    "start_sha256": np.dtype(np.str_),
+    "schedule_sha256": np.dtype(np.str_),
+}
+"""What sets a run apart from another of its parameters, seed and policy; each may be None."""
 CONTACTS = tuple(each.name for each in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
@@ -60,10 +68,25 @@ def check_array(
         raise ParameterError(f"{name} must be within {bounds[0]:g} and {bounds[1]:g}")
 
 
-def check_seed(seed: Any) -> None:
+def check_seed(seed: Any, name: str = "seed") -> None:
     """Refuse what is no seed of a flock."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        raise ParameterError(f"seed = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        raise ParameterError(f"{name} = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+
+
+def check_origin(origin: Mapping[str, Any]) -> None:
+    """Refuse a noise seed, a rate or a digest of a recording, by name, that no run has."""
+    for name, value in origin.items():
+        if value is None:
+            continue
+        if name == "noise_seed":
+            check_seed(value, name)
+        elif name == "control_hz":
+            if not 0.0 < number(value, name) < np.inf:
+                raise ParameterError(f"{name} = {shown(value)} is not accepted: a positive rate")
+        elif not isinstance(value, str) or not re.fullmatch("[0-9a-f]{64}", value):
+            words = "a SHA-256 of 64 hexadecimal digits"
+            raise ParameterError(f"{name} = {shown(value)} is not accepted: {words}")
 
 
 def check_share(after: Any) -> None:

@@ -18,12 +18,14 @@ from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
+    ORIGIN,
     PHASES,
     PRECISIONS,
     REACH,
     check_array,
     check_contacts,
     check_ids,
+    check_origin,
     check_quantities,
     check_seed,
     check_share,
@@ -84,6 +86,15 @@ class Recording(HintsAtNames):
         sample if not given.
     quantities : dict of float64 arrays, shape (t,)
         Quantities of a user's own, by name; see `with_quantities`.
+    noise_seed : int or None
+        Seed of other noise after a snapshot; None for the noise of the snapshot, or of `seed`.
+    control_hz : float or None
+        Rate of decisions that was given for all policies; None for the rates of their own.
+    start_sha256 : str or None
+        Digest of the start: of the snapshot, or of pose, velocity and time of a state; None for a
+        random start.
+    schedule_sha256 : str or None
+        Digest of the schedule, of what changed when; None if `parameters` held throughout.
     ids : str array, shape (n,), or None
         Names of tracked boats, leaders first; None for a simulated flock. Only with them rows of
         `pose` and `velocity` may be NaN, for missing boats, quantities of too few boats are NaN,
@@ -120,6 +131,10 @@ class Recording(HintsAtNames):
     duration_s: float = math.nan
     quantities: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     ids: NDArray[np.str_] | None = None
+    noise_seed: int | None = None
+    control_hz: float | None = None
+    start_sha256: str | None = None
+    schedule_sha256: str | None = None
 
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
@@ -156,6 +171,7 @@ class Recording(HintsAtNames):
             check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **how)
         object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
         check_seed(self.seed)
+        check_origin({name: getattr(self, name) for name in ORIGIN})
         check_quantities(self.quantities, times)
         if self.rudder is not None:
             check_array("rudder", self.rudder, (*times, self.parameters.n_leaders), PRECISIONS[:1])
@@ -271,7 +287,9 @@ class Recording(HintsAtNames):
             order parameters by time; ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``,
             ``velocity_y_cm_s`` and ``angular_velocity_rad_s`` by time and boat. Coordinate
             ``is_leader`` by boat, and ``id`` of tracked boats. Numbers have an attribute ``units``.
-            Attributes: ``seed``, ``version``, and ``parameters`` as TOML.
+            Attributes: ``seed``, ``version``, and ``parameters`` as TOML; ``policy``,
+            ``noise_seed``, ``control_hz``, ``start_sha256`` and ``schedule_sha256`` if the
+            recording has them.
         """
         return dataset_of(self)
 

@@ -18,7 +18,7 @@ from flockenv.errors import ParameterError
 from flockenv.flock import ContactSeries, StepStatistics
 from flockenv.order import ORDER, OrderSeries, order_series
 from flockenv.parameters import FlockParameters
-from flockenv.recording.checks import CONTACTS, PRECISIONS, TIMES, check_array
+from flockenv.recording.checks import CONTACTS, ORIGIN, PRECISIONS, TIMES, check_array
 
 ARRAYS = (*TIMES, "pose", "velocity")
 OPTIONAL = ("rudder", "ids")
@@ -59,6 +59,8 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
         "policy": fields["policy"] or "",
     }
     arrays |= {name: np.array(text) for name, text in texts.items()}
+    given = {name: kind for name, kind in ORIGIN.items() if fields[name] is not None}
+    arrays |= {name: np.array(fields[name], kind) for name, kind in given.items()}
     arrays["seed"] = np.array(fields["seed"], np.uint64)
     arrays["duration_s"] = np.array(fields["duration_s"], np.float64)
     return arrays
@@ -78,7 +80,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     own = [name for name in arrays if name.startswith(_OWN)]
     steps = {each.name: f"{_STEPS}{each.name}" for each in dataclass_fields(StepStatistics)}
     orders = [f"order_{name}" for name in ORDER]
-    known = {*needed, *orders, *OPTIONAL, *own, *steps.values()}
+    known = {*needed, *orders, *OPTIONAL, *own, *steps.values(), *ORIGIN}
     _say(_DROPPED.format("arrays"), arrays.keys() - known)
     if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
         raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
@@ -92,6 +94,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         "order": _order(arrays, parameters),
         "parameters": parameters,
         "seed": int(arrays["seed"]),
+        **_origin(arrays),
         "version": version,
         "policy": policy or None,
         "quantities": {name.removeprefix(_OWN): arrays[name] for name in own},
@@ -100,6 +103,17 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         "contacts": None if contacts is None else ContactSeries(*contacts),
         "statistics": _statistics(arrays, steps),
     }
+
+
+def _origin(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    """Return the noise seed, the rate and the digests of a run, None if the file has none."""
+    found: dict[str, Any] = dict.fromkeys(ORIGIN)
+    for name in ORIGIN.keys() & arrays.keys():
+        array, kind = arrays[name], ORIGIN[name]
+        if array.ndim or array.dtype.kind != kind.kind:
+            raise ParameterError(f"{name} must be one {kind.type.__name__.rstrip('_')}")
+        found[name] = array.item()
+    return found
 
 
 def _statistics(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.order import ORDER, RECORDED
-from flockenv.recording.checks import MOTION, TIMES
+from flockenv.recording.checks import MOTION, ORIGIN, TIMES
 
 if TYPE_CHECKING:
     import pandas
@@ -48,6 +48,8 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
         name: (("time_s", "boat"), each, attributes[name])
         for name, each in _motion(recording).items()
     }
+    kinds = {"policy": np.dtype(np.str_), **ORIGIN}
+    origin = {name: (getattr(recording, name), kind) for name, kind in kinds.items()}
     is_leader = ("boat", boats < recording.parameters.n_leaders)
     return dataset(
         variables,
@@ -61,6 +63,7 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
             "seed": np.uint64(recording.seed),
             "version": recording.version,
             "parameters": recording.parameters.to_toml(),
+            **{name: kind.type(each) for name, (each, kind) in origin.items() if each is not None},
         },
     )
 

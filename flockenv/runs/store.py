@@ -16,6 +16,7 @@ from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
 from flockenv.policies.registry import policy
 from flockenv.recording import LayoutError, Recording
+from flockenv.recording.checks import ORIGIN
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
 
@@ -119,6 +120,7 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
         f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,
         f"{run.duration_s:g} s, not {spec.duration_s:g} s": run.duration_s != spec.duration_s,
         f"a policy {run.policy}, not {spec.policy}": run.policy != title,
+        **{f"{name} {getattr(run, name)}": getattr(run, name) is not None for name in ORIGIN},
         f"other samples than {spec.sample_hz:g} per second": not is_sampled,
         f"not what {kept!r} keeps": run.has_poses != (kept == "poses")
         or not (is_whole and (kept != "window" or run.in_analysis_window.all())),

@@ -291,6 +291,25 @@ def test_a_run_of_another_spec_is_not_taken(spec, tmp_path, keep, other, words) 
     assert len(notes) == 1
 
 
+def test_a_branch_a_scheduled_run_and_one_from_another_start_are_not_the_plain_run(spec, tmp_path):
+    spec = replace(spec, keep="poses")
+    plain, flock = execute(spec), flockenv.Flock(spec.parameters, spec.seed)
+    begun = flock.snapshot()
+    flock.advance(1.0)
+    others = {
+        "noise_seed 5": {"start": begun, "noise_seed": 5},
+        "start_sha256 ": {"start": {"pose": flock.pose}},
+        "schedule_sha256 ": {"schedule": [(10.0, {"bw_s": 0.9})]},
+    }
+    for words, how in others.items():
+        notes: list[str] = []
+        store = RunStore(tmp_path / words.split()[0], notes.append)
+        run = flockenv.simulate(spec.parameters, spec.seed, 30.0, dtype=np.float32, **how)
+        store.save(spec, replace(run, rudder=None, order=plain.order))
+        assert store.load(spec) is None
+        assert words in notes[0]
+
+
 @pytest.mark.parametrize("other", KEEP)
 @pytest.mark.parametrize("keep", KEEP)
 def test_a_run_of_which_other_things_were_kept_is_not_taken(spec, tmp_path, keep, other) -> None:
