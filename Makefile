@@ -156,7 +156,7 @@ pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hou
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
 floors pictures environment-pages: build ## print the floors of ARCHITECTURE.md; draw pages' plots whose data changed; print the environments' pages
-	$(BIN)/python -m docs.scripts.$(subst -,_,$(patsubst pictures,plots,$@))
+	$(BIN)/python -m docs.scripts.$(subst -,_,$@)
 
 audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what this depends on
 	$(UV) --quiet pip-audit

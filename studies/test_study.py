@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from docs.scripts.plots import Plot
 from studies import claim, counts, make, plots, study
 from studies.transition import transition, transition_runs
 
@@ -101,8 +102,9 @@ def test_a_tree_without_results(tmp_path: Path) -> None:
     script = importlib.import_module("studies.section4.fig08").script
     with pytest.raises(SystemExit, match=r"section4.results.section4\.csv is missing or empty"):
         study.main(script, ["--no-runs", "--out", str(tmp_path)])
+    draw = plots.drawing(__name__, {"means": Plot([tmp_path / "means.csv"], lambda figure: None)})
     with pytest.raises(study.StudyError, match=r"means\.csv is missing: its folder's README"):
-        plots.rows(tmp_path / "means.csv")
+        draw(study.Options(out=tmp_path))
     assert list(tmp_path.iterdir()) == []
 
 

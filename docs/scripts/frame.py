@@ -6,9 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, FancyBboxPatch, Wedge
 from matplotlib.transforms import Affine2D
 
-from docs.scripts.plots import DOCS
+from docs.scripts.plots import DOCS, Plot
 from flockenv.rendering.palette import OKABE_ITO
-from studies.plots import Plot
 
 OUTER_CM, INNER_CM, RADIUS_CM, HALF_CM = 90.0, 48.5, 5.0, 2.5
 AXES, BOAT = OKABE_ITO["blue"], OKABE_ITO["vermilion"]

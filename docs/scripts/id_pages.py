@@ -17,15 +17,13 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from docs.scripts.loops import HEIGHT, SHOWN, draw, shown
-from docs.scripts.plots import STUDIES, markdown
+from docs.scripts.plots import STUDIES, Interval, Plot, Row, colors_of, listed, markdown, rows
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS, TERMS, EnvOptions
 from flockenv.parameters import FlockParameters
 from flockenv.policies import policy
-from studies.leaders.draw import LADDER, MEANS
-from studies.plots import Plot, Row, colors_of, listed, rows
 
 LEADERS, EASY = "flockenv/Leaders-v0", "flockenv/Order-easy-v0"
 GOOD_POLICIES = {"wide": "learned"}
@@ -35,7 +33,7 @@ BEFORE_S, FRAMES, STEP_S, SEED = 10.0, 100, 0.8, 10
 seed the flocks follow."""
 
 SCORES = STUDIES / "suite" / "results" / "v2.csv"
-Interval = tuple[float, float, float]
+MEANS = STUDIES / "leaders" / "results" / "means.csv"
 
 
 def page_name(env_id: str) -> str:
@@ -303,8 +301,11 @@ AT_THREE = {"case": "wide-bw-0.31", "leaders": "3"}
 
 
 def _leaders() -> tuple[Plot, str]:
-    found = [row for name in LADDER for row in rows(MEANS, **AT_THREE, policy=name)]
-    intervals = {row["policy"]: _interval(row, "signed_order", "signed_order_") for row in found}
+    found = {
+        row["policy"]: _interval(row, "signed_order", "signed_order_")
+        for row in rows(MEANS, **AT_THREE)
+    }
+    intervals = dict(sorted(found.items(), key=lambda named: named[1], reverse=True))
     words = (
         "Mean signed order with 95 % intervals, in 256 episodes with a little more noise than "
         "here: bw = 0.31 s ([means.csv](../../studies/leaders/results/means.csv)). "

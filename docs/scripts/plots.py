@@ -1,128 +1,163 @@
-"""Draw the plots of the pages that no study and no benchmark draws itself: `make pictures`."""
+"""Committed tables and their plots: means with 95 % intervals, a policy always in one color.
 
-from collections.abc import Iterable, Sequence
+A plot carries the SHA-256 of the files that it was drawn from. A test fails if these have changed
+since.
+"""
+
+import csv
+import hashlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from PIL import Image
 
-from flockenv.rendering.palette import OKABE_ITO
-from studies.plots import Plot, listed, rows
+from flockenv.comparison.figure import OWN_COLORS, policy_colors
 
 REPOSITORY = Path(__file__).parents[2]
 DOCS, STUDIES = REPOSITORY / "docs", REPOSITORY / "studies"
 
-ENGINES = DOCS / "speed_vs_error/short_engines.csv"
-IMPACT = DOCS / "speed_vs_error/impact.csv"
-LEARNERS = DOCS / "throughput/learners.csv"
-MANY_AGENTS = DOCS / "throughput/many_agents.csv"
-SHOWN = {
-    "leapfrog, linear": "leapfrog / exact / linear",
-    "leapfrog, 1e-6 cm": "leapfrog / exact / 1e-6 cm",
-    "leapfrog, 1e-9 cm": "leapfrog / exact / 1e-9 cm",
-    "moreau": "moreau / exact / linear",
-    "paper": "paper / exact / linear",
-    "rapier, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
-    "rapier, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
-    "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
-    "pymunk": "pymunk 10 iterations",
-    "MuJoCo": "MuJoCo Newton",
+Row = dict[str, str]
+
+Interval = tuple[float, float, float]
+"""A mean and the ends of its interval."""
+
+DATA = "Data"
+"""The key of a picture's metadata that holds the digest of what it was drawn from."""
+
+# Legible where a phone shows the picture 390 pixels wide.
+_STYLE = {
+    "font.size": 11,
+    "axes.titlesize": 11,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.alpha": 0.25,
+    "legend.frameon": False,
 }
-OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
-N_OURS = 5
 
 
-def engines(figure: Figure) -> None:
-    """Draw the cost of a step and two errors, a line for each engine."""
-    panels = figure.subplots(1, 3, sharey=True)
-    found = {row["engine, setting"]: row for row in rows(ENGINES)}
-    lines = [found[name] for name in SHOWN.values()]
-    for axes, columns, label in zip(
-        panels,
-        ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "jam overlap, cm"}, {"": "slide, cm"}),
-        ("step [µs]", "overlap [cm]", "slide error [cm]"),
-        strict=True,
-    ):
-        for name, column in columns.items():
-            _points(axes, [float(line[column]) for line in lines], name)
-        axes.set(xscale="log", xlabel=label)
-    panels[0].set_yticks(range(len(SHOWN)), [*SHOWN])
-    panels[0].invert_yaxis()
-    panels[0].legend(loc="upper right", fontsize=9)
+class TableError(Exception):
+    """A committed table that is missing, or lacks the rows that were asked for."""
 
 
-def _points(axes: Axes, values: list[float], name: str) -> None:
-    """Draw a point on each line, ours in color; a hollow one for flocks that move."""
-    colors = [OURS] * N_OURS + [THEIRS] * (len(values) - N_OURS)
-    faces = colors if name != "moving" else ["white"] * len(values)
-    axes.scatter(
-        values, range(len(values)), 45, color=faces, edgecolors=colors, label=name, zorder=3
-    )
+def rows(file: Path, **wanted: str) -> list[Row]:
+    """Return the rows of a CSV file that have these values; TableError if there are none."""
+    _check_exists(file)
+    with file.open(encoding="utf-8", newline="") as lines:
+        found = [
+            row
+            for row in csv.DictReader(lines)
+            if all(row[name] == value for name, value in wanted.items())
+        ]
+    if not found:
+        raise TableError(f"{file} holds no row with {wanted}")
+    return found
 
 
-def impact(figure: Figure) -> None:
-    """Draw the error of a boat that hits the wall against the step."""
-    axes = figure.subplots()
-    for row, color, marker in zip(
-        (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / 1e-9 cm"),
-        (OURS, OURS_TOO),
-        "os",
-        strict=True,
-    ):
-        steps = [column for column in row if column != "scheme"]
-        errors = [float(row[step]) for step in steps]
-        lengths = [float(step.removeprefix("dt = ").removesuffix(" s")) for step in steps]
-        name = row["scheme"].removesuffix(" / linear")
-        axes.plot(lengths, errors, marker + "-", color=color, label=name)
-    axes.set(xscale="log", yscale="log", xlabel="dt [s]", ylabel="error after an impact [cm]")
-    axes.set_xticks(lengths, [f"{length:g}" for length in lengths], minor=False)
-    axes.set_yticks([0.002, 0.005, 0.01, 0.02], ["0.002", "0.005", "0.01", "0.02"])
-    axes.minorticks_off()
-    axes.legend()
+def _check_exists(file: Path) -> None:
+    if not file.exists():
+        raise TableError(f"{file} is missing: its folder's README.md has the command that makes it")
 
 
-def learners(figure: Figure) -> None:
-    """Draw the samples per second of each interface over the batch that it steps."""
-    columns = ("median of the batch", "least of the batch", "most of the batch")
-    shares = {
-        row["interface"]: (float(row[columns[0]]), float(row[columns[1]]), float(row[columns[2]]))
-        for row in rows(LEARNERS)[1:]
-    }
-    axes = figure.subplots()
-    listed(axes, shares, dict.fromkeys(shares, OURS), reference=1.0)
-    axes.set(xlim=(0, 1.05), xlabel="share of the batch's speed")
+def one(file: Path, **wanted: str) -> Row:
+    """Return the only row that has these values."""
+    (row,) = rows(file, **wanted)
+    return row
 
 
-def many_agents(figure: Figure) -> None:
-    """Draw the steps per second of each environment, a point for each size of a batch."""
-    axes = figure.subplots()
-    found = rows(MANY_AGENTS)
-    lines = [*dict.fromkeys(row["environment"] for row in found)]
-    for environments, marker in (("64", "o"), ("1024", "s"), ("8192", "^")):
-        batches = [row for row in found if row["environments"] == environments]
-        at = [lines.index(row["environment"]) for row in batches]
-        axes.scatter(
-            [float(row["steps per second of one core"]) for row in batches],
-            at,
-            45,
-            color=[OURS if line == 0 else THEIRS for line in at],
-            marker=marker,
-            zorder=3,
-        )
-        axes.scatter([], [], 45, color=THEIRS, marker=marker, label=environments)
-    axes.set(xscale="log", xlabel="environment steps per second of one core")
-    axes.set_yticks(range(len(lines)), lines)
-    axes.invert_yaxis()
-    axes.legend(title="batch", loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
+@dataclass(frozen=True)
+class Plot:
+    """A picture of a page.
+
+    Attributes
+    ----------
+    data
+        CSV files that it is drawn from.
+    draw
+        Draws into an empty figure.
+    size
+        Width and height in inches, at 150 dots each.
+    """
+
+    data: Sequence[Path]
+    draw: Callable[[Figure], None]
+    size: tuple[float, float] = (6.8, 4.2)
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the data; TableError if a file of it is missing."""
+        for file in self.data:
+            _check_exists(file)
+        return hashlib.sha256(b"".join(file.read_bytes() for file in self.data)).hexdigest()
+
+    def is_drawn(self, path: Path) -> bool:
+        """Return whether a picture was drawn from the data that are there."""
+        if not path.is_file():
+            return False
+        with Image.open(path) as picture:
+            return picture.info.get(DATA) == self.digest()
+
+    def save(self, path: Path) -> None:
+        """Draw into a file."""
+        with mpl.rc_context(_STYLE):
+            figure = Figure(figsize=self.size, layout="constrained")
+            self.draw(figure)
+            stamp = {"Software": None, DATA: self.digest()}
+            path.parent.mkdir(parents=True, exist_ok=True)
+            figure.savefig(path, format="png", dpi=150, metadata=stamp)
 
 
-PLOTS = {
-    "speed_vs_error/engines.png": Plot([ENGINES], engines, (7.2, 4.4)),
-    "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
-    "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
-    "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
-}
-"""How each is drawn, by its file below docs."""
+def colors_of(names: Iterable[str]) -> dict[str, str]:
+    """Return a color for each policy: as in every figure, and the damped law's own on the pages."""
+    every = [*names]
+    others = policy_colors(name for name in every if name != "damped law")
+    return {name: others.get(name, OWN_COLORS[3]) for name in every}
+
+
+def listed(
+    axes: Axes,
+    intervals: Mapping[str, Interval],
+    colors: Mapping[str, str] | None = None,
+    reference: float | None = None,
+) -> None:
+    """Draw a mean with its interval (mean, low, high) on a line for each name, the first on top.
+
+    A vertical line marks the reference.
+    """
+    if reference is not None:
+        axes.axvline(reference, color="0.4", lw=1)
+    colors = colors_of(intervals) if colors is None else colors
+    for line, (name, interval) in enumerate(intervals.items()):
+        draw_intervals(axes, [line], [interval], color=colors[name])
+    name_heights(axes, intervals)
+
+
+def draw_intervals(
+    axes: Axes, at: Sequence[float], intervals: Sequence[Interval], color: str, label: str = ""
+) -> None:
+    """Draw means with horizontal intervals at these heights."""
+    mean, low, high = zip(*intervals, strict=True)
+    style = {"fmt": "o", "ms": 5, "lw": 1.5, "capsize": 3, "color": color, "label": label}
+    axes.errorbar(mean, at, xerr=bar_lengths(mean, low, high), **style)
+
+
+def name_heights(axes: Axes, names: Iterable[str]) -> None:
+    """Name the heights 0, 1, 2 and so on, from the top down."""
+    words = [*names]
+    axes.set_yticks(range(len(words)), words)
+    axes.set_ylim(len(words) - 0.5, -0.5)
+
+
+def bar_lengths(
+    mean: Sequence[float], low: Sequence[float], high: Sequence[float]
+) -> tuple[list[float], list[float]]:
+    """Return how far intervals reach below and above their means, as Matplotlib takes them."""
+    below = [middle - end for middle, end in zip(mean, low, strict=True)]
+    above = [end - middle for middle, end in zip(mean, high, strict=True)]
+    return below, above
 
 
 def markdown(header: Sequence[str], body: Iterable[Sequence[str]]) -> str:
@@ -131,9 +166,3 @@ def markdown(header: Sequence[str], body: Iterable[Sequence[str]]) -> str:
     return "\n".join(
         "|" + "".join(f" {cell} |" if cell else " |" for cell in line) for line in lines
     )
-
-
-if __name__ == "__main__":
-    for name, plot in PLOTS.items():
-        if not plot.is_drawn(DOCS / name):
-            plot.save(DOCS / name)

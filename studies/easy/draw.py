@@ -4,7 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from studies.plots import Plot, drawing, levels, rows, seed_points
+from docs.scripts.plots import Plot, rows
+from studies.plots import drawing, levels, seed_points
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

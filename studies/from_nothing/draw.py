@@ -4,7 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from studies.plots import COLORS, OWN, Plot, drawing, listed, numbers, rows
+from docs.scripts.plots import Plot, listed, rows
+from studies.plots import COLORS, OWN, drawing, numbers
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

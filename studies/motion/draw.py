@@ -4,7 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from studies.plots import Interval, Plot, Row, drawing, grouped, rows
+from docs.scripts.plots import Interval, Plot, Row, rows
+from studies.plots import drawing, grouped
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from docs.scripts.plots import Plot, listed, rows
 from flockenv.statistics import student_interval
-from studies.plots import Plot, drawing, listed, rows
+from studies.plots import drawing
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

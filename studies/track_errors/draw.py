@@ -5,7 +5,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from studies.plots import Plot, drawing, rows
+from docs.scripts.plots import Plot, rows
+from studies.plots import drawing
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from studies.plots import OWN, Plot, drawing, levels, listed, numbers, rows, seed_points
+from docs.scripts.plots import Plot, listed, rows
+from studies.plots import OWN, drawing, levels, numbers, seed_points
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"

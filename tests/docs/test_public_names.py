@@ -1,4 +1,7 @@
-"""Law: baselines, studies, docs and examples stand on names that the reference lists."""
+"""Law: baselines, studies, docs and examples stand on names that the reference lists.
+
+And nothing stands on studies but studies.
+"""
 
 import importlib
 import re
@@ -71,3 +74,14 @@ def test_the_check_would_notice():
     assert is_listed("flockenv", "FlockParameters")
     for module, name in (("flockenv.replay", "MOST_BYTES"), ("flockenv.envs.batch", "mean_rows")):
         assert not is_listed(module, name)
+
+
+def test_only_studies_import_studies():
+    found = [
+        str(path.relative_to(REPOSITORY))
+        for folder in ("flockenv", "web", "docs", "examples", "baselines", "benches", "tests")
+        for path in (REPOSITORY / folder).rglob("*.py")
+        if REPOSITORY / "docs" / "studies" not in path.parents  # copied by the build of the pages
+        and re.search(r"^\s*(from|import) studies\b", path.read_text("utf-8"), re.MULTILINE)
+    ]
+    assert found == []

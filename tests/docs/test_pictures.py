@@ -4,7 +4,8 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from docs.scripts.plots import DOCS, PLOTS
+from docs.scripts.pictures import PLOTS
+from docs.scripts.plots import DOCS
 
 
 @pytest.mark.parametrize("name", PLOTS)

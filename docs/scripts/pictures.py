@@ -1,0 +1,125 @@
+"""Draw the plots of the pages that no study and no benchmark draws itself: `make pictures`."""
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from docs.scripts.plots import DOCS, Plot, listed, rows
+from flockenv.rendering.palette import OKABE_ITO
+
+ENGINES = DOCS / "speed_vs_error/short_engines.csv"
+IMPACT = DOCS / "speed_vs_error/impact.csv"
+LEARNERS = DOCS / "throughput/learners.csv"
+MANY_AGENTS = DOCS / "throughput/many_agents.csv"
+SHOWN = {
+    "leapfrog, linear": "leapfrog / exact / linear",
+    "leapfrog, 1e-6 cm": "leapfrog / exact / 1e-6 cm",
+    "leapfrog, 1e-9 cm": "leapfrog / exact / 1e-9 cm",
+    "moreau": "moreau / exact / linear",
+    "paper": "paper / exact / linear",
+    "rapier, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
+    "rapier, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
+    "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
+    "pymunk": "pymunk 10 iterations",
+    "MuJoCo": "MuJoCo Newton",
+}
+OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
+N_OURS = 5
+
+
+def engines(figure: Figure) -> None:
+    """Draw the cost of a step and two errors, a line for each engine."""
+    panels = figure.subplots(1, 3, sharey=True)
+    found = {row["engine, setting"]: row for row in rows(ENGINES)}
+    lines = [found[name] for name in SHOWN.values()]
+    for axes, columns, label in zip(
+        panels,
+        ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "jam overlap, cm"}, {"": "slide, cm"}),
+        ("step [µs]", "overlap [cm]", "slide error [cm]"),
+        strict=True,
+    ):
+        for name, column in columns.items():
+            _points(axes, [float(line[column]) for line in lines], name)
+        axes.set(xscale="log", xlabel=label)
+    panels[0].set_yticks(range(len(SHOWN)), [*SHOWN])
+    panels[0].invert_yaxis()
+    panels[0].legend(loc="upper right", fontsize=9)
+
+
+def _points(axes: Axes, values: list[float], name: str) -> None:
+    """Draw a point on each line, ours in color; a hollow one for flocks that move."""
+    colors = [OURS] * N_OURS + [THEIRS] * (len(values) - N_OURS)
+    faces = colors if name != "moving" else ["white"] * len(values)
+    axes.scatter(
+        values, range(len(values)), 45, color=faces, edgecolors=colors, label=name, zorder=3
+    )
+
+
+def impact(figure: Figure) -> None:
+    """Draw the error of a boat that hits the wall against the step."""
+    axes = figure.subplots()
+    for row, color, marker in zip(
+        (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / 1e-9 cm"),
+        (OURS, OURS_TOO),
+        "os",
+        strict=True,
+    ):
+        steps = [column for column in row if column != "scheme"]
+        errors = [float(row[step]) for step in steps]
+        lengths = [float(step.removeprefix("dt = ").removesuffix(" s")) for step in steps]
+        name = row["scheme"].removesuffix(" / linear")
+        axes.plot(lengths, errors, marker + "-", color=color, label=name)
+    axes.set(xscale="log", yscale="log", xlabel="dt [s]", ylabel="error after an impact [cm]")
+    axes.set_xticks(lengths, [f"{length:g}" for length in lengths], minor=False)
+    axes.set_yticks([0.002, 0.005, 0.01, 0.02], ["0.002", "0.005", "0.01", "0.02"])
+    axes.minorticks_off()
+    axes.legend()
+
+
+def learners(figure: Figure) -> None:
+    """Draw the samples per second of each interface over the batch that it steps."""
+    columns = ("median of the batch", "least of the batch", "most of the batch")
+    shares = {
+        row["interface"]: (float(row[columns[0]]), float(row[columns[1]]), float(row[columns[2]]))
+        for row in rows(LEARNERS)[1:]
+    }
+    axes = figure.subplots()
+    listed(axes, shares, dict.fromkeys(shares, OURS), reference=1.0)
+    axes.set(xlim=(0, 1.05), xlabel="share of the batch's speed")
+
+
+def many_agents(figure: Figure) -> None:
+    """Draw the steps per second of each environment, a point for each size of a batch."""
+    axes = figure.subplots()
+    found = rows(MANY_AGENTS)
+    lines = [*dict.fromkeys(row["environment"] for row in found)]
+    for environments, marker in (("64", "o"), ("1024", "s"), ("8192", "^")):
+        batches = [row for row in found if row["environments"] == environments]
+        at = [lines.index(row["environment"]) for row in batches]
+        axes.scatter(
+            [float(row["steps per second of one core"]) for row in batches],
+            at,
+            45,
+            color=[OURS if line == 0 else THEIRS for line in at],
+            marker=marker,
+            zorder=3,
+        )
+        axes.scatter([], [], 45, color=THEIRS, marker=marker, label=environments)
+    axes.set(xscale="log", xlabel="environment steps per second of one core")
+    axes.set_yticks(range(len(lines)), lines)
+    axes.invert_yaxis()
+    axes.legend(title="batch", loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
+
+
+PLOTS = {
+    "speed_vs_error/engines.png": Plot([ENGINES], engines, (7.2, 4.4)),
+    "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
+    "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
+    "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
+}
+"""How each is drawn, by its file below docs."""
+
+
+if __name__ == "__main__":
+    for name, plot in PLOTS.items():
+        if not plot.is_drawn(DOCS / name):
+            plot.save(DOCS / name)
