@@ -96,6 +96,7 @@ def algorithms(found: pd.DataFrame) -> pd.DataFrame:
         row |= {"lowest": means.min(), "highest": means.max(), "gain": own.to_numpy().mean()}
         if len(means) > 1:
             _, row["gain_low"], row["gain_high"] = two_way_interval(own.T)
+            row["interval"] = "drawn"
         rows.append(row)
     return pd.DataFrame(rows)
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from flockenv.statistics import student_interval
@@ -81,21 +80,6 @@ def readings_with_rise(rows: Any) -> int:
     return int((means.max(axis=1) - means[0.0] >= 0.3).sum())
 
 
-def with_flocks(sign: float) -> Callable[[Any], float]:
-    """An end of the interval of a mean gain over trainings that share their flocks.
-
-    Half widths over the trainings and over the flocks add as squares, as if all luck were shared.
-    """
-
-    def end(rows: Any) -> float:
-        seeds = rows[rows["policy"].str.startswith("seed")]
-        gain, low, high = student_interval(seeds["gain"].to_numpy())
-        flocks = (seeds["gain_high"] - seeds["gain_low"]).mean() / 2
-        return gain + sign * float(np.hypot((high - low) / 2, flocks))
-
-    return end
-
-
 def gain_of_plan(rows: Any, place: int = 0) -> float:
     gain, low, high = student_interval(rows["planned"] - rows["learned"])
     return (gain, (high - low) / 2)[place]
@@ -124,7 +108,8 @@ PAPERS = CLOSE | {"policy": "paper's law"}
 NARROW = {"case": "narrow-bw-0.45", "leaders": 3}
 TRAININGS = "studies/trainings/results/pretrained/algorithms.csv"
 EARLY = "studies/trainings/results/pretrained/algorithms-500.csv"
-JUDGED = "studies/trainings/results/pretrained/evaluation.csv"
+FIVE = "studies/trainings/results/algorithms/algorithms.csv"
+TRAININGS_PAGE = "studies/trainings/README.md"
 PLANNING = "studies/planning/results/plan_"
 
 
@@ -188,8 +173,8 @@ def leaders(page: str) -> list[Number]:
     return [
         Number(page, "{} trainings gain", TRAININGS, column="seeds", form="d"),
         Number(page, "trainings gain {} on the tuned law", TRAININGS, column="gain"),
-        Number(page, "in the mean ({} to #, the luck", JUDGED, column=with_flocks(-1.0)),
-        Number(page, "in the mean (# to {}, the luck", JUDGED, column=with_flocks(1.0)),
+        Number(page, "in the mean ({} to #, the luck", TRAININGS, column="gain_low"),
+        Number(page, "in the mean (# to {}, the luck", TRAININGS, column="gain_high"),
         Number(page, words, difference, CLOSE, "mean"),
         *(
             [
@@ -250,22 +235,28 @@ def plans(page: str) -> list[Number]:
 def trainings() -> list[Number]:
     """What the trainings of `make pretrained` reached."""
     found = []
-    for means, judged, words, end in (
-        (TRAININGS, JUDGED, "seeds", " more than the"),
-        (EARLY, JUDGED.replace(".csv", "-500.csv"), "they", " more."),
-    ):
+    for means, words, end in ((TRAININGS, "seeds", " more than the"), (EARLY, "they", " more.")):
         places = {
-            f"{words} reach {{}} in": (means, "signed_order"),
-            f"{words} reach # in the mean ({{}} to": (means, "lowest"),
-            f"{words} reach # in the mean (# to {{}})": (means, "highest"),
-            f"(# to #): {{}} (# to #){end}": (means, "gain"),
-            f": # ({{}} to #){end}": (judged, with_flocks(-1.0)),
-            f": # (# to {{}}){end}": (judged, with_flocks(1.0)),
+            f"{words} reach {{}} in": "signed_order",
+            f"{words} reach # in the mean ({{}} to": "lowest",
+            f"{words} reach # in the mean (# to {{}})": "highest",
+            f"(# to #): {{}} (# to #){end}": "gain",
+            f": # ({{}} to #){end}": "gain_low",
+            f": # (# to {{}}){end}": "gain_high",
         }
         found += [
-            Number("docs/train.md", text, file, column=column, form=".3f")
-            for text, (file, column) in places.items()
+            Number("docs/train.md", text, means, column=column, form=".3f")
+            for text, column in places.items()
         ]
+    five = {"train_leaders": "PPO's five seeds gain", "evolution": "the evolution strategy's"}
+    for algorithm, words in five.items():
+        for column, form in (
+            ("gain", "{} (# to #)"),
+            ("gain_low", "# ({} to #)"),
+            ("gain_high", "# (# to {})"),
+        ):
+            text, row = f"{words} {form}", {"algorithm": algorithm}
+            found.append(Number(TRAININGS_PAGE, text, FIVE, row, column, ".3f"))
     return found
 
 
