@@ -5,19 +5,21 @@ import math
 import shlex
 import sys
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Self
 
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
+from flockenv.cli.compare_entries import compare_entries
 from flockenv.cli.console import console, errors, print_json, say
 from flockenv.cli.options import TRUST, Printing, option, option_of, takes
 from flockenv.cli.output import prepare, printable
 from flockenv.cli.parameters import Flocks, changed_fields
 from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
+from flockenv.comparison.levels import SUITE as LEVELS_SUITE
 from flockenv.comparison.report import ComparisonReport, titled
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
 from flockenv.errors import ParameterError, shown
@@ -69,8 +71,16 @@ class CompareOptions(Flocks, Printing):
         None, "Length of an episode. [8; 16 for target=alternate]", min=0.0
     )
     seed: int = option(0, "First seed.", min=0)
-    suite: str | None = option(None, "Score the policies on the frozen tasks of a suite: v2.")
-    task: list[str] | None = option(None, "One task of the suite; repeatable. [every task]")
+    suite: str | None = option(
+        None, "Score the policies on the frozen tasks of suite v2, or entries on the levels of v3."
+    )
+    task: list[str] | None = option(None, "One task or level of the suite; repeatable. [every one]")
+    entry: list[str] | None = option(
+        None, "With --suite v3: the file of an entry; repeatable.", metavar="FILE"
+    )
+    trial_flocks: int | None = option(
+        None, "With --suite v3: score in so few flocks, as a trial.", min=2
+    )
     flock_hours: list[float] | None = option(
         None,
         "With --suite: flock-hours that made a policy of a file, searches of settings included; "
@@ -87,6 +97,9 @@ _OF_FLOCKS = (
 )
 
 
+_OF_ENTRIES = ("entry", "trial_flocks", "suite", "task", "trust", "out", "as_json", "quiet")
+
+
 @takes(CompareOptions)
 def compare(options: CompareOptions) -> None:
     """Print and plot order against the number of leaders, for your policies and others.
@@ -98,12 +111,19 @@ def compare(options: CompareOptions) -> None:
     your first policy, `card.md`.
 
     `--suite v2` scores policies on frozen tasks, into `scores.csv`. It asks what policies of files
-    cost (`--flock-hours`).
+    cost (`--flock-hours`). `--suite v3` scores entries (`--entry`), into `entries.csv`.
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
     for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
         require(package, "plot")
+    if options.suite == LEVELS_SUITE:
+        _refuse_all_but(_OF_ENTRIES, options)
+        names, levels = options.entry or (), options.task or ()
+        compare_entries(
+            names, levels, options.trial_flocks, options.out, options, trust=options.trust
+        )
+        return
     plan = Plan.parse(options)
     prepare(options.out / "runs.csv")
     if options.suite and not options.shows_nothing:
@@ -146,6 +166,10 @@ class Plan:
     @classmethod
     def parse(cls, options: CompareOptions) -> Self:
         """Return what options ask for; a ParameterError names one that is not accepted."""
+        for name in ("entry", "trial_flocks"):
+            if getattr(options, name) is not None:
+                words = f"is not accepted without --suite {LEVELS_SUITE}"
+                raise ParameterError(f"{option_of(name)} {words}")
         cases = _tasks(options) if options.suite else _flocks(options)
         own = _own_policies(options)
         spent = _spent(options, own)
@@ -263,15 +287,20 @@ def _read(given: Given, pool: Pool, trust: bool) -> Steers:
 
 def _tasks(options: CompareOptions) -> list[Case]:
     """Return the tasks of a suite; refuse options that would make another task of one."""
-    defaults = CompareOptions()
-    for name in _OF_FLOCKS:
-        if getattr(options, name) != getattr(defaults, name):
-            option = {"changes": "--set"}.get(name, option_of(name))
-            raise ParameterError(
-                f"{option} is not accepted with --suite {options.suite}, whose tasks fix it: there "
-                "is no score of an altered task"
-            )
+    _refuse_all_but((each.name for each in fields(options) if each.name not in _OF_FLOCKS), options)
     return tasks_named(str(options.suite), options.task or ())
+
+
+def _refuse_all_but(names: Iterable[str], options: CompareOptions) -> None:
+    """Refuse options that a suite does not take."""
+    taken = {*names}
+    for each in fields(options):
+        if each.name not in taken and getattr(options, each.name) != each.default:
+            name = {"changes": "--set"}.get(each.name, option_of(each.name))
+            raise ParameterError(
+                f"{name} is not accepted with --suite {options.suite}, which fixes it: there is no "
+                "score of an altered task"
+            )
 
 
 def _flocks(options: CompareOptions) -> list[Case]:

@@ -79,7 +79,7 @@ def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:
     """Return tasks of a suite, all of them if none is named; unknown names are refused."""
     chosen = items(names, "names")
     if suite != SUITE:
-        raise ParameterError(f"suite = {shown(suite)} is not accepted: there is {SUITE}")
+        raise ParameterError(f"suite = {shown(suite)} is not accepted: there are {SUITE} and v3")
     refuse_unknown(chosen, [task.name for task in TASKS], f"task of suite {SUITE}")
     return [task for task in TASKS if not chosen or task.name in chosen]
 

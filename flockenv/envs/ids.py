@@ -23,6 +23,21 @@ def _suite(purpose: str, n_leaders: int, episode_s: float = 480.0, **options: An
     return Environment(purpose, {"params": flock, "episode_s": episode_s, **options})
 
 
+_TEN_BOATS: Mapping[str, Any] = {
+    "n_boats": 10,
+    "n_leaders": 4,
+    "pool": "narrow",
+    "observation": {"neighbors": 0, "target": False},
+}
+
+
+def _from_nothing(purpose: str, bw_s: float, episode_s: float, **options: Any) -> Environment:
+    """Return a level of suite v3, which never changes: leaders learn rudders from nothing."""
+    flock = {"preset": "simulation", "bw_s": bw_s, "target": "random", "mirror_to_target": True}
+    usual = {"control_hz": 2.5, "reward": {"signed_order": 1.0}, "physics": "training"}
+    return Environment(purpose, {**flock, **options, "episode_s": episode_s, **usual})
+
+
 ENVIRONMENTS: Mapping[str, Environment] = {
     "flockenv/Leaders-v0": Environment(
         "Three leaders among 27 boats, near the noise at which a flock loses its order. All other "
@@ -31,22 +46,36 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     ),
     # Few boats, many leaders and few numbers observed, so that samples show the order:
     # baselines/learn_easy.py.
-    "flockenv/Order-easy-v0": Environment(
+    "flockenv/Order-easy-v0": _from_nothing(
         "The environment to start with: four of ten boats lead and see few numbers. The order "
         "answers within seconds, so that plain PPO learns to lead in two minutes of one core.",
-        {
-            "n_boats": 10,
-            "n_leaders": 4,
-            "pool": "narrow",
-            "bw_s": 0.3,
-            "target": "random",
-            "mirror_to_target": True,
-            "observation": {"neighbors": 0, "target": False},
-            "control_hz": 2.5,
-            "episode_s": 120.0,
-            "reward": {"signed_order": 1.0},
-            "physics": "training",
-        },
+        0.3,
+        120.0,
+        **_TEN_BOATS,
+    ),
+    "flockenv/Order-noisy-v0": _from_nothing(
+        "Order-easy at half as much noise again: what a rudder does drowns sooner.",
+        0.45,
+        120.0,
+        **_TEN_BOATS,
+    ),
+    "flockenv/Order-narrow-v0": _from_nothing(
+        "Can three leaders of 27 boats learn to steer in `narrow`, where boats stand close? They "
+        "choose rudders, by the default observation.",
+        0.45,
+        240.0,
+        n_boats=27,
+        n_leaders=3,
+        pool="narrow",
+    ),
+    "flockenv/Order-wide-v0": _from_nothing(
+        "Can three leaders of 27 boats learn to steer in `wide`, where the order answers within "
+        "minutes? They choose rudders, by the default observation.",
+        0.31,
+        480.0,
+        n_boats=27,
+        n_leaders=3,
+        pool="wide",
     ),
     "flockenv/OneLeader-v0": _suite(
         "How far does one leader get? It leads 26 boats at the critical noise.", 1

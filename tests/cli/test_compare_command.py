@@ -173,7 +173,7 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--policy", "leader_0=3"], "'3' is no policy"),
         (["--suite", "v2", "--policy", "leader_0=3"], "'3' is no policy"),
         (["--task", "reversal"], "without --suite"),
-        (["--suite", "v1"], "there is v2"),
+        (["--suite", "v1"], "there are v2 and v3"),
         (["--suite", "v2", "--task", "reversl"], "did you mean 'reversal'"),
         (["--suite", "v2", "--bw-s", "1"], "--bw-s is not accepted with --suite v2"),
         (["--suite", "v2", "--set", "n_boats=9"], "--set is not accepted with --suite v2"),

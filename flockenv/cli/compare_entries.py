@@ -1,0 +1,82 @@
+"""`flockenv compare --suite v3`: entries on the levels of the suite."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from flockenv._io.atomic_write import write_csv
+from flockenv._io.extras import require
+from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.options import Printing
+from flockenv.cli.output import prepare
+from flockenv.cli.progress import progress
+from flockenv.comparison.levels import FLOCKS, LEVELS, SUITE
+from flockenv.comparison.suite_entry import SuiteEntry, ranked
+from flockenv.errors import ParameterError, refuse_unknown
+
+
+def compare_entries(
+    files: Sequence[str],
+    tasks: Sequence[str],
+    trial_flocks: int | None,
+    out: Path,
+    printing: Printing,
+    *,
+    trust: bool,
+) -> None:
+    """Score entries, and write a row for each of their levels and the order of every flock."""
+    levels, flocks = _levels(tasks), trial_flocks or FLOCKS
+    if not files:
+        raise ParameterError(f"--suite {SUITE} scores entries: name the file of one with --entry")
+    if flocks > FLOCKS:
+        raise ParameterError(f"--trial-flocks {flocks} is not accepted: at most {FLOCKS}")
+    entries = [SuiteEntry.from_file(path, trust=trust) for path in files]
+    _check_names(entries)
+    levels = [level for level in levels if any(level in each.trainings for each in entries)]
+    if not levels:
+        raise ParameterError("no entry has a policy for a level that --task names")
+    table = out / "entries.csv"
+    prepare(table)
+    if flocks < FLOCKS:
+        say(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
+    pandas = require("pandas", "plot")
+    policies = {
+        level: sum(len(each.trainings.get(level, ())) for each in entries) for level in levels
+    }
+    hours = sum(LEVELS[level].flock_hours(flocks) * (2 + policies[level]) for level in levels)
+    rows, led = [], []
+    kept = f"{table} holds the rows of entries that were finished."
+    with progress("scoring", 3600 * hours, printing.shows_nothing, kept=kept) as advance:
+        ends = {level: LEVELS[level].references(flocks, advance) for level in levels}
+        for entry in entries:
+            own = {
+                level: entry.run(level, flocks, advance)
+                for level in levels
+                if level in entry.trainings
+            }
+            rows += [entry.row(level, orders, *ends[level]) for level, orders in own.items()]
+            led += [entry.orders_table(level, orders) for level, orders in own.items()]
+            write_csv(table, ranked(rows), float_format="%.6g")
+            write_csv(out / "orders.csv", pandas.concat(led), float_format="%.6g")
+    found = ranked(rows)
+    if printing.as_json:
+        print_json({"entries": json.loads(found.to_json(orient="records"))})
+        return
+    for row in found.to_dict("records"):
+        ends_at = f"{row['score']:.3f} [{row['score_low']:.3f}, {row['score_high']:.3f}]"
+        say(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {ends_at}")
+    say(f"Written to {out}")
+
+
+def _levels(tasks: Sequence[str]) -> list[str]:
+    """Return the levels of some names, all of them without names."""
+    refuse_unknown(tasks, LEVELS, f"level of suite {SUITE}")
+    return [level for level in LEVELS if not tasks or level in tasks]
+
+
+def _check_names(entries: list[SuiteEntry]) -> None:
+    """Refuse two entries of one name and budget, whose rows nobody could tell apart."""
+    names = [f"{each.name}, {each.budget} flock-hours" for each in entries]
+    for name in names:
+        if names.count(name) > 1:
+            raise ParameterError(f"two entries are called {name}: give one another name")

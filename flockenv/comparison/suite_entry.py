@@ -1,0 +1,279 @@
+"""An entry of suite v3: a file that names policies, checked before anything runs, and its rows."""
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv._io.arguments import number, whole
+from flockenv._io.extras import require
+from flockenv._io.toml import read_toml_file
+from flockenv.comparison.episodes import Progress, no_progress
+from flockenv.comparison.levels import (
+    BUDGETS,
+    FLOCKS,
+    LEVELS,
+    SUITE,
+    Level,
+    budget_of,
+    score,
+)
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.policies.base import Policy
+from flockenv.policies.registry import FILES, policy
+from flockenv.runs.seeds import FIRST_TRAINING_SEED
+from flockenv.runs.store import RESULTS_VERSION
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_LONGEST_TEXT = 200
+
+
+@dataclass(frozen=True)
+class Training:
+    """A policy of an entry."""
+
+    #: As the entry names it.
+    given: str
+    policy: Policy
+    #: Of its file: short texts by name.
+    provenance: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class SuiteEntry:
+    """What a file enters into suite v3; `from_file` checks it."""
+
+    #: Of the algorithm and its settings.
+    name: str
+    #: The class of the algorithm, such as "policy gradient".
+    kind: str
+    #: Where code, commit and policies are.
+    link: str
+    #: Of one training.
+    flock_hours: float
+    #: Of searches for its settings; NaN if nobody knows.
+    searched_hours: float
+    #: By level.
+    trainings: Mapping[str, tuple[Training, ...]]
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], *, trust: bool = False) -> Self:
+        """Return the entry of a TOML file.
+
+        Parameters
+        ----------
+        path
+            The file; names of policies in it are relative to its folder.
+        trust
+            Whether code of policies may be executed, as of `flockenv.policies.policy`.
+
+        Raises
+        ------
+        ParameterError
+            For a file that is no entry, one of another suite or results version, policies that
+            cannot be read or hold numbers that are not finite, and trainings that met flocks for
+            evaluation.
+        """
+        values = read_toml_file(path, os.fspath(path))
+        try:
+            return cls._of(values, Path(path).parent, trust)
+        except (FlockError, TypeError) as error:
+            raise ParameterError(f"{os.fspath(path)}: {error}") from error
+
+    @classmethod
+    def _of(cls, values: Mapping[str, Any], folder: Path, trust: bool) -> Self:
+        refuse_unknown(values, _KEYS, "key of an entry")
+        for key in (key for key in _KEYS if key not in values and key != "searched_hours"):
+            raise ParameterError(f"{key} is missing")
+        if values["suite"] != SUITE:
+            raise ParameterError(f"suite = {shown(values['suite'])} is not accepted: {SUITE!r}")
+        if values["results_version"] != RESULTS_VERSION:
+            raise ParameterError(
+                f"results_version = {shown(values['results_version'])} is not accepted: this "
+                f"flockenv has version {RESULTS_VERSION}, in which flocks move otherwise; train "
+                "again"
+            )
+        seeds = values["training_seeds"]
+        if not isinstance(seeds, list) or len(seeds) != 2:
+            raise ParameterError(
+                f"training_seeds = {shown(seeds)} is not accepted: the first and the last seed of "
+                "the flocks that made the policies"
+            )
+        first, last = (whole(seed, "training_seeds") for seed in seeds)
+        _check_seeds(first, last, "training_seeds")
+        levels = values["levels"]
+        if not isinstance(levels, Mapping) or not levels:
+            raise ParameterError(f"levels = {shown(levels)} is no table of levels and policies")
+        refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
+        return cls(
+            name=_text(values["name"], "name"),
+            kind=_text(values["class"], "class"),
+            link=_text(values["link"], "link"),
+            flock_hours=_hours(values["flock_hours"], "flock_hours"),
+            searched_hours=(
+                _hours(values["searched_hours"], "searched_hours")
+                if "searched_hours" in values
+                else math.nan
+            ),
+            trainings={
+                name: _trainings(given, LEVELS[name], folder, trust)
+                for name, given in levels.items()
+            },
+        )
+
+    @property
+    def budget(self) -> str:
+        """The class of its trainings by flock-hours."""
+        return budget_of(self.flock_hours)
+
+    def run(
+        self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress
+    ) -> NDArray[np.float64]:
+        """Return the signed orders of a level's trainings, shape (trainings, flocks).
+
+        A ParameterError names a policy that cannot steer to the end of the episode.
+        """
+        found = []
+        for each in self.trainings[level]:
+            try:
+                found.append(LEVELS[level].orders(each.policy, flocks, progress))
+            except Exception as error:  # An object's own code may raise anything.
+                kind = "" if isinstance(error, FlockError) else f"{type(error).__name__}: "
+                raise ParameterError(
+                    f"{self.name}, {level}, {each.given}: {kind}{error}; nothing of the entry is "
+                    "scored"
+                ) from error
+        return np.array(found)
+
+    def row(
+        self,
+        level: str,
+        orders: NDArray[np.float64],
+        no_steering: NDArray[np.float64],
+        reference: NDArray[np.float64],
+    ) -> dict[str, object]:
+        """Return the row of the table for the signed orders of a level."""
+        trainings = self.trainings[level]
+        mean, low, high = score(orders, no_steering, reference)
+        observes = [each.policy.observation for each in trainings]
+        is_default = all(dict(each) == dict(LEVELS[level].observation) for each in observes)
+        seconds = [float(each.provenance.get("cpu_s", "nan")) for each in trainings]
+        return {
+            "level": level,
+            "budget": self.budget,
+            "entry": self.name,
+            "class": self.kind,
+            "sees": "as given" if is_default else "its own",
+            "trainings": len(trainings),
+            "flocks": orders.shape[1],
+            "signed_order": float(orders.mean()),
+            "score": mean,
+            "score_low": low,
+            "score_high": high,
+            "flock_hours": self.flock_hours,
+            "searched_hours": self.searched_hours,
+            "cpu_s": float(np.mean(seconds)),
+            "link": self.link,
+        }
+
+    def orders_table(self, level: str, orders: NDArray[np.float64]) -> "pd.DataFrame":
+        """Return the signed order of each flock of a level, a column for each training."""
+        columns = {each.given: own for each, own in zip(self.trainings[level], orders, strict=True)}
+        table: pd.DataFrame = require("pandas", "plot").DataFrame(columns)
+        table = table.melt(var_name="policy", value_name="signed_order", ignore_index=False)
+        table = table.rename_axis("flock").reset_index()
+        table.insert(0, "entry", self.name)
+        table.insert(0, "level", level)
+        return table
+
+
+def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":
+    """Return rows of entries as a table: by level and budget, the best first."""
+    table: pd.DataFrame = require("pandas", "plot").DataFrame(rows)
+    order = {
+        "level": table["level"].map([*LEVELS].index),
+        "budget": table["budget"].map([*map(str, BUDGETS), "more"].index),
+        "score": -table["score"],
+    }
+    places = table.assign(**order).sort_values([*order], kind="stable").index
+    return table.loc[places].reset_index(drop=True)
+
+
+_KEYS = (
+    *("suite", "results_version", "name", "class", "link"),
+    *("flock_hours", "searched_hours", "training_seeds", "levels"),
+)
+
+
+def _text(value: object, name: str) -> str:
+    if not isinstance(value, str) or not value.isprintable() or not 0 < len(value) <= _LONGEST_TEXT:
+        raise ParameterError(
+            f"{name} = {shown(value)} is not accepted: a text of at most {_LONGEST_TEXT} characters"
+        )
+    return value
+
+
+def _hours(value: object, name: str) -> float:
+    found = float(number(value, name))
+    if not 0.0 <= found < math.inf:
+        raise ParameterError(f"{name} = {shown(value)} is not accepted: hours, at least 0")
+    return found
+
+
+def _check_seeds(first: int, last: int, name: str) -> None:
+    """Refuse the seeds of a training if some of them judge policies."""
+    if not FIRST_TRAINING_SEED <= first <= last:
+        raise ParameterError(
+            f"{name} = [{first}, {last}] is not accepted: seeds below 2^32 are for evaluation, and "
+            "no training may meet them"
+        )
+
+
+def _trainings(given: object, level: Level, folder: Path, trust: bool) -> tuple[Training, ...]:
+    """Return the policies that an entry names for a level, checked."""
+    names = [given] if isinstance(given, str) else given
+    if not isinstance(names, list) or not names or not all(isinstance(n, str) for n in names):
+        raise ParameterError(f"{level.name} = {shown(given)} is not accepted: files of policies")
+    if len(set(names)) < len(names):
+        raise ParameterError(f"{level.name} names a policy twice, which would count twice")
+    return tuple(_training(name, level, folder, trust) for name in names)
+
+
+def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
+    try:
+        is_file = given.endswith(FILES)
+        found = policy(folder / given if is_file else given, level.parameters.pool, trust=trust)
+    except OSError as error:
+        raise ParameterError(f"{given} cannot be read: {error.strerror}") from error
+    except ParameterError as error:
+        raise ParameterError(f"{level.name}, {given}: {error}") from error
+    _check_weights(found.source, given)
+    provenance = getattr(found.source, "provenance", None) or {}
+    version = provenance.get("results_version", str(RESULTS_VERSION))
+    if version != str(RESULTS_VERSION):
+        raise ParameterError(
+            f"{given} was trained in results version {version}, and this flockenv has version "
+            f"{RESULTS_VERSION}"
+        )
+    if seeds := provenance.get("training_seeds"):
+        first, separator, last = seeds.partition("-")
+        if not separator or not (first.isdecimal() and last.isdecimal()):
+            raise ParameterError(f"{given} says training_seeds = {seeds!r}, not FIRST-LAST")
+        _check_seeds(int(first), int(last), f"training_seeds of {given}")
+    return Training(given, found, provenance)
+
+
+def _check_weights(source: object, given: str) -> None:
+    """Refuse a model of torch whose weights are not finite; other files were checked as read."""
+    model = getattr(source, "model", None)
+    parameters = getattr(getattr(model, "policy", model), "parameters", None)
+    for each in parameters() if callable(parameters) else ():
+        if not bool(each.isfinite().all()):
+            raise ParameterError(f"{given} holds weights that are not finite")

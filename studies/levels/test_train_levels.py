@@ -1,0 +1,36 @@
+"""Law: a training is made once, and what it writes is an entry that the suite takes."""
+
+import pytest
+
+from flockenv.comparison.suite_entry import SuiteEntry
+
+pytest.importorskip("torch")
+pytest.importorskip("sb3_contrib")
+
+
+@pytest.mark.parametrize("algorithm", ["trpo", "a2c", "evolution", "branches"])
+def test_a_training_is_made_once_and_entered(script, algorithm, tmp_path) -> None:
+    hours = 1.1  # A generation of the evolution strategy.
+    given = ["--algorithms", algorithm, "--flock-hours", f"{hours}", "--entries", str(tmp_path)]
+    script.main([*given, "--seeds", "1"])
+    (path,) = (each for each in tmp_path.glob("*/order-easy-1.*"))
+    first = path.read_bytes()
+    script.main([*given, "--seeds", "1", "0"])
+    assert path.read_bytes() == first
+    entry = SuiteEntry.from_file(tmp_path / f"{algorithm}-1.1.toml")
+    names = [each.given.rpartition("/")[2] for each in entry.trainings["order-easy"]]
+    assert names == [f"order-easy-0{path.suffix}", path.name]
+    assert hours / 2 < entry.flock_hours < 2 * hours
+    provenance = entry.trainings["order-easy"][1].provenance
+    assert provenance["seed"] == "1"
+    assert f"--algorithms {algorithm}" in provenance["command"]
+
+
+def test_trainings_with_another_seed_differ_and_with_one_do_not(script) -> None:
+    def weights(seed):
+        policy, _, seeds = script.evolution("order-easy", 2.2, seed)
+        return policy.weights[0].tolist(), seeds
+
+    (first, met), (again, _), (other, others) = weights(3), weights(3), weights(4)
+    assert first == again != other
+    assert met[-1] < others[0]

@@ -1,0 +1,91 @@
+"""Law: an entry scored again has the same row to the digit, and a broken one loses nobody's row."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import tomli_w
+
+from flockenv.comparison.levels import LEVELS
+from flockenv.envs.observation import observation_entries
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.store import RESULTS_VERSION
+
+LEVEL = "order-easy"
+
+
+def write_entry(folder: Path, name: str, policies: list[str]) -> str:
+    values = {"suite": "v3", "results_version": RESULTS_VERSION, "name": name, "class": "by hand"}
+    values |= {"link": "here", "flock_hours": 30.0, "training_seeds": [2**32, 2**32]}
+    path = folder / f"{name}.toml"
+    path.write_text(tomli_w.dumps({**values, "levels": {LEVEL: policies}}), "utf-8")
+    return str(path)
+
+
+@pytest.fixture
+def entry(tmp_path: Path) -> str:
+    layout = {"observation": LEVELS[LEVEL].observation, "mirror_to_target": True}
+    size = len(observation_entries(layout["observation"]))
+    for place, seed in enumerate((0, 1)):
+        weights = np.random.default_rng(seed).normal(size=(size, 1))
+        NetworkPolicy([weights], [[0.1]], **layout).save(tmp_path / f"{place}.npz")
+    return write_entry(tmp_path, "mine", ["0.npz", "1.npz"])
+
+
+def words(*entries: str, out: Path) -> list[str]:
+    named = [word for each in entries for word in ("--entry", each)]
+    return ["compare", "--suite", "v3", *named, "--trial-flocks", "3", "--out", str(out)]
+
+
+def test_an_entry_is_scored_again_to_the_digit(cli, entry: str, tmp_path: Path) -> None:
+    done = cli.succeeds(*words(entry, out=tmp_path / "first"))
+    assert done.stdout.startswith("order-easy, 30 flock-hours, mine: ")
+    assert "A trial: rows of the table are of 512 flocks, not 3" in done.stderr
+    other = ["--entry", write_entry(tmp_path, "same", ["1.npz", "0.npz"])]
+    cli.succeeds(*words(entry, out=tmp_path / "again"), *other)
+    first, again = (pd.read_csv(tmp_path / name / "entries.csv") for name in ("first", "again"))
+    assert len(again) == 2
+    found = again[again["entry"] == "mine"].reset_index(drop=True)
+    pd.testing.assert_frame_equal(found, first, check_exact=True)
+    orders = pd.read_csv(tmp_path / "first" / "orders.csv")
+    assert orders["signed_order"].mean() == pytest.approx(first["signed_order"][0], rel=1e-4)
+    printed = json.loads(cli.succeeds(*words(entry, out=tmp_path / "json"), "--json").stdout)
+    assert printed["entries"][0]["entry"] == "mine"
+
+
+def test_a_broken_entry_loses_no_other_row(cli, entry: str, tmp_path: Path, monkeypatch) -> None:
+    (tmp_path / "broken_policy.py").write_text(
+        "class Broken:\n    def predict(self, seen, state=None):\n        return [0.0], state\n",
+        "utf-8",
+    )
+    monkeypatch.chdir(tmp_path)
+    broken = write_entry(tmp_path, "broken", ["broken_policy:Broken"])
+    done = cli(*words(entry, broken, out=tmp_path / "out"), "--trust")
+    assert done.returncode == 2
+    assert "broken, order-easy, broken_policy:Broken: what a policy returns" in done.stderr
+    assert pd.read_csv(tmp_path / "out" / "entries.csv")["entry"].tolist() == ["mine"]
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (["--suite", "v3"], "--suite v3 scores entries"),
+        (["--suite", "v3", "--policy", "learned"], "--policy is not accepted with --suite v3"),
+        (["--suite", "v3", "--n-leaders", "3"], "--n-leaders is not accepted with --suite v3"),
+        (["--suite", "v2", "--entry", "{}"], "--entry is not accepted without --suite v3"),
+        (["--trial-flocks", "9"], "--trial-flocks is not accepted without --suite v3"),
+        (["--suite", "v3", "--entry", "{}", "--trial-flocks", "513"], "at most 512"),
+        (["--suite", "v3", "--entry", "{}", "--task", "camera"], "'camera' is no level of suite"),
+        (["--suite", "v3", "--entry", "{}", "--task", "order-wide"], "no entry has a policy"),
+        (["--suite", "v3", "--entry", "{}", "--entry", "{}"], "two entries are called mine"),
+        (["--suite", "v3", "--entry", "none.toml"], "none.toml cannot be read"),
+        (["--suite", "v4"], "suite = 'v4' is not accepted"),
+    ],
+)
+def test_errors_come_before_anything_is_written(cli, entry, given, expected, tmp_path) -> None:
+    done = cli("compare", *(each.replace("{}", entry) for each in given), "--out", tmp_path / "o")
+    assert done.returncode == 2
+    assert expected in done.stderr.replace("\n", " ")
+    assert not (tmp_path / "o" / "entries.csv").exists()

@@ -1,0 +1,183 @@
+"""Law: an entry that cannot be scored is refused with its name, before anything is written."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tomli_w
+
+from flockenv.comparison.levels import LEVELS
+from flockenv.comparison.suite_entry import SuiteEntry, ranked
+from flockenv.envs.observation import observation_entries
+from flockenv.errors import ParameterError
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.store import RESULTS_VERSION
+
+LEVEL = "order-easy"
+LAYOUT = {"observation": LEVELS[LEVEL].observation, "mirror_to_target": True}
+SIZE = len(observation_entries(LAYOUT["observation"]))
+
+
+def network(path: Path, rudder: float = 0.0, **made: str) -> str:
+    NetworkPolicy([np.zeros((SIZE, 1))], [[rudder]], **LAYOUT, provenance=made).save(path)
+    return path.name
+
+
+@pytest.fixture
+def entered(tmp_path: Path):
+    """Write an entry with some changes, and return its file."""
+
+    def write(**changes: object) -> Path:
+        values: dict[str, object] = {
+            "suite": "v3",
+            "results_version": RESULTS_VERSION,
+            "name": "mine",
+            "class": "by hand",
+            "link": "https://example.org/mine",
+            "flock_hours": 30.0,
+            "training_seeds": [2**32, 2**32 + 5],
+            "levels": {LEVEL: [network(tmp_path / "a.npz", cpu_s="3")]},
+        }
+        kept = {name: value for name, value in {**values, **changes}.items() if value is not None}
+        (tmp_path / "mine.toml").write_text(tomli_w.dumps(kept), "utf-8")
+        return tmp_path / "mine.toml"
+
+    return write
+
+
+class Wrong:
+    """Steers straight ahead, and does something else from the fifth decision on."""
+
+    observation, mirror_to_target = LAYOUT["observation"], True
+
+    def __init__(self, kind: str) -> None:
+        self.kind, self.decisions = kind, 0
+
+    def predict(self, observation, state=None):
+        rudders = np.zeros(observation.size // SIZE)
+        self.decisions += 1
+        if self.decisions >= 5:
+            if self.kind == "raises":
+                raise KeyError("my own mistake")
+            if self.kind == "nan":
+                rudders[0] = np.nan
+            if self.kind == "shape":
+                rudders = rudders[:-1]
+        return rudders, state
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"suite": "v2"}, "suite = 'v2' is not accepted"),
+        ({"results_version": RESULTS_VERSION - 1}, f"results_version = {RESULTS_VERSION - 1} is"),
+        ({"levels": {"order-esy": ["a.npz"]}}, "'order-esy' is no level of suite v3: did you mean"),
+        ({"levels": {}}, "no table of levels"),
+        ({"levels": {LEVEL: []}}, "order-easy = [] is not accepted"),
+        ({"levels": {LEVEL: ["a.npz", "a.npz"]}}, "names a policy twice"),
+        ({"levels": {LEVEL: ["b.npz"]}}, "b.npz cannot be read"),
+        ({"levels": {LEVEL: ["module:Class"]}}, "--trust"),
+        ({"training_seeds": [5, 2**32]}, "seeds below 2^32 are for evaluation"),
+        ({"training_seeds": [2**32]}, "training_seeds = [4294967296] is not accepted"),
+        ({"training_seeds": [2**33, 2**32]}, "training_seeds"),
+        ({"flock_hours": -1.0}, "flock_hours = -1.0 is not accepted"),
+        ({"flock_hours": float("nan")}, "flock_hours = nan is not accepted"),
+        ({"flock_hours": None}, "flock_hours is missing"),
+        ({"name": ""}, "name = '' is not accepted"),
+        ({"clas": "x"}, "'clas' is no key of an entry: did you mean 'class'?"),
+    ],
+)
+def test_what_is_no_entry_is_refused_by_name(entered, changes, words) -> None:
+    with pytest.raises(ParameterError) as error:
+        SuiteEntry.from_file(entered(**changes))
+    assert words in str(error.value)
+    assert "mine.toml: " in str(error.value)
+
+
+def test_what_a_policy_says_of_its_training_counts(entered, tmp_path: Path) -> None:
+    for made, words in (
+        ({"training_seeds": "77-4294967300"}, "training_seeds of b.npz"),
+        ({"training_seeds": "all"}, "not FIRST-LAST"),
+        ({"results_version": "5"}, "b.npz was trained in results version 5"),
+    ):
+        network(tmp_path / "b.npz", **made)
+        with pytest.raises(ParameterError) as error:
+            SuiteEntry.from_file(entered(levels={LEVEL: ["b.npz"]}))
+        assert words in str(error.value)
+
+
+def test_weights_that_are_not_finite_are_refused(entered, tmp_path: Path) -> None:
+    name = network(tmp_path / "b.npz")
+    with np.load(tmp_path / name) as file:
+        arrays = dict(file)
+    arrays["bias_0"] = np.array([np.inf], np.float32)
+    np.savez(tmp_path / name, **arrays)
+    with pytest.raises(ParameterError, match="not finite"):
+        SuiteEntry.from_file(entered(levels={LEVEL: [name]}))
+
+
+def test_a_model_whose_weights_are_not_finite_is_refused(entered, tmp_path: Path) -> None:
+    torch = pytest.importorskip("torch")
+    baselines3 = pytest.importorskip("stable_baselines3")
+    from flockenv.sb3 import LeaderVecEnv
+
+    model = baselines3.PPO("MlpPolicy", LeaderVecEnv(1, n_boats=3, n_leaders=1, pool="narrow"))
+    with torch.no_grad():
+        model.policy.action_net.bias[0] = torch.nan
+    model.save(tmp_path / "b.zip")
+    with pytest.raises(ParameterError, match=r"b\.zip holds weights that are not finite"):
+        SuiteEntry.from_file(entered(levels={LEVEL: ["b.zip"]}), trust=True)
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("shape", "what a policy returns has shape (7,), expected a rudder for each of 8 leaders"),
+        ("nan", "action = NaN is not accepted"),
+        ("raises", "KeyError: 'my own mistake'"),
+    ],
+)
+def test_a_policy_that_breaks_on_the_way_is_named(
+    entered, kind, words, tmp_path: Path, monkeypatch
+) -> None:
+    (tmp_path / "mine.py").write_text(
+        f"from {__name__} import Wrong\n\n\ndef make():\n    return Wrong({kind!r})\n", "utf-8"
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delitem(__import__("sys").modules, "mine", raising=False)
+    entry = SuiteEntry.from_file(entered(levels={LEVEL: ["mine:make"]}), trust=True)
+    with pytest.raises(ParameterError) as error:
+        entry.run(LEVEL, 2)
+    assert "mine, order-easy, mine:make: " in str(error.value)
+    assert words in str(error.value)
+    assert "nothing of the entry is scored" in str(error.value)
+
+
+def test_a_row_says_what_was_scored(entered, tmp_path: Path) -> None:
+    names = ["a.npz", network(tmp_path / "b.npz", 0.5, cpu_s="5")]
+    entry = SuiteEntry.from_file(entered(levels={LEVEL: names}))
+    none, law = np.zeros(4), np.full(4, 0.4)
+    row = entry.row(LEVEL, np.array([[0.1] * 4, [0.3] * 4]), none, law)
+    assert (row["score"], row["trainings"], row["flocks"]) == (pytest.approx(0.5), 2, 4)
+    assert (row["sees"], row["budget"], row["cpu_s"]) == ("as given", "30", 4.0)
+    assert np.isnan(row["searched_hours"])
+    # Straight ahead is what a network of zeros does.
+    found = entry.run(LEVEL, 2)
+    assert found[0].tolist() == LEVELS[LEVEL].orders("straight ahead", 2).tolist()
+    assert found[1].tolist() != found[0].tolist()
+    assert entry.orders_table(LEVEL, found)["signed_order"].tolist() == found.ravel().tolist()
+
+
+def test_rows_are_sorted_by_level_budget_and_score() -> None:
+    rows = [
+        {"level": level, "budget": budget, "score": score}
+        for level, budget, score in (
+            ("order-noisy", "30", 0.9),
+            ("order-easy", "more", 0.9),
+            ("order-easy", "100", 0.1),
+            ("order-easy", "30", 0.2),
+            ("order-easy", "30", 0.3),
+        )
+    ]
+    assert ranked(rows).index.tolist() == [*range(5)]
+    assert ranked(rows)["score"].tolist() == [0.3, 0.2, 0.1, 0.9, 0.9]
