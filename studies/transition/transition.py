@@ -1,6 +1,6 @@
 """Is the jamming–order transition of first order? Lifetimes of a jam and of a rotating flock.
 
-The rules of the answer stand in transition.md.
+The rules of the answer stand in README.md.
 """
 
 import math
@@ -25,6 +25,7 @@ from studies.claim import (
 )
 from studies.section4.fig08 import slope
 from studies.study import COLORS, Options, curve, main, picture, write
+from studies.transition.outside import write_outside
 from studies.transition.transition_runs import AFTER_MIN, C4, LITERAL, LONG, STARTED, STUDY
 
 
@@ -286,6 +287,7 @@ def script(options: Options) -> None:
         draw_map(options, "transition_map", table, "stays {}")
         draw_map(options, "transition_map_second", second(table), "starts {},\nends so")
         _write_answers(options, "answers", answers(found))
+        write_outside(options, table)
     if len(long):
         draw_long(options, long)
         _write_answers(options, "answers_long", answers({"second": judge(second(long), "second")}))
