@@ -2,7 +2,7 @@
 
 /** Names of the columns that a flock fills, in their order. */
 export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
-  "contacts", "observation"];
+  "statistics", "contacts", "observation"];
 /** Numbers of a contact: two boats (−1 for a wall), place along the core, direction as a vector, force. */
 export const CONTACT = 6;
 

@@ -72,9 +72,9 @@ export class Flocks {
   signature = "";
   isRecorded = false;
 
-  /** `kinds`: those of the parameters; `laws`: the simulator's table; `series`: the names of the quantities; `version`: that of the package. */
-  constructor(simulator, { kinds, laws, series, phases, version }) {
-    Object.assign(this, { simulator, kinds, laws: new Laws(laws), series, phases, version });
+  /** `kinds`: those of the parameters; `laws`: the simulator's table; `series`: the names of the quantities; `statistics`: what is counted of substeps; `version`: that of the package. */
+  constructor(simulator, { kinds, laws, series, statistics, phases, version }) {
+    Object.assign(this, { simulator, kinds, laws: new Laws(laws), series, statistics, phases, version });
   }
 
   get areYours() {

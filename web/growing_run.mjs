@@ -66,7 +66,7 @@ export class GrowingRun extends Run {
     raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, described.leaders), capacity);
     raw.series = new GrowingColumn(series.length, capacity);
     super(described, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
-    Object.assign(this, { raw, capacity, latestContacts: [], changedAt: 0, sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
+    Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0, sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
   get hasForces() {
@@ -111,6 +111,7 @@ export class GrowingRun extends Run {
       this.#score(k, onCycle);
     }
     if (count > 0) {
+      this.statistics = taken.statistics;
       this.latestContacts = this.latestContacts.slice(1 - CONTACT_SAMPLES);
       this.latestContacts.push({ time: this.end, numbers: taken.contacts });
     }

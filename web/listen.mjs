@@ -37,7 +37,9 @@ function buttons(page) {
   byId("boat").addEventListener("change", () => page.pin(byId("boat").value === "" ? null : Number(byId("boat").value)));
   byId("scrub").addEventListener("input", () => page.seek(Number(byId("scrub").value)));
   // Plots that were folded in have had no size.
-  byId("more").addEventListener("toggle", () => page.show());
+  for (const name of ["more", "about-flock"]) {
+    byId(name).addEventListener("toggle", () => page.show());
+  }
   for (const button of document.querySelectorAll("[data-copies]")) {
     button.addEventListener("click", () => copy(page, button));
   }
@@ -102,7 +104,8 @@ async function copy(page, button) {
 function save(page) {
   const [run] = page.runs;
   const recorded = page.quantities.filter(({ kind }) => kind === "recorded").map(({ key }) => key);
-  const bytes = recordingOf(run, { ...page.about, recorded, policy: page.flocks.policy });
+  const { policy, statistics } = page.flocks;
+  const bytes = recordingOf(run, { ...page.about, recorded, statistics, policy });
   download(bytes, "flock.npz");
   page.say(`The recording holds ${fixed(run.time[run.sampleAt(run.changedAt)], 1)} to ${fixed(run.end, 1)} s; flockenv.Recording.load reads it.`);
 }
@@ -113,7 +116,8 @@ async function open(page, file) {
     return;
   }
   const { flocks, quantities, simulator } = page;
-  const about = { format: page.about.format, phases: flocks.phases, series: flocks.series, quantities };
+  const { phases, series, statistics } = flocks;
+  const about = { format: page.about.format, phases, series, statistics, quantities };
   try {
     const run = await runOfFile(file, about, {
       check: async (request) => (await simulator.ask("check", { request })).values,

@@ -35,7 +35,7 @@ export class LivePage {
     this.kinds = Object.fromEntries(described.fields.map(({ name, kind }) => [name, kind]));
     this.quantities = quantitiesOf(described);
     const series = this.quantities.map(({ key }) => key);
-    this.flocks = new Flocks(simulator, { kinds: this.kinds, laws: described.laws, series, phases: described.phases, version: about.version });
+    this.flocks = new Flocks(simulator, { ...described, kinds: this.kinds, series, version: about.version });
     this.view = new View(this.flocks, this, about.orders, (time) => this.seek(time));
     this.playback = new Playback(this);
     this.hand = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());

@@ -111,6 +111,16 @@ function checkContacts(contacts, samples, { n_boats: boats, ...others }) {
   }
 }
 
+function checkStatistics(arrays, names) {
+  if (!names.every((name) => Object.hasOwn(arrays, name))) {
+    return;
+  }
+  const other = names.find((name) => arrays[name].shape.length > 0 || !/^<[fiu]|^[|]u1/.test(arrays[name].descr));
+  if (other) {
+    refuse(`${other} must be one number`);
+  }
+}
+
 function checkStored(arrays, format) {
   const form = arrays.format?.values[0];
   if (form !== undefined && form !== format) {
@@ -133,11 +143,12 @@ function checkStored(arrays, format) {
 
 /**
  * What `read` makes of the recording's parameters as TOML, if the arrays are those of a recording. `format` is what
- * it must say that it is; `phases` are the names of phases, and `quantities` those that there are.
+ * it must say that it is; `phases` are the names of phases, and `quantities` and `statistics` those that there are.
  */
-export async function checkedArrays(arrays, { format, phases, quantities }, read) {
+export async function checkedArrays(arrays, { format, phases, quantities, statistics }, read) {
   const hasContacts = checkStored(arrays, format);
   const answer = await read(arrays.parameters.values[0]);
+  checkStatistics(arrays, statistics.map(({ name }) => `statistics_${name}`));
   const { parameters } = answer;
   const { n_boats: boats, n_leaders: leaders } = parameters;
   const [samples] = arrays.time_s.shape;

@@ -13,9 +13,9 @@ const SECONDS = 480;
 /**
  * The bytes of a recording of a run since it last changed, as flockenv.Recording.load reads them. `about`: the
  * format and the version of the package; `policy`: how leaders steered; `recorded`: the names of the quantities that
- * recordings hold.
+ * recordings hold; `statistics`: names and kinds of what is counted of substeps.
  */
-export function recordingOf(run, { format, version, policy, recorded }) {
+export function recordingOf(run, { format, version, policy, recorded, statistics }) {
   const first = run.sampleAt(run.changedAt);
   const { raw, length } = run;
   const [samples, boats, leaders] = [length - first, run.boats, run.leaders];
@@ -23,6 +23,12 @@ export function recordingOf(run, { format, version, policy, recorded }) {
   const series = Object.fromEntries(recorded.map((name) => {
     const values = Float64Array.from({ length: samples }, (_, k) => run.value(name, first + k));
     return [`order_${name}`, array.reals(values, [samples])];
+  }));
+  // A recording that is played may not know them.
+  const known = statistics.every((_, place) => Number.isFinite(run.statistics[place])) ? statistics : [];
+  const counted = Object.fromEntries(known.map(({ name, kind }, place) => {
+    const value = run.statistics[place];
+    return [`statistics_${name}`, kind === "count" ? array.whole(value) : array.reals([value], [])];
   }));
   return writeNpz({
     time_s: array.reals(raw.time_s.from(first), [samples]),
@@ -32,6 +38,7 @@ export function recordingOf(run, { format, version, policy, recorded }) {
     velocity: array.reals(raw.velocity.from(first), [samples, boats, 3]),
     ...series,
     rudder: array.reals(raw.rudder.from(first, leaders), [samples, leaders]),
+    ...counted,
     format: array.texts([format], []),
     version: array.texts([version], []),
     parameters: array.texts([tomlOf(run.stored)], []),
@@ -78,6 +85,7 @@ export async function runOfFile(file, about, { check, describe, derive }) {
     velocity: arrays.velocity.values,
     rudder: Float64Array.from(arrays.rudder?.values ?? new Float64Array(samples * described.leaders)),
     series: await derive(arrays, described),
+    statistics: about.statistics.map(({ name }) => Number(arrays[`statistics_${name}`]?.values[0] ?? NaN)),
     contacts: new Float64Array(0),
   });
   return run;

@@ -139,6 +139,7 @@ export class View {
     }
     this.#scores.forEach((score, place) => { score.replaceChildren(...this.#score(place, time)); });
     this.#tellWhatIsDone(time, isPlaying);
+    this.#showStatistics();
     this.#showObserved();
   }
 
@@ -177,6 +178,18 @@ export class View {
       this.#told = performance.now();
       byId("doing").textContent = told;
     }
+  }
+
+  /** What the substeps did until the end of each run. */
+  #showStatistics() {
+    const { runs, statistics } = this.#flocks;
+    const rows = byId("about-flock").open ? statistics : [];
+    byId("statistics").replaceChildren(...rows.map(({ name }, place) => {
+      const row = element("tr");
+      const words = ({ statistics: numbers }) => (Number.isFinite(numbers[place]) ? String(Number(numbers[place].toPrecision(3))) : "unknown");
+      row.append(element("th", "", name), ...runs.map((run) => element("td", "", words(run))));
+      return row;
+    }));
   }
 
   #showObserved() {

@@ -1,7 +1,6 @@
 """Law: the live page saves and loads recordings, and refuses what is none in words."""
 
 import base64
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,17 @@ import pytest
 import flockenv
 
 pytestmark = pytest.mark.live
+
+
+def shown_statistics(live) -> dict[str, float]:
+    """Return what the parameters of the page say of the substeps of the first run."""
+    live.script("document.getElementById('about-flock').open = true")
+    live.until("return document.querySelectorAll('#statistics tr').length > 0")
+    rows = live.script(
+        """return [...document.querySelectorAll('#statistics tr')].map(
+            (row) => [...row.children].slice(0, 2).map((cell) => cell.textContent))"""
+    )
+    return {name: float(value) for name, value in rows}
 
 
 @pytest.fixture
@@ -29,10 +39,10 @@ def test_a_recording_is_saved_loaded_and_played(live, downloads):
     WebDriverWait(live.driver, 30).until(lambda _: saved.exists() and saved.stat().st_size > 0)
     recording = flockenv.Recording.load(saved)
     native = flockenv.simulate(recording.parameters, 7, recording.duration_s)
-    # The page does not count what its substeps did.
-    native = replace(native, statistics=None)
     assert recording.parameters == flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
     assert recording == native
+    assert recording.statistics.worst_overlap_cm > 0.0
+    assert type(recording.statistics.unsolved) is int
     # Times, and the file that Python writes, are played alike.
     packed = downloads / "packed.npz"
     recording.save(packed, compressed=True)
@@ -48,6 +58,10 @@ def test_a_recording_is_saved_loaded_and_played(live, downloads):
         live.click("#play")
         live.until("return !page.playing")
         assert live.script("return page.time") == pytest.approx(recording.time_s[-1])
+        assert shown_statistics(live) == {
+            name: pytest.approx(value, rel=5e-3)
+            for name, value in vars(recording.statistics).items()
+        }
         assert live.complaints() == []
     live.click("#again")
     live.wait()

@@ -6,7 +6,8 @@ import { array, readNpz, writeNpz } from "../../web/npz.mjs";
 import { checkedArrays } from "../../web/recording.mjs";
 
 const QUANTITIES = [{ key: "psi_o", kind: "recorded", least_boats: 1 }, { key: "c_o", kind: "recorded", least_boats: 2 }];
-const ABOUT = { format: "a format", phases: ["fw", "bw"], quantities: QUANTITIES };
+const STATISTICS = [{ name: "unsolved", kind: "count" }, { name: "worst_overlap_cm", kind: "real" }];
+const ABOUT = { format: "a format", phases: ["fw", "bw"], quantities: QUANTITIES, statistics: STATISTICS };
 const CONTACTS = { count: [0, 1], i: [0], j: [1], normal: [1, 0], force: [2], point_cm: [0, 0], along_cm: [0] };
 const INTEGERS = { count: ["<i8", BigInt64Array], i: ["<i4", Int32Array], j: ["<i4", Int32Array] };
 
@@ -43,6 +44,15 @@ test("quantities are undefined where there are too few normal boats, and only th
   await check({ order_c_o }, { n_leaders: 2 });
   await assert.rejects(check({ order_c_o }), /order.c_o must be finite/);
   await assert.rejects(check({ order_c_o: array.reals([0, 0], [2]) }, { n_leaders: 2 }), /order.c_o must be undefined/);
+});
+
+test("statistics are single numbers, all of them or none", async () => {
+  const [statistics_unsolved, statistics_worst_overlap_cm] = [array.whole(2), array.reals([1e-5], [])];
+  await check({ statistics_unsolved, statistics_worst_overlap_cm });
+  await check({ statistics_unsolved: array.texts(["2"], []) });
+  for (const other of [array.texts(["2"], []), array.reals([1, 2], [2]), array.flags([1], [])]) {
+    await assert.rejects(check({ statistics_unsolved: other, statistics_worst_overlap_cm }), /statistics_unsolved must be one number/);
+  }
 });
 
 test("contacts are among boats, the pool's walls, discs and walls, in their order below zero", async () => {

@@ -9,15 +9,17 @@ import { derivedOf, recordingOf } from "../../web/share.mjs";
 const samples = (times) => ({
   time_s: Float64Array.from(times), phase: new Float64Array(times.length), in_analysis_window: new Float64Array(times.length),
   pose: new Float64Array(6 * times.length), velocity: new Float64Array(6 * times.length), rudder: Float64Array.from(times),
-  series: Float64Array.from(times, (time) => time / 10), contacts: new Float64Array(0),
+  series: Float64Array.from(times, (time) => time / 10), statistics: Float64Array.of(times.length, times.length / 1e5),
+  contacts: new Float64Array(0),
 });
+const statistics = [{ name: "unsolved", kind: "count" }, { name: "worst_overlap_cm", kind: "real" }];
 
 test("samples before the change are left out", async () => {
   const run = new GrowingRun({ boats: 2, leaders: 1, phases: ["fw", "nop1"], seed: "7", stored: { n_boats: 2 } }, ["psi_o"], 10);
   run.append(samples([0, 1, 2]));
   run.describe({});
   run.append(samples([3, 4]));
-  const about = { format: "a format", version: "1", policy: "learned", recorded: ["psi_o"] };
+  const about = { format: "a format", version: "1", policy: "learned", recorded: ["psi_o"], statistics };
   const arrays = await readNpz(recordingOf(run, about).buffer);
   assert.deepEqual([...arrays.time_s.values], [2, 3, 4]);
   assert.deepEqual([...arrays.order_psi_o.values], [0.2, 0.3, 0.4]);
@@ -25,6 +27,11 @@ test("samples before the change are left out", async () => {
   assert.equal(arrays.duration_s.values[0], 4);
   assert.equal(arrays.seed.values[0], "7");
   assert.equal(arrays.parameters.values[0], "n_boats = 2\n");
+  assert.deepEqual([arrays.statistics_unsolved.values[0], arrays.statistics_unsolved.descr], ["2", "<u8"]);
+  assert.deepEqual([arrays.statistics_worst_overlap_cm.values[0], arrays.statistics_worst_overlap_cm.descr], [2e-5, "<f8"]);
+  run.statistics = [NaN, NaN];
+  const unknown = await readNpz(recordingOf(run, about).buffer);
+  assert.deepEqual(Object.keys(arrays).filter((name) => !Object.hasOwn(unknown, name)), ["statistics_unsolved", "statistics_worst_overlap_cm"]);
 });
 
 test("what is asked of a recording has the sign of its target, and states where it holds no order", () => {

@@ -118,6 +118,8 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "names twice": {"ids": np.array(["a"] * 5)},
         "names that are numbers": {"ids": np.arange(5)},
         "a boat that is half there": {"ids": np.array([*"abcde"]), "pose": gone},
+        "unsolved substeps that are a list": {"statistics_unsolved": np.array([0, 0])},
+        "a deepest overlap that is a text": {"statistics_worst_overlap_cm": np.array("0")},
         "parameters out of range": {
             "parameters": np.array(toml.replace("n_boats = 5", "n_boats = 0"))
         },

@@ -1,13 +1,14 @@
 //! What there is, and what a flock is like, as JSON.
 
 use crate::json::written;
-use crate::live::quantities;
+use crate::live::{quantities, statistics};
 use flockenv::analysis::quantities::Quantity;
+use flockenv::contact::Statistics;
 use flockenv::draw::palette::style_sheet;
 use flockenv::environment::observation::ObservationLayout;
 use flockenv::geometry::Hull;
 use flockenv::integrator::Phase;
-use flockenv::parameters::{Field, FlockParameters, Kind};
+use flockenv::parameters::{Field, FlockParameters, Kind, Value};
 use flockenv::policies::{Law, NamedLaw};
 use serde_json::{Value as Json, json};
 
@@ -33,7 +34,16 @@ fn field(each: &Field<FlockParameters>) -> Json {
     })
 }
 
-/// Parameters, laws, phases, quantities, entries of an observation, and the colors.
+fn statistic((name, value): (String, Value)) -> Json {
+    let kind = if matches!(value, Value::Count(_)) {
+        Kind::Count
+    } else {
+        Kind::Real
+    };
+    json!({ "name": name, "kind": kind_name(kind) })
+}
+
+/// Parameters, laws, phases, quantities, statistics, entries of an observation, and the colors.
 pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
@@ -42,6 +52,7 @@ pub(crate) fn all() -> Json {
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
         "quantities": quantities().map(|each| written(&Quantity::named(each))).collect::<Json>(),
+        "statistics": statistics(&Statistics::default()).into_iter().map(statistic).collect::<Json>(),
         "entries": entries
             .map(|(block, place, entry)| written(&entry.named(block.name(), place)))
             .collect::<Json>(),

@@ -3,24 +3,41 @@
 use crate::leaders::{CONTROL_HZ, Leaders, observed};
 use crate::request::Request;
 use flockenv::analysis::quantities::{Formula, QUANTITIES, Quantity};
-use flockenv::contact::Partner;
+use flockenv::contact::{Partner, Statistics};
 use flockenv::flock::{Change, Sampling};
 use flockenv::integrator::Steering;
-use flockenv::parameters::FlockParameters;
+use flockenv::parameters::{FlockParameters, Value};
 use flockenv::{Flock, FlockError, Result};
 
 /// The longest run that is sampled, in s.
 const LONGEST_S: f64 = 1e9;
 
 /// Numbers of the samples since they were last taken: time in s, phase (0 to 3), whether it is analyzed, poses,
-/// velocities, rudders, quantities; then the contacts that carry a force now (boats, −1 for a wall; place along the
-/// core in cm; direction as a vector; force in cm/s²), and what a leader observes now.
-pub(crate) type Columns = [Vec<f64>; 9];
+/// velocities, rudders, quantities; then the statistics of [`statistics`] at the last sample, the contacts that carry a
+/// force now (boats, −1 for a wall; place along the core in cm; direction as a vector; force in cm/s²), and what a leader
+/// observes now.
+pub(crate) type Columns = [Vec<f64>; 10];
 
 /// The quantities of a sample, in the order of the table.
 pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
     let all = QUANTITIES.iter();
     all.filter(|each| !matches!(each.formula, Formula::Structure(_)))
+}
+
+/// Statistics that say whether overlaps stayed within the tolerance: names and values.
+pub(crate) fn statistics(of: &Statistics) -> Vec<(String, Value)> {
+    match of.named_of_steps() {
+        Value::Map(values) => values,
+        _ => Vec::new(),
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::Count(count) => *count as f64,
+        Value::Real(real) => *real,
+        _ => f64::NAN,
+    }
 }
 
 /// A flock with its leaders, sampled at the rate of decisions.
@@ -160,6 +177,7 @@ impl Live {
             velocities,
             rudders,
             series,
+            counts,
             ..,
         ] = &mut self.columns;
         time.push(flock.time_s());
@@ -189,6 +207,8 @@ impl Live {
                     _ => recorded.map_or(f64::NAN, |recorded| recorded[place]),
                 }),
         );
+        let counted = statistics(flock.statistics());
+        *counts = counted.iter().map(|(_, value)| number(value)).collect();
         self.taken += 1;
         self.rudder = self.leaders.decide(flock, &now, self.yours)?;
         Ok(())
