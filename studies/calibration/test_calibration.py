@@ -11,8 +11,12 @@ from studies.claim import Interval
 
 
 def test_candidates_are_drawn_in_the_ranges(script: ModuleType) -> None:
+    pilots = len(script.PILOTS)
     first = [script.drawn(number, []) for number in range(50)]
     assert first == [script.drawn(number, []) for number in range(50)]
+    assert [each["c1"] for each in first[:pilots]] == pytest.approx(
+        [0.678] * 2 + [0.448] * 2, rel=0.01
+    )
     for found in first:
         assert all(low <= found[name] <= high for name, (low, high) in script.RANGES.items())
         assert 10.0 <= found["speed_cm_s"] * (1 - math.exp(-2 * found["c0"])) <= 20.0
@@ -20,8 +24,8 @@ def test_candidates_are_drawn_in_the_ranges(script: ModuleType) -> None:
         push = found["c3"] * found["reverse_speed_cm_s"] * found["c0"] ** 2
         assert push / (found["c0"] ** 2 + 1) == pytest.approx(found["c1"], rel=1e-3)
         flockenv.FlockParameters.preset("experiment").replace(**found)
-    parent = first[0]
-    near = [script.drawn(number, [parent]) for number in range(200)]
+    parent = first[pilots]
+    near = [script.drawn(number, [parent]) for number in range(100, 300)]
     ratios = [math.log(each["c2"] / parent["c2"]) for each in near]
     assert abs(sum(ratios) / len(ratios)) < 0.1
     assert 0.15 < (sum(r * r for r in ratios) / len(ratios)) ** 0.5 < 0.4
