@@ -49,7 +49,7 @@ from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw, LeaningLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 SHIPPED = Path(__file__).parents[1] / "src" / "policies" / "learned"
 

@@ -18,7 +18,7 @@ from sb3_contrib import TRPO
 from flockenv.policies import LeaningLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import SharedNoisePolicy
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 
 def trpo(settings: TrainingSettings, venv: Any, target_kl: float) -> TRPO:

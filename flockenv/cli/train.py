@@ -14,7 +14,7 @@ from flockenv.policies.names import TUNED_LAW
 from flockenv.statistics import paired_difference
 
 if TYPE_CHECKING:
-    from flockenv.training import Progress as TrainingProgress
+    from flockenv.training.ppo import Progress as TrainingProgress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,8 +83,9 @@ def train(options: TrainOptions) -> None:
 
         train_branches(given, out, options.episodes, options, resume=options.resume)
         return
-    from flockenv import training
     from flockenv.comparison.report import overlap_notes
+    from flockenv.training import ppo
+    from flockenv.training.learning_curve import draw_curve
 
     kept = f"{out} holds the last checkpoint: --resume continues from it."
     with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
@@ -97,28 +98,28 @@ def train(options: TrainOptions) -> None:
             shown = share
 
         if options.resume:
-            say(f"Resuming from {out / training.CHECKPOINT}", errors)
-            settings = training.stored_settings(out, options.flock_hours)
-            model = training.resume(out, flock_hours=options.flock_hours, report=report)
+            say(f"Resuming from {out / ppo.CHECKPOINT}", errors)
+            settings = ppo.stored_settings(out, options.flock_hours)
+            model = ppo.resume(out, flock_hours=options.flock_hours, report=report)
         else:
-            settings = training.TrainingSettings.from_dict(given)
-            model = training.train(settings, out, report)
-    rows = training.compare_with_laws(model, settings, options.episodes)
+            settings = ppo.TrainingSettings.from_dict(given)
+            model = ppo.train(settings, out, report)
+    rows = ppo.compare_with_laws(model, settings, options.episodes)
     write_csv(out / "comparison.csv", rows)
     orders = rows.pivot(index="seed", columns="policy", values="signed_order")
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
-    laws = {str(name): float(order) for name, order in means.drop(training.TRAINED).items()}
-    gain = paired_difference(orders[training.TRAINED], orders[TUNED_LAW])
-    curve = training.learning_curve(out, settings.venv().decisions_hz)
-    training.draw_curve(curve, laws, out / "curve.png")
+    laws = {str(name): float(order) for name, order in means.drop(ppo.TRAINED).items()}
+    gain = paired_difference(orders[ppo.TRAINED], orders[TUNED_LAW])
+    curve = ppo.learning_curve(out, settings.venv().decisions_hz)
+    draw_curve(curve, laws, out / "curve.png")
     if options.as_json:
         found = {"signed_order": means.to_dict(), "gain": [gain.mean, gain.low, gain.high]}
-        print_json({**found, "model": str(out / training.MODEL)})
+        print_json({**found, "model": str(out / ppo.MODEL)})
         return
     for name, order in means.items():
         say(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
     say(
-        f"{training.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
+        f"{ppo.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
         f"{gain.high:+.3f}), paired by flock"
     )
     for line in overlap_notes(rows):

@@ -11,7 +11,12 @@ from typing import Any
 import numpy as np
 
 from flockenv._io.atomic_write import write_text
-from flockenv.branches import (
+from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.options import Printing, option_of
+from flockenv.errors import ParameterError, refuse_unknown
+from flockenv.parameters import FlockParameters
+from flockenv.policies.names import TUNED_LAW
+from flockenv.training.branches import (
     CHECKPOINT,
     OPTIONS,
     POLICY,
@@ -23,11 +28,6 @@ from flockenv.branches import (
     train,
     training_flocks,
 )
-from flockenv.cli.console import errors, print_json, say
-from flockenv.cli.options import Printing, option_of
-from flockenv.errors import ParameterError, refuse_unknown
-from flockenv.parameters import FlockParameters
-from flockenv.policies.names import TUNED_LAW
 
 #: Between two lines on the training, in s.
 _BETWEEN_LINES_S = 3.0
@@ -99,7 +99,7 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
         rows.append(f"{seed}," + ",".join(f"{order:.5f}" for order in row))
     write_text(out / "comparison.csv", "\n".join(rows) + "\n")
     if find_spec("matplotlib") is not None:
-        from flockenv.learning_curve import draw_curve
+        from flockenv.training.learning_curve import draw_curve
 
         laws = {name: float(each.mean()) for name, each in orders.items() if name != TRAINED}
         draw_curve(training.curve, laws, out / "curve.png")

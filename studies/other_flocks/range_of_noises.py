@@ -24,7 +24,7 @@ import numpy as np
 from flockenv.policies import LeaningLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 SEEDS = (0, 1, 2)
 ENVIRONMENT = {"n_leaders": [1, 2, 3, 4], "bw_s": (0.2, 0.4)}

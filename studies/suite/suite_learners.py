@@ -55,7 +55,7 @@ def baselines3(given: Training) -> Any:
     from stable_baselines3 import SAC
     from stable_baselines3.common.utils import LinearSchedule
 
-    from flockenv.training import TrainingSettings
+    from flockenv.training.ppo import TrainingSettings
 
     observation, hidden = INPUTS[given.input]
     arch: dict[str, Any] = {"net_arch": {"pi": hidden, "vf": [64, 64]}}

@@ -16,8 +16,8 @@ ALONE = """
 import sys
 for name in ("torch", "stable_baselines3", "pandas", "scipy", "matplotlib", "filelock"):
     sys.modules[name] = None
-from flockenv import branches
 from flockenv.cli import main
+from flockenv.training import branches
 branches._EPISODE_S = 8.0
 main()
 """
@@ -25,7 +25,7 @@ main()
 
 @pytest.fixture(autouse=True)
 def _short_comparisons(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flockenv.branches._EPISODE_S", 8.0)
+    monkeypatch.setattr("flockenv.training.branches._EPISODE_S", 8.0)
 
 
 def test_it_needs_no_other_package_and_resumes_to_the_same_policy(cli, tmp_path: Path) -> None:

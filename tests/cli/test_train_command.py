@@ -20,7 +20,7 @@ TINY = [
 
 @pytest.fixture(autouse=True)
 def _short_comparisons(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flockenv.training.curve._EPISODE_S", 8.0)
+    monkeypatch.setattr("flockenv.training.ppo.curve._EPISODE_S", 8.0)
 
 
 def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:

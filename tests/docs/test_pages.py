@@ -53,9 +53,9 @@ def _minutes_in_seconds(monkeypatch):
     """Let trainings on pages take three rollouts or a round, and comparisons two flocks."""
     from stable_baselines3 import PPO
 
-    from flockenv.branches import BranchTraining
     from flockenv.cli import train_branches
     from flockenv.comparison import case
+    from flockenv.training.branches import BranchTraining
 
     learn, compare = PPO.learn, case.compare_leaders
 

@@ -11,7 +11,7 @@ from flockenv.policies import LeaningLaw, load
 
 pytest.importorskip("stable_baselines3")
 
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "train_leaders.py"
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from flockenv import ParameterError
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 
 def test_settings_survive_their_file(tiny: TrainingSettings, tmp_path: Path) -> None:

@@ -2,7 +2,7 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 
-from flockenv.training import TrainingSettings
+from flockenv.training.ppo import TrainingSettings
 
 #: Two flocks with two leaders and three short episodes: three rollouts.
 TINY = {

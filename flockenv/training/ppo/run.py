@@ -22,7 +22,7 @@ from flockenv._io.plain_file import open_plain
 from flockenv.errors import FlockError, InUseError, ParameterError, shown
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv
-from flockenv.training.settings import TrainingSettings
+from flockenv.training.ppo.settings import TrainingSettings
 
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
 

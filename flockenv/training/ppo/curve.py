@@ -7,7 +7,7 @@ from stable_baselines3.common.monitor import load_results
 
 from flockenv.comparison import compare_leaders
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
-from flockenv.training.settings import TrainingSettings
+from flockenv.training.ppo.settings import TrainingSettings
 
 if TYPE_CHECKING:
     import pandas as pd

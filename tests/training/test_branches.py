@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv.branches import (
+from flockenv.errors import FlockError, ParameterError
+from flockenv.policies import load
+from flockenv.training.branches import (
     CHECKPOINT,
     POLICY,
     BranchTraining,
@@ -15,8 +17,6 @@ from flockenv.branches import (
     train,
     training_flocks,
 )
-from flockenv.errors import FlockError, ParameterError
-from flockenv.policies import load
 
 #: Two rounds of two pairs, 32 s each.
 TINY = {"pairs": 2, "branch_s": 32.0, "hold_s": 8.0, "trial_s": 16.0, "flock_hours": 0.07}
@@ -123,7 +123,7 @@ def test_what_is_no_training_is_refused_by_its_name():
 
 def test_all_are_compared_in_the_same_flocks(monkeypatch):
     """Leans of zero are the tuned law, so that its flocks and theirs are the same."""
-    monkeypatch.setattr("flockenv.branches._EPISODE_S", 30.0)
+    monkeypatch.setattr("flockenv.training.branches._EPISODE_S", 30.0)
     training = tiny()
     orders = compare_with_laws(training.policy(), training.parameters, 2)
     assert list(orders) == ["paper's law", "tuned law", "trained"]
