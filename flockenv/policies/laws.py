@@ -19,7 +19,7 @@ from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import CONTROL_HZ, Layout, RowPolicy
-from flockenv.policies.model import ModelPolicy
+from flockenv.policies.model import ModelPolicy, normalizing
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
@@ -275,7 +275,6 @@ class LeaningLaw(LawPolicy):
         """
         policy, seen = getattr(model, "policy", model), ModelPolicy(model)
         entries = [entry.name for entry in observation_entries(seen.observation)]
-        normalized = getattr(model, "get_vec_normalize_env", lambda: None)()
         hidden = len(getattr(getattr(policy, "mlp_extractor", None), "policy_net", ()))
         for refused, words in (
             (seen.action_mode != "lean", f"actions of action_mode {seen.action_mode!r}"),
@@ -283,7 +282,7 @@ class LeaningLaw(LawPolicy):
             (not seen.mirror_to_target, "a view that is not mirrored to the target"),
             (seen.control_hz != CONTROL_HZ, f"{seen.control_hz:g} control steps per second"),
             (seen.leaders != 1, f"{seen.leaders} leaders at once"),
-            (normalized is not None, "VecNormalize around its environment"),
+            (normalizing(model) is not None, "VecNormalize around its environment"),
             (hidden or not hasattr(policy, "action_net"), "an actor of more than one layer"),
         ):
             if refused:

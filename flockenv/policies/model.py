@@ -77,6 +77,12 @@ class ModelPolicy:
                 "another environment, or a wrapper changes what it sees; WrappedPolicy takes it "
                 "with the wrapper"
             )
+        if lacks_normalizing(model):
+            raise ParameterError(
+                "a model that was trained in VecNormalize and loaded without it is not accepted: "
+                "load it with env = VecNormalize.load(...), which has how observations were "
+                "normalized"
+            )
         self._take(model, space, model.action_space, provenance)
 
     def _take(
@@ -162,8 +168,26 @@ class ModelPolicy:
 
 
 def normalizing(model: object) -> Any:
-    """Return the ``VecNormalize`` of a model's environment, if it has one."""
-    return getattr(model, "get_vec_normalize_env", lambda: None)()
+    """Return the ``VecNormalize`` of a model's environment, if it normalizes observations."""
+    found = getattr(model, "get_vec_normalize_env", lambda: None)()
+    return found if found is not None and found.norm_obs else None
+
+
+def lacks_normalizing(model: object) -> bool:
+    """Return whether a model was trained in a ``VecNormalize`` that it is loaded without."""
+    # stable-baselines3 keeps it with the model, of trainings in VecNormalize alone.
+    was_normalized = getattr(model, "_last_original_obs", None) is not None
+    return was_normalized and getattr(model, "get_vec_normalize_env", lambda: None)() is None
+
+
+def space_under_wrappers(model: object) -> "ObservationSpace | None":
+    """Return the space of the environment that a model learns in, whatever wraps it, if known."""
+    from flockenv.envs.spaces import ObservationSpace
+
+    base: Any = getattr(getattr(model, "env", None), "unwrapped", None)
+    first = getattr(base, "envs", [base])[0]
+    space = getattr(getattr(first, "unwrapped", first), "observation_space", None)
+    return space if isinstance(space, ObservationSpace) else None
 
 
 def one_by_one() -> AbstractContextManager[object]:

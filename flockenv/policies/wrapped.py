@@ -11,7 +11,13 @@ from flockenv._io.extras import require
 from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import ParameterError, shown
 from flockenv.policies.base import LeaderPolicy
-from flockenv.policies.model import ModelPolicy, normalizing, one_by_one
+from flockenv.policies.model import (
+    ModelPolicy,
+    lacks_normalizing,
+    normalizing,
+    one_by_one,
+    space_under_wrappers,
+)
 
 if TYPE_CHECKING:
     import gymnasium
@@ -34,7 +40,8 @@ class WrappedPolicy(ModelPolicy):
     wrapper
         A function that puts an environment into the wrapper or wrappers, such as
         ``lambda venv: VecFrameStack(venv, 4)``. A `VecNormalize` of the model's own environment is
-        left out here: what the wrapper returns is normalized as there.
+        left out here: what the wrapper takes or returns is normalized as there. One that normalizes
+        by itself has to bring the statistics of the training, which stay as they are.
     env
         What was wrapped for the training: a `LeaderVecEnv`, or ``flockenv/Leaders-v0``. Its options
         are those that the model is for.
@@ -44,7 +51,9 @@ class WrappedPolicy(ModelPolicy):
     Raises
     ------
     ParameterError
-        For other environments, and for wrappers that change what actions are.
+        For other environments than the model's own, for a model that was trained in `VecNormalize`
+        and loaded without it, for wrappers that change what actions are, and for those that
+        normalize by statistics that nobody learned.
     TypeError
         If the wrapper is no function.
     """
@@ -66,21 +75,58 @@ class WrappedPolicy(ModelPolicy):
                 f"env = {shown(env)} is not accepted: a LeaderVecEnv or flockenv/Leaders-v0 as it "
                 "was before it was wrapped"
             )
+        own = space_under_wrappers(model)
+        if own is not None and own != space:
+            raise ParameterError(
+                f"env = {shown(env)} is not accepted: the model was trained in {own}, not {space}"
+            )
         self._wrapper, self._is_each = wrapper, is_single
         self._space, self._actions = space, unwrapped.action_space
         self._take(model, space, self._actions, provenance)
-        made = self._made(space.low[None]).action_space
-        if made != self._actions:
+        made = self._made(space.low[None])
+        if made.action_space != self._actions:
             raise ParameterError(
-                f"a wrapper that makes the action space {made} is not accepted: it may change what "
-                f"leaders observe, and not their actions, {self._actions}"
+                f"a wrapper that makes the action space {made.action_space} is not accepted: it "
+                f"may change what leaders observe, and not their actions, {self._actions}"
+            )
+        self._check_normalizing(made)
+
+    def _check_normalizing(self, made: Any) -> None:
+        """Refuse wrappers that do not make what the model saw normalized."""
+        statistics = [each.obs_rms for each in _layers(made) if hasattr(each, "obs_rms")]
+        if any(each.count < 1.0 for each in statistics):
+            raise ParameterError(
+                "a wrapper that normalizes without statistics is not accepted: let it take over "
+                "obs_rms of the training's"
+            )
+        if not statistics and lacks_normalizing(self.model):
+            raise ParameterError(
+                "a model that was trained in VecNormalize and loaded without it is not accepted: "
+                "let the wrapper return VecNormalize.load(..., venv)"
+            )
+        own = normalizing(self.model)
+        self._is_normalized_first = (
+            own is not None and self.model.env is not own and own.venv is own.unwrapped
+        )
+        seen = self._space if self._is_normalized_first else made.observation_space
+        if own is not None and own.obs_rms.mean.shape != seen.shape:
+            raise ParameterError(
+                f"a wrapper that makes observations of shape {seen.shape} is not accepted: those "
+                f"of the training's VecNormalize have shape {own.obs_rms.mean.shape}"
             )
 
     def _made(self, items: NDArray[np.float32]) -> Any:
         """Return the wrapper around stand-ins that give these observations."""
         if self._is_each:
-            return self._wrapper(_stand_in(self._space, self._actions, items[0]))
-        return self._wrapper(_vector_stand_in(self._space, self._actions, items))
+            made = self._wrapper(_stand_in(self._space, self._actions, items[0]))
+        else:
+            made = self._wrapper(_vector_stand_in(self._space, self._actions, items))
+        for each in _layers(made):
+            # Of stable-baselines3's VecNormalize and of Gymnasium's NormalizeObservation.
+            for learns in ("training", "update_running_mean"):
+                if hasattr(each, "obs_rms") and hasattr(each, learns):
+                    setattr(each, learns, False)
+        return made
 
     def _decided(
         self,
@@ -97,15 +143,26 @@ class WrappedPolicy(ModelPolicy):
                     "again for all of them"
                 )
             starts = True
+        own = normalizing(self.model)
+        if own is not None and self._is_normalized_first:
+            items = own.normalize_obs(items)
         run = state if isinstance(state, _Run) and not starts else _Run(self, items)
         seen = run.observed(items)
-        normalizes = normalizing(self.model)
-        if normalizes is not None:
-            seen = normalizes.normalize_obs(seen)
+        if own is not None and not self._is_normalized_first:
+            seen = own.normalize_obs(seen)
         with one_by_one():
             actions, run.state = self.model.predict(seen, run.state, None, deterministic)
         run.actions = actions
         return actions, run
+
+
+def _layers(wrapped: Any) -> list[Any]:
+    """Return a wrapper and those within it, but not the environment itself."""
+    found = []
+    while wrapped is not wrapped.unwrapped:
+        found.append(wrapped)
+        wrapped = wrapped.venv if "venv" in vars(wrapped) else wrapped.env
+    return found
 
 
 class _Run:

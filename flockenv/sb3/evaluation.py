@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from flockenv._io.arguments import whole
 from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
 from flockenv.errors import ParameterError, shown
 from flockenv.policies import ModelPolicy, Policy
+from flockenv.policies.model import lacks_normalizing, normalizing, space_under_wrappers
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.statistics import mean_interval
 
@@ -116,17 +117,29 @@ class _AsTrained:
     def __init__(self, model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
         self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
-        own = getattr(self.model, "get_vec_normalize_env", lambda: None)()
-        normalizes = any(isinstance(each, VecNormalize) for each in _layers(flocks))
-        self._normalizing = None if normalizes else own
-        trained_in = getattr(self.model, "env", None)
-        if normalizes and own is None and trained_in is not None:
+        own, layers = normalizing(self.model), _normalizing_layers(flocks)
+        theirs = [each for each in layers if each.norm_obs]
+        if not layers and lacks_normalizing(self.model):
+            raise ParameterError(
+                f"{shown(self.model)} was trained in VecNormalize and loaded without it: evaluate "
+                "it in VecNormalize.load(..., env), which has how observations were normalized"
+            )
+        if theirs and own is None and getattr(self.model, "env", None) is not None:
             raise ParameterError(
                 f"{shown(self.model)} was trained on observations that are not normalized: "
                 "evaluate it without VecNormalize"
             )
-        if normalizes and own is not None:
-            _follow(own, flocks)
+        normalized: Any = theirs[0].obs_rms if theirs else None
+        shape = normalized.mean.shape if theirs else flocks.observation_space.shape
+        if own is not None and own.obs_rms.mean.shape != shape:
+            raise ParameterError(
+                f"{shown(self.model)} was trained on normalized observations of shape "
+                f"{own.obs_rms.mean.shape}, not {shape}: evaluate it in wrappers in the same order"
+            )
+        if own is not None:
+            for each in theirs:
+                _follow(own, each)
+        self._normalizing = None if theirs else own
 
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, **options: Any
@@ -145,7 +158,7 @@ class _AsTrained:
 @contextmanager
 def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
     """Let no `VecNormalize` learn from an evaluation, which may be on the training's own flocks."""
-    layers = [each for each in _layers(flocks) if isinstance(each, VecNormalize)]
+    layers = _normalizing_layers(flocks)
     learned = [each.training for each in layers]
     for each in layers:
         each.training = False
@@ -156,13 +169,14 @@ def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
             each.training = training
 
 
-def _follow(training: VecNormalize, flocks: VecEnv) -> None:
-    """Give the flocks' `VecNormalize` the statistics of the training's."""
-    for each in _layers(flocks):
-        if isinstance(each, VecNormalize):
-            if hasattr(training, "obs_rms"):
-                each.obs_rms = copy.deepcopy(training.obs_rms)
-            each.ret_rms = copy.deepcopy(training.ret_rms)
+def _normalizing_layers(flocks: VecEnv) -> list[VecNormalize]:
+    return [each for each in _layers(flocks) if isinstance(each, VecNormalize)]
+
+
+def _follow(training: VecNormalize, own: VecNormalize) -> None:
+    """Let a `VecNormalize` normalize as the training's does."""
+    own.obs_rms, own.ret_rms = copy.deepcopy((training.obs_rms, training.ret_rms))
+    own.clip_obs, own.epsilon = training.clip_obs, training.epsilon
 
 
 def _unwrapped(model: Any) -> Any:
@@ -176,24 +190,17 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     model = _unwrapped(model)
     own_policy = Policy.from_source(model)
     own_policy.check_pool(leaders._batch.parameters(0).pool)
-    space, here = getattr(model, "observation_space", None), leaders.observation_space
-    options = here.options
-    if isinstance(space, ObservationSpace):
-        said = space.policy_options()
-    else:
+    space, options = getattr(model, "observation_space", None), leaders.observation_space.options
+    # A wrapper may make a space that says nothing of its meaning, or keep another flock's.
+    known = [each for each in (space, space_under_wrappers(model)) if _says_meaning(each)]
+    for each in known:
+        _check_options(model, each.policy_options(), options)
+    if not known:
         own_policy.check_action_mode(leaders.action_mode, "in this evaluation")
         said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
         said = {name: value for name, value in said.items() if value is not None}
         # What a policy does not say it does not depend on.
-        options = {name: value for name, value in options.items() if name in said}
-    if differing := differing_options(said, options):
-        raise ParameterError(
-            f"{shown(model)} is not accepted in these flocks: "
-            + ", ".join(
-                f"it is made for {name} = {own!r}, not {other!r}"
-                for name, (own, other) in differing.items()
-            )
-        )
+        _check_options(model, said, {name: options[name] for name in said})
     spaces = {"observation": (space, flocks.observation_space)}
     spaces["action"] = (getattr(model, "action_space", None), flocks.action_space)
     for kind, (own, other) in spaces.items():
@@ -202,6 +209,22 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
                 f"{shown(model)} is not accepted in these flocks: its {kind} space is {own}, not "
                 f"{other}"
             )
+
+
+def _says_meaning(space: Any) -> TypeGuard[ObservationSpace]:
+    return isinstance(space, ObservationSpace)
+
+
+def _check_options(model: Any, said: dict[str, Any], options: dict[str, Any]) -> None:
+    """Refuse flocks with other options than those that a model is made for."""
+    if differing := differing_options(said, options):
+        raise ParameterError(
+            f"{shown(model)} is not accepted in these flocks: "
+            + ", ".join(
+                f"it is made for {name} = {own!r}, not {other!r}"
+                for name, (own, other) in differing.items()
+            )
+        )
 
 
 def evaluate_flocks(
@@ -215,8 +238,8 @@ def evaluate_flocks(
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
     A model that was trained in `VecNormalize` gets observations that are normalized as there, also
-    if `env` is a plain `LeaderVecEnv`. If `env` is in a `VecNormalize` of its own, that takes the
-    statistics of the training's.
+    if `env` is a plain `LeaderVecEnv`. If `env` is in a `VecNormalize` of its own, that takes
+    statistics, ``clip_obs`` and ``epsilon`` of the training's.
 
     Parameters
     ----------
@@ -244,7 +267,8 @@ def evaluate_flocks(
         If `env` is no `LeaderVecEnv`.
     ParameterError
         For a model that was trained with other options that a policy depends on (such as
-        ``mirror_to_target`` or ``control_hz``), or is made for another pool, and for no episodes.
+        ``mirror_to_target`` or ``control_hz``), or is made for another pool, or was trained in a
+        `VecNormalize` that it is loaded without, and for no episodes.
     """
     episodes = whole(n_eval_episodes, "n_eval_episodes")
     if episodes < 1:

@@ -113,6 +113,50 @@ def test_what_is_normalized_is_normalized_last():
     assert (own.predict(rows)[0] != plain.predict(rows)[0]).all()
 
 
+def test_what_is_normalized_first_is_normalized_first():
+    """As in the training: each frame by itself, before frames are stacked."""
+    venv = LeaderVecEnv(2, **OPTIONS)
+    training = VecNormalize(venv)
+    model = PPO("MlpPolicy", stacked(training), seed=1, device="cpu")
+    training.obs_rms.mean += 0.3
+    own = WrappedPolicy(model, stacked, venv)
+    rows = np.random.default_rng(0).normal(size=(4, own._space.shape[0])).astype(np.float32)
+    found, _ = own.predict(rows)
+    frames = training.normalize_obs(rows)
+    seen = np.concatenate([np.zeros_like(frames)] * 2 + [frames], axis=1)
+    np.testing.assert_allclose(found, model.predict(seen, deterministic=True)[0], atol=1e-6)
+
+
+def test_wrappers_normalize_as_in_the_training_or_not_at_all(tmp_path):
+    def trained(wrap):
+        model = PPO("MlpPolicy", wrap(venv), n_steps=8, batch_size=8, seed=1, device="cpu")
+        return model.learn(32)
+
+    venv = LeaderVecEnv(2, **OPTIONS)
+    own = WrappedPolicy(trained(lambda env: VecNormalize(stacked(env))), stacked, venv)
+    own.model.save(tmp_path / "model")
+    own.model.get_vec_normalize_env().save(str(tmp_path / "statistics"))
+    alone = PPO.load(tmp_path / "model", device="cpu")
+    for wrap, words in (
+        (stacked, "trained in VecNormalize and loaded without it"),
+        (lambda env: VecNormalize(stacked(env)), "normalizes without statistics"),
+    ):
+        with pytest.raises(ParameterError, match=words):
+            WrappedPolicy(alone, wrap, venv)
+    again = WrappedPolicy(
+        alone, lambda env: VecNormalize.load(str(tmp_path / "statistics"), stacked(env)), venv
+    )
+    rows, state, stored = np.ones((4, own._space.shape[0]), np.float32), None, None
+    for scale in (1.0, 2.0, 3.0):  # What it sees teaches it nothing.
+        expected, stored = own.predict(scale * rows, stored)
+        found, state = again.predict(scale * rows, state)
+        np.testing.assert_allclose(found, expected, atol=1e-6)
+    with pytest.raises(ParameterError, match="makes observations of shape"):
+        WrappedPolicy(own.model, lambda env: VecFrameStack(env, 2), venv)
+    with pytest.raises(ParameterError, match="normalizes without statistics"):
+        WrappedPolicy(object(), gymnasium.wrappers.NormalizeObservation, flockenv.LeadersEnv())
+
+
 class Levels(gymnasium.ActionWrapper):
     def __init__(self, env):
         super().__init__(env)

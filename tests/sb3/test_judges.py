@@ -80,6 +80,32 @@ def test_stacked_frames_are_judged_in_stacked_frames():
     assert len(found.returns) == 4
 
 
+@pytest.mark.parametrize("options", OTHERS.values(), ids=OTHERS.keys())
+def test_a_wrapper_that_says_no_meaning_hides_none(options):
+    """Stacked frames have a plain space; the flocks under them are compared."""
+    venv = VecFrameStack(make(), 2)
+    model = ppo(venv)
+    words = f"made for {next(iter(options))} = "
+    with pytest.raises(ParameterError, match=words):
+        evaluate_flocks(model, VecFrameStack(make(**options), 2), 4)
+    with pytest.raises(ParameterError, match=words):
+        model.learn(96, evaluation(VecFrameStack(make(**options), 2)))
+    with pytest.raises(ParameterError, match="the model was trained in ObservationSpace"):
+        WrappedPolicy(model, lambda venv: VecFrameStack(venv, 2), make(**options))
+
+
+def test_statistics_that_are_put_on_other_flocks_hide_no_meaning(tmp_path):
+    """A `VecNormalize` from a file keeps its space, and stable-baselines3 compares shapes alone."""
+    training = VecNormalize(make())
+    model = ppo(training)
+    training.save(str(tmp_path / "statistics"))
+    model.save(tmp_path / "model")
+    other = VecNormalize.load(str(tmp_path / "statistics"), make(mirror_to_target=True))
+    model = PPO.load(tmp_path / "model", env=other, device="cpu")
+    with pytest.raises(ParameterError, match="made for mirror_to_target = "):
+        evaluate_flocks(model, make(), 4)
+
+
 def test_a_model_with_its_wrapper_is_judged_in_plain_flocks():
     def stacked(venv):
         return VecFrameStack(venv, 2)
@@ -154,6 +180,50 @@ def test_an_evaluation_teaches_no_statistics():
         assert flocks.training
         np.testing.assert_array_equal(flocks.obs_rms.mean, mean)
         assert flocks.obs_rms.count == count
+
+
+@pytest.mark.parametrize(
+    "options", [{"norm_obs": False}, {"clip_obs": 0.5}, {"epsilon": 1.0}], ids=lambda each: [*each]
+)
+def test_flocks_that_normalize_in_another_way_normalize_as_the_training(options):
+    model = normalized_model()
+    flocks = VecNormalize(make(**EFFORT), training=False, **options)
+    found = evaluate_flocks(model, flocks, 4, seed=7)
+    np.testing.assert_allclose(found.returns, returns_by_hand(model, 7), rtol=1e-5)
+
+
+def test_rewards_alone_may_be_normalized():
+    def rewards_alone(venv):
+        return VecNormalize(venv, norm_obs=False, gamma=0.9)
+
+    for model in (ppo(make(**EFFORT)), ppo(rewards_alone(make(**EFFORT))).learn(96)):
+        plain = evaluate_flocks(model, make(**EFFORT), 4, seed=7)
+        found = evaluate_flocks(model, rewards_alone(make(**EFFORT)), 4, seed=7)
+        np.testing.assert_array_equal(found.returns, plain.returns)
+
+
+def test_a_model_that_lost_its_normalization_is_judged_in_none_but_that(tmp_path):
+    model = normalized_model()
+    model.save(tmp_path / "model")
+    model.get_vec_normalize_env().save(str(tmp_path / "statistics"))
+    expected = returns_by_hand(model, 7)
+    for options in ({}, {"env": make(**EFFORT)}):
+        alone = PPO.load(tmp_path / "model", device="cpu", **options)
+        for judged in (alone, lambda alone=alone: ModelPolicy(alone)):
+            with pytest.raises(ParameterError, match="trained in VecNormalize and loaded without"):
+                evaluate_flocks(judged() if callable(judged) else judged, make(**EFFORT), 4)
+    alone = PPO.load(tmp_path / "model", device="cpu")
+    own = VecNormalize.load(str(tmp_path / "statistics"), make(**EFFORT))
+    found = evaluate_flocks(alone, own, 4, seed=7)
+    np.testing.assert_allclose(found.returns, expected, rtol=1e-5)
+
+
+def test_wrappers_in_another_order_are_refused():
+    model = ppo(VecFrameStack(VecNormalize(make()), 2))
+    evaluate_flocks(model, VecFrameStack(VecNormalize(make()), 2), 4)
+    for flocks in (VecFrameStack(make(), 2), VecNormalize(VecFrameStack(make(), 2))):
+        with pytest.raises(ParameterError, match="evaluate it in wrappers in the same order"):
+            evaluate_flocks(model, flocks, 4)
 
 
 def test_normalized_flocks_judge_no_model_that_saw_plain_ones():
