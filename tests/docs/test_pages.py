@@ -55,6 +55,7 @@ def _minutes_in_seconds(monkeypatch):
 
     from flockenv.cli import train_branches
     from flockenv.comparison import case
+    from flockenv.training import ppo
     from flockenv.training.branches import BranchTraining
 
     learn, compare = PPO.learn, case.compare_leaders
@@ -72,8 +73,9 @@ def _minutes_in_seconds(monkeypatch):
     monkeypatch.setattr(case, "compare_leaders", compared)
     ended = property(lambda training: len(training.curve["flock_hours"]) > 0)
     monkeypatch.setattr(BranchTraining, "has_ended", ended)
-    against = train_branches.compare_with_laws
-    monkeypatch.setattr(train_branches, "compare_with_laws", lambda *of: against(*of[:2], 2))
+    for each in (ppo, train_branches):
+        judge = each.compare_with_laws
+        monkeypatch.setattr(each, "compare_with_laws", lambda *of, judge=judge: judge(*of[:2], 2))
 
 
 @pytest.mark.filterwarnings("ignore:PettingZoo in TorchRL is tested")
