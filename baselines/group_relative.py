@@ -28,11 +28,10 @@ from pathlib import Path
 
 import numpy as np
 
-import flockenv
 from flockenv.policies import LeaningLaw
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.policies.provenance import provenance_of
-from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.training.branching import BranchingFlocks
 
 DECAY_1, DECAY_2 = 0.9, 0.99
 
@@ -58,76 +57,22 @@ class Settings:
     clip_range: float = 0.2
 
 
-class Branches:
-    """Groups of flocks that branch from one state: flocks i, i + groups, i + 2 groups and so on."""
+def branch(
+    candidates: np.ndarray, flocks: BranchingFlocks, judged_s: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean order of each flock, led by its own weights, at the end of a branch.
 
-    def __init__(self, settings: Settings, seed: int) -> None:
-        self.settings, self.groups, self.size = settings, settings.groups, settings.size
-        others = dict.fromkeys(("own", "phase", "target", "order"), False)
-        self.env = flockenv.LeadersVectorEnv(
-            self.size * self.groups,
-            autoreset_mode="disabled",
-            pool=settings.pool,
-            n_boats=27,
-            n_leaders=3,
-            bw_s=flockenv.FlockParameters.critical_bw_s("simulation", settings.pool),
-            observation={**others, "neighbors": 0, "lean_features": True},
-            mirror_to_target=True,
-            action_mode="lean",
-            decision_period_s=1.0,
-            episode_s=settings.branch_s,
-            reward_horizon_s=1.0,
-            physics="training",
-        )
-        self._coins = np.random.default_rng([seed, 1])
-        self._seeds = iter(POLICY_SEEDS["paired branches"].seeds(1 << 20, run=seed))
-        self._branches = settings.episode_s // settings.branch_s
-        #: How many branches of its episode each group has had: at first all numbers alike.
-        self._had = np.arange(self.groups) % self._branches
-        self._snapshots: list[bytes] = []
-        self._targets = np.full(self.groups, "ccw")
-        self._rest(np.ones(self.groups, bool))
+    And what its leaders saw, shape (seconds, flocks, leaders, features).
+    """
+    weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
+    every: list[np.ndarray] = []
 
-    def _rest(self, groups: np.ndarray) -> None:
-        """Start the episodes of these groups at rest, all flocks of one with one seed."""
-        seeds = [next(self._seeds) if each else None for each in groups]
-        self._targets[groups] = self._coins.choice(["cw", "ccw"], groups.sum())
-        options = {"target": self._each(), "reset_mask": np.tile(groups, self.size)}
-        self.env.reset(seed=self.size * seeds, options=options)
+    def leans(seen: np.ndarray) -> np.ndarray:
+        every.append(seen)
+        return np.einsum("fls,fs->fl", seen, weights) + bias
 
-    def _each(self) -> list[str]:
-        return self.size * self._targets.tolist()
-
-    def _start(self) -> np.ndarray:
-        """Start the next branch of each group, and return what leaders see."""
-        if self._snapshots:
-            branching = self._had < self._branches
-            options = {"snapshot": self.size * self._snapshots, "target": self._each()}
-            self.env.reset(options={**options, "reset_mask": np.tile(branching, self.size)})
-            if not branching.all():
-                self._rest(~branching)
-                self._had[~branching] = 0
-        return self.env.observe()
-
-    def branch(self, candidates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean order of each flock, led by its own weights, at the end of a branch.
-
-        And what its leaders saw, shape (seconds, flocks, leaders, features).
-        """
-        seen, every = self._start(), []
-        weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
-        orders = np.zeros(len(candidates))
-        for second in range(self.settings.branch_s):
-            every.append(seen.reshape(len(candidates), -1, weights.shape[1]))
-            leans = np.einsum("fls,fs->fl", every[-1], weights) + bias
-            seen, rewards, *_ = self.env.step(np.clip(leans, -1.0, 1.0))
-            if second >= self.settings.branch_s - self.settings.judged_s:
-                orders += rewards / self.settings.judged_s
-        continued = (self._coins.random(self.groups) * self.size).astype(int)
-        ends = self.env.snapshots()
-        self._snapshots = [ends[group + self.groups * b] for group, b in enumerate(continued)]
-        self._had += 1
-        return orders, np.array(every)
+    orders = flocks.branch(leans)
+    return (orders[-judged_s:] / judged_s).sum(axis=0), np.array(every)
 
 
 def advantages(orders: np.ndarray, settings: Settings) -> np.ndarray:
@@ -159,15 +104,23 @@ def ascent(
 
 def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the weights, and the mean order of the branches of each round."""
-    branches = Branches(settings, seed)
-    random, flocks = np.random.default_rng([seed, 0]), settings.groups * settings.size
-    rounds = max(1, round(3600 * flock_hours / (flocks * settings.branch_s)))
+    flocks = BranchingFlocks(
+        settings.pool,
+        groups=settings.groups,
+        size=settings.size,
+        branch_s=settings.branch_s,
+        episode_s=settings.episode_s,
+        seed=seed,
+    )
+    random = np.random.default_rng([seed, 0])
+    rounds = max(1, round(flock_hours / flocks.branch_hours))
     weights = np.zeros(len(LEAN_FEATURES) + 1)
     moment_1, moment_2, total = weights.copy(), weights.copy(), weights.copy()
     curve, steps = [], 0
     for number in range(rounds):
-        changes = settings.sigma * random.standard_normal((flocks, len(weights)))
-        orders, seen = branches.branch(weights + changes)
+        shape = (settings.groups * settings.size, len(weights))
+        changes = settings.sigma * random.standard_normal(shape)
+        orders, seen = branch(weights + changes, flocks, settings.judged_s)
         features = np.concatenate([seen, np.ones_like(seen[..., :1])], axis=-1).astype(float)
         chosen = np.einsum("tfls,fs->tfl", features, weights + changes).ravel()
         advantage = np.broadcast_to(advantages(orders, settings)[:, None], seen.shape[:-1]).ravel()

@@ -29,11 +29,10 @@ from pathlib import Path
 
 import numpy as np
 
-import flockenv
 from flockenv.policies import LeaningLaw
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.policies.provenance import provenance_of
-from flockenv.runs.seeds import POLICY_SEEDS
+from flockenv.training.branching import BranchingFlocks
 
 DECAY_1, DECAY_2 = 0.9, 0.99
 
@@ -54,85 +53,32 @@ class Settings:
     learning_rate: float = 0.01
 
 
-class Pairs:
-    """Pairs of flocks that branch from one state: flocks i and i + pairs."""
-
-    def __init__(self, settings: Settings, seed: int) -> None:
-        self.settings, self.pairs = settings, settings.pairs
-        others = dict.fromkeys(("own", "phase", "target", "order"), False)
-        self.env = flockenv.LeadersVectorEnv(
-            2 * self.pairs,
-            autoreset_mode="disabled",
-            pool=settings.pool,
-            n_boats=27,
-            n_leaders=3,
-            bw_s=flockenv.FlockParameters.critical_bw_s("simulation", settings.pool),
-            observation={**others, "neighbors": 0, "lean_features": True},
-            mirror_to_target=True,
-            action_mode="lean",
-            decision_period_s=1.0,
-            episode_s=settings.branch_s,
-            reward_horizon_s=1.0,
-            physics="training",
-        )
-        self._coins = np.random.default_rng([seed, 1])
-        self._seeds = iter(POLICY_SEEDS["paired branches"].seeds(1 << 20, run=seed))
-        self._branches = settings.episode_s // settings.branch_s
-        #: How many branches of its episode each pair has had: at first all numbers alike.
-        self._had = np.arange(self.pairs) % self._branches
-        self._snapshots: list[bytes] = []
-        self._targets = np.full(self.pairs, "ccw")
-        self._rest(np.ones(self.pairs, bool))
-
-    def _rest(self, pairs: np.ndarray) -> None:
-        """Start the episodes of these pairs at rest, both flocks of one with one seed."""
-        seeds = [next(self._seeds) if each else None for each in pairs]
-        self._targets[pairs] = self._coins.choice(["cw", "ccw"], pairs.sum())
-        options = {"target": 2 * self._targets.tolist(), "reset_mask": np.tile(pairs, 2)}
-        self.env.reset(seed=2 * seeds, options=options)
-
-    def _start(self) -> np.ndarray:
-        """Start the next branch of each pair, and return what leaders see."""
-        if self._snapshots:
-            branching = self._had < self._branches
-            options = {"snapshot": 2 * self._snapshots, "target": 2 * self._targets.tolist()}
-            self.env.reset(options={**options, "reset_mask": np.tile(branching, 2)})
-            if not branching.all():
-                self._rest(~branching)
-                self._had[~branching] = 0
-        return self.env.observe()
-
-    def branch(self, candidates: np.ndarray) -> np.ndarray:
-        """Return the mean order of each flock, led by its own weights, at the end of a branch."""
-        seen = self._start()
-        weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
-        orders = np.zeros(len(candidates))
-        for second in range(self.settings.branch_s):
-            rows = seen.reshape(len(candidates), -1, weights.shape[1])
-            leans = np.einsum("fls,fs->fl", rows, weights) + bias
-            seen, rewards, *_ = self.env.step(np.clip(leans, -1.0, 1.0))
-            if second >= self.settings.branch_s - self.settings.judged_s:
-                orders += rewards / self.settings.judged_s
-        continued = (self._coins.random(self.pairs) * 2).astype(int)
-        ends = self.env.snapshots()
-        self._snapshots = [ends[pair + self.pairs * b] for pair, b in enumerate(continued)]
-        self._had += 1
-        return orders
+def orders_led_by(candidates: np.ndarray, flocks: BranchingFlocks, judged_s: int) -> np.ndarray:
+    """Return the mean order of each flock, led by its own weights, at the end of a branch."""
+    weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
+    orders = flocks.branch(lambda seen: np.einsum("fls,fs->fl", seen, weights) + bias)
+    return (orders[-judged_s:] / judged_s).sum(axis=0)
 
 
 def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the weights, and the mean order of each generation."""
-    pairs = Pairs(settings, seed)
+    flocks = BranchingFlocks(
+        settings.pool,
+        groups=settings.pairs,
+        size=2,
+        branch_s=settings.branch_s,
+        episode_s=settings.episode_s,
+        seed=seed,
+    )
     random = np.random.default_rng([seed, 0])
-    hours = 2 * settings.pairs * settings.branch_s / 3600.0
-    generations = max(1, round(flock_hours / hours))
+    generations = max(1, round(flock_hours / flocks.branch_hours))
     weights = np.zeros(len(LEAN_FEATURES) + 1)
     moment_1, moment_2, total = weights.copy(), weights.copy(), weights.copy()
     curve = []
     for number in range(generations):
         changes = random.standard_normal((settings.pairs, len(weights)))
         candidates = weights + settings.sigma * np.concatenate([changes, -changes])
-        orders = pairs.branch(candidates)
+        orders = orders_led_by(candidates, flocks, settings.judged_s)
         differences = orders[: settings.pairs] - orders[settings.pairs :]
         gradient = differences @ changes / (settings.pairs * differences.std() + 1e-12)
         moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient
@@ -157,11 +103,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=("wide", "narrow"), default="wide")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--pairs", type=int, default=Settings().pairs)
     parser.add_argument("--flock-hours", type=float, default=200.0)
     parser.add_argument("--out", type=Path, default=Path("results/paired"))
     options = parser.parse_args(arguments)
     given = sys.argv[1:] if arguments is None else arguments
-    settings, start = Settings(pool=options.pool), time.process_time()
+    settings, start = Settings(pool=options.pool, pairs=options.pairs), time.process_time()
     weights, curve = search(settings, options.seed, options.flock_hours)
     hours = 2 * settings.pairs * settings.branch_s / 3600.0
     folder = options.out / str(options.seed)

@@ -31,6 +31,7 @@ the rows of the policies that shipped before.
 import argparse
 import shlex
 import shutil
+import subprocess
 import sys
 import time
 from collections.abc import Mapping
@@ -39,7 +40,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import paired_branches
 import pandas as pd
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import configure
@@ -136,21 +136,13 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
     return every_step(LeaningLaw.from_model(model, "wide"), made)
 
 
-def search_narrow(given: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
-    """Return the leans that paired branches find."""
-    start = time.process_time()
-    settings = paired_branches.Settings(pool="narrow", pairs=given.num_flocks // 2)
-    weights, curve = paired_branches.search(settings, seed, given.narrow_hours)
-    hours = len(curve) * given.num_flocks * settings.branch_s / 3600.0
-    np.savetxt(folder / "curve.csv", curve, "%.5g", header="signed_order", comments="")
-    made = provenance_of(
-        command,
-        seed=seed,
-        samples=round(hours * 3600 * 3),
-        cpu_s=time.process_time() - start,
-        flock_hours=hours,
-    )
-    return paired_branches.law("narrow", weights, made)
+def search_narrow(given: Settings, seed: int, folder: Path, _command: str) -> LeaningLaw:
+    """Return the leans that paired_branches.py finds, with its command as their provenance."""
+    words = ["--pool", "narrow", "--pairs", str(given.num_flocks // 2), "--seed", str(seed)]
+    words += ["--flock-hours", str(given.narrow_hours), "--out", str(folder.parent)]
+    script = Path(__file__).with_name("paired_branches.py")
+    subprocess.run([sys.executable, str(script), *words], check=True)
+    return LeaningLaw.load(folder / "policy.json")
 
 
 MAKERS: dict[str, Any] = {"wide": train_wide, "narrow": search_narrow}
@@ -204,8 +196,8 @@ def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.Data
     return pd.DataFrame(rows)
 
 
-def make(given: Settings, pool: str, out: Path, command: str) -> bool:
-    """Train what is not yet there, choose, judge and write a pool's policy; whether it ships."""
+def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, LeaningLaw]:
+    """Train what is missing, and return the policy of each seed."""
     laws = {}
     for seed in given.seeds:
         folder = out / pool / str(seed)
@@ -214,12 +206,34 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
         if not path.exists():
             MAKERS[pool](given, seed, folder, command).save(path)
         laws[f"seed {seed}"] = LeaningLaw.load(path)
-    mean = mean_of(list(laws.values()))
+    return laws
+
+
+def judged(given: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
+    """Return the order that a policy reaches with three leaders in flocks nobody has used."""
+    seeds = release_seeds("pretrained", given.judging_flocks)
+    own = orders(law, pool, 3, seeds, given.episode_s)
+    found = score_policies({"law": own}).loc[0, ["signed_order", "low", "high"]]
+    signed_order, low, high = (round(float(value), 3) for value in found)
+    return {
+        "signed_order": signed_order,
+        "interval": [low, high],
+        "n_boats": 27,
+        "n_leaders": 3,
+        "bw_s": FlockParameters.critical_bw_s("simulation", pool),
+        "episode_s": given.episode_s,
+        "seeds": [seeds[0], seeds[-1]],
+    }
+
+
+def make(given: Settings, pool: str, out: Path, command: str) -> bool:
+    """Train, choose, judge and write a pool's policy; return whether it ships."""
+    laws = trained(given, pool, out, command)
+    candidates = {"mean": mean_of(list(laws.values())), **laws}
     others: dict[str, Any] = {"tuned law": DampedLaw.tuned(pool)}
     if (SHIPPED / f"{pool}.json").exists():
         others["ships"] = LeaningLaw.learned(pool)
-    candidates = {**others, "mean": mean, **laws}
-    scores = validated(given, pool, candidates)
+    scores = validated(given, pool, {**others, **candidates})
     scores.round(4).to_csv(out / f"validation-{pool}.csv", index=False)
     print(f"{pool}, validation flocks\n{scores.round(3).to_string(index=False)}", flush=True)
     score = scores.set_index("policy")["score"]
@@ -227,30 +241,14 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
     chosen = "mean" if score["mean"] >= score[best] else best
     used = list(laws.values()) if chosen == "mean" else [laws[chosen]]
     rule = f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks"
-    seeds = release_seeds("pretrained", given.judging_flocks)
-    own = orders(candidates[chosen], pool, 3, seeds, given.episode_s)
-    found = score_policies({chosen: own}).loc[0, ["signed_order", "low", "high"]]
-    signed_order, low, high = map(float, found)
-    judged = {
-        "signed_order": round(signed_order, 3),
-        "interval": [round(low, 3), round(high, 3)],
-        "n_boats": 27,
-        "n_leaders": 3,
-        "bw_s": FlockParameters.critical_bw_s("simulation", pool),
-        "episode_s": given.episode_s,
-        "seeds": [seeds[0], seeds[-1]],
-    }
-    chosen_law = candidates[chosen]
-    law = LeaningLaw(
-        pool,
-        chosen_law.bias,
-        chosen_law.weights,
-        bound=BOUND[pool],
-        judged=judged,
-        provenance=made_by(used, command, rule),
+    law, order = candidates[chosen], judged(given, pool, candidates[chosen])
+    made = made_by(used, command, rule)
+    LeaningLaw(pool, law.bias, law.weights, bound=BOUND[pool], judged=order, provenance=made).save(
+        out / f"{pool}.json"
     )
-    law.save(out / f"{pool}.json")
-    print(f"{pool}: {chosen}, signed order {signed_order:.3f} [{low:.3f}, {high:.3f}]", flush=True)
+    low, high = order["interval"]
+    reached = f"{order['signed_order']:.3f} [{low:.3f}, {high:.3f}]"
+    print(f"{pool}: {chosen}, signed order {reached}", flush=True)
     return bool(score[chosen] >= score[list(others)].max())
 
 

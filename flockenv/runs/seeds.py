@@ -63,7 +63,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         # They choose one of several policies.
         SeedRange("validation", FIRST_TRAINING_SEED + 3 * (_RUNS << 24), 1 << 24),
         _search("easy environment", 5),
-        _search("paired branches", 6),
+        _search("branches", 6),
         _search("offline data", 7),
         _search("roles", 8),
         SeedRange("calibration search", FIRST_TRAINING_SEED + 9 * (_RUNS << 24), 1 << 24),

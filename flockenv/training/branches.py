@@ -23,8 +23,8 @@ from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
 from flockenv.parameters import FlockParameters
 from flockenv.policies import LeaningLaw
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
-from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
+from flockenv.training.branching import branch_seed
 
 CHECKPOINT, CURVE, POLICY, SETTINGS = "checkpoint.bin", "curve.csv", "policy.json", "settings.toml"
 """Files of a training."""
@@ -35,7 +35,6 @@ TRAINED = "trained"
 OPTIONS: tuple[str, ...] = tuple(each["name"] for each in _core.BRANCH_OPTIONS)
 """Names of the options of a training; docs/training_reference.md says what each is."""
 
-_SEEDS = POLICY_SEEDS["paired branches"]
 #: Between two checkpoints, in s.
 _PATIENCE_S = 5.0
 _EPISODE_S = 480.0
@@ -85,7 +84,7 @@ class BranchTraining:
 
     def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: Any) -> None:
         refuse_unknown(options, OPTIONS, "option of the training")
-        first = _SEEDS.seeds(1, run=whole(seed, "seed"))[0]
+        first = branch_seed(whole(seed, "seed"))
         self._core = _core.Trainer(parameters, options, seed, first)
         self.parameters = parameters
 

@@ -43,13 +43,13 @@ from torch import nn
 
 import flockenv
 from baselines.evolution_strategy import first_state, next_generation
-from flockenv.branches import BranchTraining
 from flockenv.comparison.levels import LEVEL_IDS, LEVELS, SUITE
 from flockenv.policies import LeaningLaw, NetworkPolicy, load
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
 from flockenv.sb3 import LeaderVecEnv
+from flockenv.training.branches import BranchTraining
 from studies.study import StudyError, run, write
 
 ENTRIES = Path("studies/levels/entries")

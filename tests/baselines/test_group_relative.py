@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flockenv.policies import load
+from flockenv.training.branching import BranchingFlocks
 
 
 def test_advantages_are_against_the_groups_mean(script):
@@ -33,33 +34,24 @@ def test_the_gradient_is_that_of_the_clipped_objective(script):
         np.testing.assert_allclose(found, numeric, atol=1e-6)
 
 
-def test_flocks_of_a_group_differ_by_their_weights_alone(script):
-    small = {"groups": 2, "size": 3, "branch_s": 8, "judged_s": 4, "episode_s": 16}
-    branches = script.Branches(dataclasses.replace(script.Settings(), **small), seed=0)
+def test_a_branch_has_what_its_leaders_saw(script):
+    flocks = BranchingFlocks("wide", groups=2, size=3, branch_s=8, episode_s=16, seed=0)
     weights = np.zeros((6, 30))
-    for _ in range(4):  # Two branches of an episode, a start at rest in between.
-        orders, seen = branches.branch(weights)
-        assert (orders[::2] == orders[0]).all()
-        assert (seen[:, ::2] == seen[:, :1]).all()
-        assert orders[0] != orders[1]
     weights[4:, -1] = 1.0
-    others, _ = branches.branch(weights)
-    assert (others[4:] != others[:2]).all()
-    assert (others[2:4] == others[:2]).all()
+    orders, seen = script.branch(weights, flocks, 4)
+    assert seen.shape == (8, 6, 3, 29)
+    assert (seen[0, ::2] == seen[0, 0]).all()
+    assert (orders[4:] != orders[:2]).any()
+    assert (orders[2:4] == orders[:2]).all()
 
 
 def test_it_learns_which_way_to_lean(script, monkeypatch: pytest.MonkeyPatch):
-    class Known:
-        """Branches whose order counts the lean that a bias adds."""
+    def branch(candidates, flocks, judged_s):
+        """Return orders that count the lean that a bias adds."""
+        seen = np.zeros((3, len(candidates), 1, candidates.shape[1] - 1))
+        return -np.square(candidates[:, -1] - 0.5), seen
 
-        def __init__(self, settings, seed) -> None:
-            self.flocks = settings.groups * settings.size
-
-        def branch(self, candidates):
-            seen = np.zeros((3, self.flocks, 1, candidates.shape[1] - 1))
-            return -np.square(candidates[:, -1] - 0.5), seen
-
-    monkeypatch.setattr(script, "Branches", Known)
+    monkeypatch.setattr(script, "branch", branch)
     settings = dataclasses.replace(script.Settings(), branch_s=3, learning_rate=5e-3)
     weights, _ = script.train(settings, 0, 128 * 3 * 60 / 3600)
     assert weights[-1] == pytest.approx(0.5, abs=0.05)

@@ -30,7 +30,7 @@ def test_each_use_that_makes_policies_has_one_script():
         for use in re.findall(r'POLICY_SEEDS\["([^"]+)"\]', path.read_text()):
             scripts[use].add(path.name)
     # Those that train policies draw from one range, and judge none of each other's.
-    shared = ("training", "paired branches", "evaluation", "paper")
+    shared = ("training", "evaluation", "paper")
     assert all(len(found) == 1 for use, found in scripts.items() if use not in shared), scripts
 
 

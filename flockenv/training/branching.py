@@ -1,0 +1,125 @@
+"""Flocks that branch from one state and meet one noise: what leads them makes the difference."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flockenv.envs.vector import LeadersVectorEnv
+from flockenv.parameters import FlockParameters
+from flockenv.runs.seeds import POLICY_SEEDS
+
+_SEEDS = POLICY_SEEDS["branches"]
+#: The lean features alone.
+_OBSERVATION: dict[str, Any] = {
+    **dict.fromkeys(("own", "phase", "target", "order"), False),
+    "neighbors": 0,
+    "lean_features": True,
+}
+
+Leans = Callable[[NDArray[np.float32]], NDArray[np.floating]]
+"""Decides leans, shape (flocks, leaders), by features of the shape (flocks, leaders, features)."""
+
+
+def branch_seed(run: int) -> int:
+    """Return the first of 2²⁴ seeds of a training by branches."""
+    return _SEEDS.seeds(1, run=run)[0]
+
+
+class BranchingFlocks:
+    """Groups of flocks of 27 boats with three leaders, at the pool's critical noise.
+
+    Flocks i, i + groups, i + 2 groups and so on start each branch from one state and meet one
+    noise. Then all of them continue from the present state of one of them, drawn by a coin, until
+    their episode is over and they start again at rest.
+
+    Parameters
+    ----------
+    pool
+        ``"wide"`` or ``"narrow"``.
+    groups, size
+        Number of groups, and flocks of each.
+    branch_s, episode_s
+        Whole seconds of a branch and of an episode.
+    seed
+        Seed of the training that they serve, from 0 to 2³² - 1.
+    """
+
+    def __init__(
+        self, pool: str, *, groups: int, size: int, branch_s: int, episode_s: int, seed: int
+    ) -> None:
+        self.groups, self.size, self.branch_s = groups, size, branch_s
+        self.env = LeadersVectorEnv(
+            size * groups,
+            autoreset_mode="disabled",
+            pool=pool,
+            n_boats=27,
+            n_leaders=3,
+            bw_s=FlockParameters.critical_bw_s("simulation", pool),
+            observation=_OBSERVATION,
+            mirror_to_target=True,
+            action_mode="lean",
+            decision_period_s=1.0,
+            episode_s=branch_s,
+            reward_horizon_s=1.0,
+            physics="training",
+        )
+        self._coins = np.random.default_rng([seed, 1])
+        self._seeds = iter(_SEEDS.seeds(1 << 20, run=seed))
+        self._branches = episode_s // branch_s
+        #: Branches of its episode that each group has had: at first all numbers alike.
+        self._had = np.arange(groups) % self._branches
+        self._snapshots: list[bytes] = []
+        self._targets = np.full(groups, "ccw")
+        self._rest(np.ones(groups, bool))
+
+    @property
+    def branch_hours(self) -> float:
+        """Flock-hours of a branch of all flocks."""
+        return self.size * self.groups * self.branch_s / 3600.0
+
+    def branch(self, leans: Leans) -> NDArray[np.float64]:
+        """Lead all flocks for a branch, and return their order in each second of it.
+
+        Parameters
+        ----------
+        leans
+            Decides once per second, by the 29 lean features; clipped to [-1, 1].
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (seconds, flocks).
+        """
+        seen, orders = self._start(), []
+        for _ in range(self.branch_s):
+            rows = seen.reshape(len(seen), 3, -1)
+            seen, rewards, *_ = self.env.step(np.clip(leans(rows), -1.0, 1.0))
+            orders.append(rewards)
+        continued = (self._coins.random(self.groups) * self.size).astype(int)
+        ends = self.env.snapshots()
+        self._snapshots = [ends[group + self.groups * k] for group, k in enumerate(continued)]
+        self._had += 1
+        return np.array(orders)
+
+    def _start(self) -> NDArray[np.float32]:
+        """Start the next branch of each group, and return what leaders see."""
+        if self._snapshots:
+            branching = self._had < self._branches
+            options = {"snapshot": self.size * self._snapshots, "target": self._target_of_flocks()}
+            self.env.reset(options={**options, "reset_mask": np.tile(branching, self.size)})
+            if not branching.all():
+                self._rest(~branching)
+                self._had[~branching] = 0
+        return self.env.observe()
+
+    def _rest(self, groups: NDArray[np.bool_]) -> None:
+        """Start the episodes of these groups at rest, all flocks of one with one seed."""
+        seeds = [next(self._seeds) if starts else None for starts in groups]
+        self._targets[groups] = self._coins.choice(["cw", "ccw"], groups.sum())
+        options = {"target": self._target_of_flocks(), "reset_mask": np.tile(groups, self.size)}
+        self.env.reset(seed=self.size * seeds, options=options)
+
+    def _target_of_flocks(self) -> list[str]:
+        return self.size * self._targets.tolist()
