@@ -17,7 +17,7 @@ __all__ = [
     "hint",
     "nearest",
     "refuse_unknown",
-    "shown",
+    "short_repr",
 ]
 
 
@@ -29,7 +29,7 @@ class UnknownOptionError(ParameterError, TypeError):
     """
 
 
-def shown(value: object) -> str:
+def short_repr(value: object) -> str:
     """Return a value as messages show it: its repr, cut at a length that fits a line."""
     try:
         text = repr(value)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import blob, once, truth
+from flockenv._io.arguments import as_bool, as_bytes, materialized
 from flockenv.errors import HintsAtNames, ParameterError
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
@@ -238,7 +238,7 @@ class Flock(HintsAtNames):
 
         A ParameterError refuses bytes that are no whole, unharmed snapshot.
         """
-        return cls._from_core(_core.Flock.from_snapshot(blob(snapshot, "snapshot"), noise_seed))
+        return cls._from_core(_core.Flock.from_snapshot(as_bytes(snapshot, "snapshot"), noise_seed))
 
     @classmethod
     def from_state(cls, parameters: FlockParameters, seed: int, state: Mapping[str, Any]) -> Self:
@@ -353,7 +353,7 @@ class Flock(HintsAtNames):
         target
             "cw" or "ccw", or a list with one per leader.
         """
-        self._in_core.set_target(once(target))
+        self._in_core.set_target(materialized(target))
 
     def advance(self, seconds: float, rudder: ArrayLike | None = None) -> None:
         """Advance by a duration. Substeps end on multiples of dt_s, on phase switches, at the end.
@@ -385,7 +385,7 @@ class Flock(HintsAtNames):
 
         If there is no such boat, this is a ParameterError.
         """
-        every = truth(include_leaders, "include_leaders")
+        every = as_bool(include_leaders, "include_leaders")
         return OrderParameters(*self._in_core.order_parameters(every))
 
     def contacts(self) -> Contacts:
@@ -419,7 +419,7 @@ class Flock(HintsAtNames):
         TypeError
             For a noise_seed that is no whole number.
         """
-        self._in_core.restore(blob(snapshot, "snapshot"), noise_seed)
+        self._in_core.restore(as_bytes(snapshot, "snapshot"), noise_seed)
 
     def __copy__(self) -> Self:
         return self._from_core(self._in_core.copy())

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv import _core
 from flockenv._io.arguments import with_gaps
 from flockenv._io.extras import require
-from flockenv.errors import HintsAtNames, ParameterError, shown
+from flockenv.errors import HintsAtNames, ParameterError, short_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -182,10 +182,14 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         """
         known = {each.name: each for each in QUANTITIES if each.kind != "structure"}
         if name not in known:
-            raise ParameterError(f"quantity = {shown(name)} is not accepted: {', '.join(known)}")
+            raise ParameterError(
+                f"quantity = {short_repr(name)} is not accepted: {', '.join(known)}"
+            )
         if known[name].kind == "recorded":
             if not {*([target] if isinstance(target, str) else target)} <= {"cw", "ccw"}:
-                raise ParameterError(f"target = {shown(target)} is not accepted: 'cw' or 'ccw'")
+                raise ParameterError(
+                    f"target = {short_repr(target)} is not accepted: 'cw' or 'ccw'"
+                )
             column: NDArray[np.float64] = getattr(self, name)
             return column
         return _core.derived_series(name, self._orders(), target)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Self
 import tomli_w
 
 from flockenv import _core
-from flockenv._io.arguments import once
+from flockenv._io.arguments import materialized
 from flockenv._io.toml import read_toml
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 
 _TABLE = {each["name"]: each for each in _core.PARAMETERS}
 
@@ -140,7 +140,7 @@ class FlockParameters:
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
             raise ParameterError(
-                f"pool = {shown(pool)}: the critical noise of preset {preset!r} has not been "
+                f"pool = {short_repr(pool)}: the critical noise of preset {preset!r} has not been "
                 "measured there. Choose another pool, or give a backward duration (bw_s; on the "
                 "command line `--pool narrow` or `--set bw_s=1.0`); studies/critical_noise "
                 "measures it"
@@ -209,13 +209,14 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
     bw_s = changes.get("bw_s")
     if isinstance(bw_s, tuple | list) and len(bw_s) == 2:
         raise TypeError(
-            f"bw_s must be a number, not {shown(bw_s)}: environments take a range, of which each "
-            'episode draws its own, as in gymnasium.make("flockenv/Leaders-v0", bw_s=(0.1, 0.4))'
+            f"bw_s must be a number, not {short_repr(bw_s)}: environments take a range, of which "
+            "each episode draws its own, "
+            'as in gymnasium.make("flockenv/Leaders-v0", bw_s=(0.1, 0.4))'
         )
     return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
 
 
 def _stored(value: Any) -> Any:
     """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
-    held = once(value)
-    return held if held is value else tuple(once(each) for each in held)
+    held = materialized(value)
+    return held if held is value else tuple(materialized(each) for each in held)

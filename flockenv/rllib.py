@@ -21,7 +21,7 @@ from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 from ray.rllib.core.rl_module.torch import TorchRLModule
 
 from flockenv.envs.spaces import ObservationSpace
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.policies import NetworkPolicy
 
 _DEFAULTS = {"hidden": (64, 64), "activation": "tanh", "first_log_std": -1.0}
@@ -56,7 +56,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         space, actions = self.observation_space, self.action_space
         if not isinstance(space, ObservationSpace) or not isinstance(actions, gymnasium.spaces.Box):
             raise ParameterError(
-                f"the spaces {shown(space)} and {shown(actions)} are not accepted: take "
+                f"the spaces {short_repr(space)} and {short_repr(actions)} are not accepted: take "
                 "flockenv/Leaders-v0 with continuous actions"
             )
         self.leaders = space.leaders

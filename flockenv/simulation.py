@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import check_function, items, truth, whole
-from flockenv.errors import ParameterError, shown
+from flockenv._io.arguments import as_bool, as_int, check_function, items
+from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
@@ -122,7 +122,7 @@ def simulate(
         If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
     """
     if not isinstance(parameters, FlockParameters):
-        raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
+        raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
     if progress is not None:
         check_function(progress, "progress")
     leaders = Leaders.of(policy, parameters)
@@ -136,7 +136,7 @@ def simulate(
     plan = {
         "sample_hz": sample_hz,
         "single_precision": _is_single(dtype),
-        "contacts": truth(contacts, "contacts"),
+        "contacts": as_bool(contacts, "contacts"),
         "changes": changes,
         "control": _control(leaders, control_hz),
         "progress": progress,
@@ -156,7 +156,7 @@ def simulate(
             seed=flock.seed,
             version=_core.__version__,
             policy=leaders.title,
-            noise_seed=None if noise_seed is None else whole(noise_seed, "noise_seed"),
+            noise_seed=None if noise_seed is None else as_int(noise_seed, "noise_seed"),
             control_hz=None if control_hz is None else float(control_hz),
             start_sha256=start_sha256,
             schedule_sha256=_schedule_digest(parameters, changes, columns["time_s"]),
@@ -178,7 +178,8 @@ def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
         own = leaders.seats[0].policy.control_hz
         if own is None and control_hz is not None:
             raise ParameterError(
-                f"control_hz = {shown(control_hz)} is not accepted: without a policy the paper's "
+                f"control_hz = {short_repr(control_hz)} is not accepted: without a policy the "
+                "paper's "
                 "law steers at every substep"
             )
         rate = own if control_hz is None else control_hz
@@ -211,7 +212,9 @@ def _changes(
             if any(getattr(before, name) != getattr(now, name) for name in _PLACED):
                 Flock(now, seed)
         except ParameterError as error:
-            raise ParameterError(f"schedule = {shown(entry)} is not accepted: {error}") from error
+            raise ParameterError(
+                f"schedule = {short_repr(entry)} is not accepted: {error}"
+            ) from error
         # New parameters restart the random streams; those that are the same change nothing.
         is_target = now == before.replace(target=now.target)
         changes.append((time_s, now.target if is_target else now))
@@ -231,7 +234,7 @@ def _change(entry: object) -> tuple[float, dict[str, object]]:
             if not sized and time_s <= 1e9:
                 return time_s, {str(name): value for name, value in fields.items()}
             words = f"{sized.pop()} does not change on the way" if sized else words
-    raise ParameterError(f"schedule = {shown(entry)} is not accepted: {words}")
+    raise ParameterError(f"schedule = {short_repr(entry)} is not accepted: {words}")
 
 
 def _is_single(dtype: DTypeLike) -> bool:
@@ -282,7 +285,7 @@ def _started(
     """Return the flock at the start of a run."""
     if noise_seed is not None and not isinstance(start, bytes):
         raise ParameterError(
-            f"noise_seed = {shown(noise_seed)} is not accepted: it needs a snapshot as start"
+            f"noise_seed = {short_repr(noise_seed)} is not accepted: it needs a snapshot as start"
         )
     if start is None:
         return Flock(parameters, seed)
@@ -291,14 +294,14 @@ def _started(
     if not isinstance(start, bytes):
         raise TypeError(
             "start must be a snapshot (bytes), a dictionary with pose and perhaps velocity and "
-            f"time_s, or a recording, not {shown(start)}"
+            f"time_s, or a recording, not {short_repr(start)}"
         )
     flock = Flock.from_snapshot(start, noise_seed)
     if flock.parameters.replace(target=parameters.target) != parameters:
         raise ParameterError("start is a snapshot of a flock with other parameters")
     if flock.seed != seed:
         raise ParameterError(
-            f"seed = {shown(seed)} is not accepted: start is a snapshot of seed {flock.seed}"
+            f"seed = {short_repr(seed)} is not accepted: start is a snapshot of seed {flock.seed}"
         )
     flock.set_target(parameters.target)
     return flock

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 
 _MOST_ITEMS = 1_000_000
 
@@ -24,7 +24,7 @@ def items(values: Any, name: str) -> Any:
         return values
     unordered = isinstance(values, Set) and not isinstance(values, MappingView)
     if unordered or isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
-        raise TypeError(f"{name} must be a sequence, not {shown(values)}")
+        raise TypeError(f"{name} must be a sequence, not {short_repr(values)}")
     found = tuple(islice(_each(values, name), _MOST_ITEMS + 1))
     if len(found) > _MOST_ITEMS:
         raise ParameterError(f"{name} has more than {_MOST_ITEMS} items: too many")
@@ -35,35 +35,35 @@ def _each(values: Any, name: str) -> Any:
     try:
         return iter(values)
     except TypeError as error:  # An array of one number.
-        raise TypeError(f"{name} must be a sequence, not {shown(values)}") from error
+        raise TypeError(f"{name} must be a sequence, not {short_repr(values)}") from error
 
 
 def by_name(values: Any, name: str) -> dict[Any, Any]:
     """Return a copy of a dictionary; a TypeError refuses what is none."""
     if not isinstance(values, Mapping):
-        raise TypeError(f"{name} must be a dictionary, not {shown(values)}")
+        raise TypeError(f"{name} must be a dictionary, not {short_repr(values)}")
     return dict(values)
 
 
 def check_function(value: Any, name: str) -> None:
     """Refuse, before hours of work, what is to be called and cannot be."""
     if not callable(value):
-        raise TypeError(f"{name} must be a function, not {shown(value)}")
+        raise TypeError(f"{name} must be a function, not {short_repr(value)}")
 
 
-def once(values: Any) -> Any:
+def materialized(values: Any) -> Any:
     """Return what an iterator or a view of a dictionary holds, and everything else as it is."""
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
 
 
 def listed(value: Any) -> Any:
-    """Return what an array holds, as a list or as a number, and everything else as `once` does.
+    """Return what an array holds, as a list or a number, and all else as `materialized` does.
 
     Arrays of other libraries are arrays too. What is masked, a table and what is larger than any
     option stay as they are, for the refusal that names them.
     """
     if not hasattr(value, "__array__") or hasattr(value, "columns") or np.ma.is_masked(value):
-        return once(value)
+        return materialized(value)
     try:
         array = np.asarray(value)
     except Exception:  # Arrays of other libraries raise what they like.
@@ -71,7 +71,7 @@ def listed(value: Any) -> Any:
     return array.tolist() if array.size <= _MOST_ITEMS else value
 
 
-def whole(value: Any, name: str) -> int:
+def as_int(value: Any, name: str) -> int:
     """Return a whole number as an int, 8.0 among them.
 
     A ParameterError refuses other real numbers, a TypeError everything else, bools among them.
@@ -87,9 +87,9 @@ def whole(value: Any, name: str) -> int:
     if isinstance(value, float | np.floating):
         if float(value).is_integer():
             return int(value)
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: a whole number")
+        raise ParameterError(f"{name} = {short_repr(value)} is not accepted: a whole number")
     kind = type(value).__name__
-    raise TypeError(f"{name} must be an integer, not {shown(value)} of type {kind}")
+    raise TypeError(f"{name} must be an integer, not {short_repr(value)} of type {kind}")
 
 
 def _check_no_table(values: Any, name: str) -> None:
@@ -135,19 +135,19 @@ def series(values: Any, name: str) -> NDArray[np.float64]:
 def number(value: Any, name: str) -> Any:
     """Return a real number as it is; a TypeError refuses what is none, bools among them."""
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise TypeError(f"{name} must be a number, not {shown(value)}")
+        raise TypeError(f"{name} must be a number, not {short_repr(value)}")
     return value
 
 
-def truth(value: Any, name: str) -> bool:
+def as_bool(value: Any, name: str) -> bool:
     """Return True or False; a TypeError refuses all else, such as "no", which would be true."""
     if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{name} must be True or False, not {shown(value)}")
+        raise TypeError(f"{name} must be True or False, not {short_repr(value)}")
     return bool(value)
 
 
-def blob(value: Any, name: str) -> bytes:
+def as_bytes(value: Any, name: str) -> bytes:
     """Return bytes as they are; a TypeError refuses what is none."""
     if not isinstance(value, bytes):
-        raise TypeError(f"{name} must be bytes, not {shown(value)}")
+        raise TypeError(f"{name} must be bytes, not {short_repr(value)}")
     return value

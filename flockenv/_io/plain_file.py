@@ -6,7 +6,7 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 
 _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
@@ -16,7 +16,7 @@ def is_special(path: str | os.PathLike[str]) -> bool:
     try:
         return _is_special(os.stat(path).st_mode)
     except ValueError as error:
-        raise ParameterError(f"{shown(path)} is the name of no file: {error}") from error
+        raise ParameterError(f"{short_repr(path)} is the name of no file: {error}") from error
 
 
 def _is_special(mode: int) -> bool:

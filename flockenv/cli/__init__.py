@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from flockenv._core import __version__
-from flockenv.cli.console import console, errors, say
+from flockenv.cli.console import console, echo, errors
 from flockenv.errors import FlockError
 
 __all__ = ["app", "main"]
@@ -48,7 +48,7 @@ def main() -> None:
         if isinstance(error, OSError) and error.filename is not None:
             text = f"{error.filename}: {error.strerror}"
         errors.print("[bold red]Error:[/]", end=" ")
-        say(text, errors)
+        echo(text, errors)
         raise SystemExit(2) from error
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from flockenv._core import pool_radii_cm
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
-from flockenv.cli.console import print_json, say
+from flockenv.cli.console import echo, print_json
 from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.recording import Recording
@@ -80,9 +80,9 @@ def analyze(options: AnalyzeOptions) -> None:
         print_json({**summary_of(recording), **report, "files": files})
         return
     boats = recording.parameters.n_boats
-    say(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
+    echo(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
     if written:
-        say(f"Written to {' and '.join(map(printable, written))}")
+        echo(f"Written to {' and '.join(map(printable, written))}")
 
 
 def _drawn(recording: Recording) -> Any:

@@ -13,7 +13,7 @@ from typing import Self
 from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.compare_entries import compare_entries
-from flockenv.cli.console import console, errors, print_json, say
+from flockenv.cli.console import console, echo, errors, print_json
 from flockenv.cli.options import TRUST, Printing, option, option_of, takes
 from flockenv.cli.output import prepare, printable
 from flockenv.cli.parameters import Flocks, changed_fields
@@ -22,7 +22,7 @@ from flockenv.comparison.case import Case
 from flockenv.comparison.levels import SUITE as LEVELS_SUITE
 from flockenv.comparison.report import ComparisonReport, titled
 from flockenv.comparison.suite import REFERENCE, scores_table, tasks_named
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
@@ -129,7 +129,7 @@ def compare(options: CompareOptions) -> None:
     if options.suite and not options.shows_nothing:
         minutes = math.ceil(_seconds(plan) / 60)
         hours = f"{plan.flock_hours:.0f} flock-hours"
-        say(f"{len(plan.cases)} tasks, {hours}: about {minutes} min here", errors)
+        echo(f"{len(plan.cases)} tasks, {hours}: about {minutes} min here", errors)
     result = _compared(options, plan)
     if plan.own:
         first = plan.policies[plan.cases[0].name][plan.own[0]]
@@ -145,10 +145,10 @@ def compare(options: CompareOptions) -> None:
     console.print(result.table())
     for row in tables["scores"].to_dict("records") if options.suite else []:
         ends = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
-        say(f"{row['policy']}, {row['task']}: {ends}")
+        echo(f"{row['policy']}, {row['task']}: {ends}")
     if options.full:
-        say(result.in_words())
-    say(f"Written to {options.out}")
+        echo(result.in_words())
+    echo(f"Written to {options.out}")
 
 
 @dataclass(frozen=True)
@@ -273,7 +273,7 @@ def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> 
         try:
             found.setdefault(name, policy(name, pool))
         except ParameterError as error:
-            say(f"Left out, {name}: {error}", errors)
+            echo(f"Left out, {name}: {error}", errors)
     if not found:
         raise ParameterError("--only is not accepted without --policy: nothing would be compared")
     return found
@@ -351,7 +351,7 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
         raise ParameterError("--set n_leaders is not accepted: use --n-leaders")
     if isinstance(given.get("target"), list):
         raise ParameterError(
-            f"target = {shown(given['target'])} is not accepted: here the number of leaders "
+            f"target = {short_repr(given['target'])} is not accepted: here the number of leaders "
             "varies, so all have one target: cw or ccw"
         )
     base = options.parameters()

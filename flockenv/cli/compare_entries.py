@@ -6,7 +6,7 @@ from pathlib import Path
 
 from flockenv._io.atomic_write import write_csv
 from flockenv._io.extras import require
-from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
@@ -38,7 +38,7 @@ def compare_entries(
     table = out / "entries.csv"
     prepare(table)
     if flocks < FLOCKS:
-        say(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
+        echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
     pandas = require("pandas", "plot")
     policies = {
         level: sum(len(each.trainings.get(level, ())) for each in entries) for level in levels
@@ -64,8 +64,8 @@ def compare_entries(
         return
     for row in found.to_dict("records"):
         ends_at = f"{row['score']:.3f} [{row['score_low']:.3f}, {row['score_high']:.3f}]"
-        say(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {ends_at}")
-    say(f"Written to {out}")
+        echo(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {ends_at}")
+    echo(f"Written to {out}")
 
 
 def _levels(tasks: Sequence[str]) -> list[str]:

@@ -6,14 +6,14 @@ console = Console()
 errors = Console(stderr=True)
 
 
-def say(text: str, on: Console = console) -> None:
+def echo(text: str, on: Console = console) -> None:
     """Print a line unchanged: brackets in a file's name are no markup, and nothing breaks it."""
     on.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def warn(line: str) -> None:
     """Print a warning."""
-    say(f"Warning: {line}", errors)
+    echo(f"Warning: {line}", errors)
 
 
 def print_json(data: object) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import print_json, say
+from flockenv.cli.console import echo, print_json
 from flockenv.cli.options import Printing, option, takes
 from flockenv.cli.output import in_words, open_page, prepare, summary_of
 from flockenv.cli.progress import progress
@@ -60,7 +60,7 @@ def demo(options: DemoOptions) -> None:
             print_json({"html": str(out), "seed": seed, "runs": summaries})
             return
         for name, run in runs.items():
-            say(f"{name}: {in_words(run)}")
-    say(f"Written to {out}")
+            echo(f"{name}: {in_words(run)}")
+    echo(f"Written to {out}")
     if options.show:
         open_page(out)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flockenv._io.plain_file import check_writable
-from flockenv.cli.console import errors, say
+from flockenv.cli.console import echo, errors
 from flockenv.errors import ParameterError
 from flockenv.order import QUANTITIES
 from flockenv.recording import Recording
@@ -54,13 +54,13 @@ def load_recording(
     check_ending(path)
     if layout is None and not (beside := description_of(path)).exists():
         checks = guess_layout(path)
-        say(f"{printable(path)} has no description; {printable(beside)} is a guess:", errors)
+        echo(f"{printable(path)} has no description; {printable(beside)} is a guess:", errors)
         for line in checks:
-            say(f"  {line}", errors)
+            echo(f"  {line}", errors)
 
     def say_and_report(found: "TrackReport") -> None:
         if not quiet:
-            say(f"{printable(path)}: {found}", errors)
+            echo(f"{printable(path)}: {found}", errors)
         report(found)
 
     return read_tracks(path, None if layout is None else read_layout(layout), say_and_report)
@@ -92,7 +92,7 @@ def open_page(page: Path) -> None:
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     has_display = sys.platform != "linux" or any(map(os.environ.get, displays))
     if not (has_display and webbrowser.open(address)):
-        say(f"No browser was found here. Open this page in one: {address}", errors)
+        echo(f"No browser was found here. Open this page in one: {address}", errors)
 
 
 def summary_of(recording: Recording) -> dict[str, float | None]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.cli.options import option, option_of
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 
 
@@ -77,7 +77,7 @@ def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, o
         name, equals, text = (part.strip() for part in change.partition("="))
         if not (name and equals and text):
             raise ParameterError(
-                f"{option} {shown(change)} is not accepted: NAME=VALUE, as in bw_s=0.3"
+                f"{option} {short_repr(change)} is not accepted: NAME=VALUE, as in bw_s=0.3"
             )
         if name in fields:
             raise ParameterError(f"{option} changes {name} twice")

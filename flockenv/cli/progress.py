@@ -8,7 +8,7 @@ import typer
 from rich.progress import Progress
 
 from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
-from flockenv.cli.console import errors, say
+from flockenv.cli.console import echo, errors
 
 
 @contextmanager
@@ -49,7 +49,7 @@ def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
                 command(*arguments, **options)
                 end_if_interrupted()
             except KeyboardInterrupt as interrupt:
-                say(" ".join(["Interrupted.", *map(str, interrupt.args)]), errors)
+                echo(" ".join(["Interrupted.", *map(str, interrupt.args)]), errors)
                 raise typer.Exit(INTERRUPTED) from None
 
     return wrapped

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.cli.console import print_json, say
+from flockenv.cli.console import echo, print_json
 from flockenv.cli.options import Printing, argument, option, takes
 from flockenv.cli.output import load_recording, open_page, prepare, printable
 from flockenv.cli.progress import progress
@@ -103,7 +103,7 @@ def _page(options: ReplayOptions) -> None:
         print_json({"html": str(page), "bytes": written.size, "every": written.every})
     else:
         thinned = "" if written.every == 1 else f", every {written.every}th sample"
-        say(f"Written to {page} ({written.size / 1e6:.1f} MB{thinned})")
+        echo(f"Written to {page} ({written.size / 1e6:.1f} MB{thinned})")
     if options.show:
         open_page(page)
 
@@ -139,4 +139,4 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
     if options.as_json:
         print_json({"files": list(map(printable, paths))})
     else:
-        say(f"Written to {' and '.join(map(printable, paths))}")
+        echo(f"Written to {' and '.join(map(printable, paths))}")

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import print_json, say
+from flockenv.cli.console import echo, print_json
 from flockenv.cli.options import TRUST, Overwriting, Printing, option, takes
 from flockenv.cli.output import in_words, prepare, printable, summary_of
 from flockenv.cli.parameters import OneFlock, changed_fields
 from flockenv.cli.progress import progress
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import NAMES, policy, quoted
 from flockenv.simulation import simulate
@@ -84,9 +84,9 @@ def run(options: RunOptions) -> None:
         given = {"seed": options.seed, "policy": options.policy}
         print_json({**files, **given, **summary_of(recording)})
         return
-    say(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(recording)}")
-    say(f"Written to {out} and {beside}")
-    say(f"See it: {shlex.join(['flockenv', 'replay', str(out)])}")
+    echo(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(recording)}")
+    echo(f"Written to {out} and {beside}")
+    echo(f"See it: {shlex.join(['flockenv', 'replay', str(out)])}")
 
 
 def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
@@ -100,7 +100,7 @@ def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
             )
         except ValueError as error:
             accepted = "TIME:FIELD=VALUE, as in 60:bw_s=0.6"
-            raise ParameterError(f"--at {shown(text)} is not accepted: {accepted}") from error
+            raise ParameterError(f"--at {short_repr(text)} is not accepted: {accepted}") from error
     return changes
 
 

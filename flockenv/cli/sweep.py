@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import errors, print_json, say, warn
+from flockenv.cli.console import echo, errors, print_json, warn
 from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
@@ -102,11 +102,11 @@ def sweep(options: SweepOptions) -> None:
     if options.as_json:
         print_json(found)
     else:
-        say(done)
+        echo(done)
         if shard is None:
             _show_critical_noises(table)
     if failed:
-        say(f"{failed} of {len(runs)} runs failed: {where}", errors)
+        echo(f"{failed} of {len(runs)} runs failed: {where}", errors)
         raise typer.Exit(1)
 
 
@@ -122,7 +122,7 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
         if math.isnan(noise):
             most = row["rotation_size"]
             lost = f"no order to lose, or fewer than three runs (mean |m| at most {most:.2f})"
-        say(f"{flock}: {lost}" if flock else lost.capitalize())
+        echo(f"{flock}: {lost}" if flock else lost.capitalize())
 
 
 def _check_same(path: Path, work: "SweepSpec") -> None:
@@ -147,5 +147,5 @@ def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) 
         print_json(asdict(work))
         return
     hours = "an unknown number of" if work.core_hours is None else f"{work.core_hours:.2g}"
-    say(f"{work.runs} runs, {work.stored} of them stored")
-    say(f"The others: {work.flock_hours:.4g} flock-hours, about {hours} core-hours here")
+    echo(f"{work.runs} runs, {work.stored} of them stored")
+    echo(f"The others: {work.flock_hours:.4g} flock-hours, about {hours} core-hours here")

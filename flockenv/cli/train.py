@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flockenv._io.atomic_write import write_csv
-from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option, option_of, takes
 from flockenv.cli.parameters import changed_fields
 from flockenv.cli.progress import progress
@@ -98,7 +98,7 @@ def train(options: TrainOptions) -> None:
             shown = share
 
         if options.resume:
-            say(f"Resuming from {out / ppo.CHECKPOINT}", errors)
+            echo(f"Resuming from {out / ppo.CHECKPOINT}", errors)
             settings = ppo.stored_settings(out, options.flock_hours)
             model = ppo.resume(out, flock_hours=options.flock_hours, report=report)
         else:
@@ -117,11 +117,11 @@ def train(options: TrainOptions) -> None:
         print_json({**found, "model": str(out / ppo.MODEL)})
         return
     for name, order in means.items():
-        say(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
-    say(
+        echo(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
+    echo(
         f"{ppo.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
         f"{gain.high:+.3f}), paired by flock"
     )
     for line in overlap_notes(rows):
-        say(line)
-    say(f"Written to {out}")
+        echo(line)
+    echo(f"Written to {out}")

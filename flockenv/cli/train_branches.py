@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from flockenv._io.atomic_write import write_text
-from flockenv.cli.console import errors, print_json, say
+from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option_of
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
@@ -39,7 +39,7 @@ def train_branches(
     """Train, write the policy with its curve, and compare it with the laws in so many flocks."""
     start, command = time.process_time(), _command(given)
     if resume:
-        say(f"Resuming from {out / CHECKPOINT}", errors)
+        echo(f"Resuming from {out / CHECKPOINT}", errors)
         training = stored_training(out, given.get("flock_hours"))
     else:
         training = _training(given)
@@ -55,9 +55,9 @@ def train_branches(
         return
     for name, each in orders.items():
         mean, own = _mean(each)
-        say(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
-    say(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
-    say(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
+        echo(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
+    echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
+    echo(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
 
 
 def _training(given: dict[str, Any]) -> BranchTraining:
@@ -82,7 +82,7 @@ def _lines(is_quiet: bool) -> Callable[[Progress], None]:
         if not is_quiet and time.monotonic() - last > _BETWEEN_LINES_S:
             last = time.monotonic()
             done = f"{now.flock_hours:.0f} of {now.total:.0f} flock-hours"
-            say(f"{done}: signed order {now.signed_order:.3f} while leaders try", errors)
+            echo(f"{done}: signed order {now.signed_order:.3f} while leaders try", errors)
 
     return report
 

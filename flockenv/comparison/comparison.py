@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Self
 
-from flockenv._io.arguments import by_name, check_function, items, whole
+from flockenv._io.arguments import as_int, by_name, check_function, items
 from flockenv._io.extras import require
 from flockenv.comparison.episodes import (
     NO_LEADERS,
@@ -14,7 +14,7 @@ from flockenv.comparison.episodes import (
     no_progress,
     seeds_of_episodes,
 )
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.registry import Steering
 from flockenv.runs.seeds import check_evaluation_seeds
@@ -103,7 +103,7 @@ def _environment(options: Mapping[str, object]) -> dict[str, object]:
         # A range of noises is no parameter of one flock.
         if name in _SAID_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
             raise ParameterError(
-                f"{name} = {shown(value)} is not accepted in the environment of a comparison: "
+                f"{name} = {short_repr(value)} is not accepted in the environment of a comparison: "
                 f"{_SAID_BY[name]} says it"
             )
     return found
@@ -133,8 +133,8 @@ def _counts(
 ) -> list[int]:
     """Return the different numbers of leaders of a flock, or refuse those that it cannot have."""
     if not isinstance(flock, FlockParameters):
-        raise TypeError(f"parameters must be FlockParameters, not {shown(flock)}")
-    found = list(dict.fromkeys(whole(k, "leaders") for k in items(leaders, "leaders")))
+        raise TypeError(f"parameters must be FlockParameters, not {short_repr(flock)}")
+    found = list(dict.fromkeys(as_int(k, "leaders") for k in items(leaders, "leaders")))
     most = max(found, default=0)
     if most >= flock.n_boats:
         raise ParameterError(
@@ -143,7 +143,8 @@ def _counts(
         )
     if policies and found and most == 0:
         raise ParameterError(
-            f"leaders = {shown(leaders)} are not accepted with policies: they have nobody to steer"
+            f"leaders = {short_repr(leaders)} are not accepted with policies: they have nobody to "
+            "steer"
         )
     return found
 

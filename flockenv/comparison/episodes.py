@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import by_name, check_function, items, whole
+from flockenv._io.arguments import as_int, by_name, check_function, items
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.options import EnvOptions
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import STEP_STATISTICS
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import CONTROL_HZ, Policy
@@ -67,7 +67,7 @@ class Episodes:
     ) -> Self:
         """Return the episodes that `run_episodes` describes, and raise what it raises."""
         if not isinstance(parameters, FlockParameters):
-            raise TypeError(f"parameters must be FlockParameters, not {shown(parameters)}")
+            raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
         k, options = parameters.n_leaders, by_name(options, "options")
         leaders = Leaders.of(policy, parameters)
         given = {
@@ -166,7 +166,7 @@ def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
 def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:
     """Return seeds, one for each episode, or refuse what is no sequence of whole numbers."""
     found = items(seeds, "seeds")
-    return found if isinstance(found, range) else tuple(whole(seed, "seed") for seed in found)
+    return found if isinstance(found, range) else tuple(as_int(seed, "seed") for seed in found)
 
 
 def run_episodes(

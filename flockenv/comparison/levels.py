@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv.comparison.episodes import Progress, no_progress, run_episodes
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.options import EnvOptions
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy
 from flockenv.policies.names import DAMPED_LAW
@@ -79,7 +79,9 @@ class Level:
     ) -> NDArray[np.float64]:
         """Return the signed order of each of the level's first flocks, led by a policy."""
         if not 2 <= flocks <= FLOCKS:
-            raise ParameterError(f"flocks = {shown(flocks)} is not accepted: from 2 to {FLOCKS}")
+            raise ParameterError(
+                f"flocks = {short_repr(flocks)} is not accepted: from 2 to {FLOCKS}"
+            )
         checked = policy(steers, self.parameters.pool)
         found = run_episodes(
             self.parameters, checked, _SEEDS[:flocks], self.episode_s, progress, self.environment

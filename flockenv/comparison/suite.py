@@ -15,7 +15,7 @@ from flockenv._io.extras import require
 from flockenv.comparison.case import Case
 from flockenv.comparison.report import ComparisonReport
 from flockenv.envs.ids import ENVIRONMENTS
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import TUNED_LAW
 from flockenv.runs.seeds import release_seeds
@@ -79,7 +79,9 @@ def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:
     """Return tasks of a suite, all of them if none is named; unknown names are refused."""
     chosen = items(names, "names")
     if suite != SUITE:
-        raise ParameterError(f"suite = {shown(suite)} is not accepted: there are {SUITE} and v3")
+        raise ParameterError(
+            f"suite = {short_repr(suite)} is not accepted: there are {SUITE} and v3"
+        )
     refuse_unknown(chosen, [task.name for task in TASKS], f"task of suite {SUITE}")
     return [task for task in TASKS if not chosen or task.name in chosen]
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._io.arguments import number, whole
+from flockenv._io.arguments import as_int, number
 from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
 from flockenv.comparison.episodes import Progress, no_progress
@@ -23,7 +23,7 @@ from flockenv.comparison.levels import (
     budget_of,
     score,
 )
-from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, short_repr
 from flockenv.policies.base import Policy
 from flockenv.policies.registry import FILES, policy
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
@@ -93,24 +93,28 @@ class SuiteEntry:
         for key in (key for key in _KEYS if key not in values and key != "searched_hours"):
             raise ParameterError(f"{key} is missing")
         if values["suite"] != SUITE:
-            raise ParameterError(f"suite = {shown(values['suite'])} is not accepted: {SUITE!r}")
+            raise ParameterError(
+                f"suite = {short_repr(values['suite'])} is not accepted: {SUITE!r}"
+            )
         if values["results_version"] != RESULTS_VERSION:
             raise ParameterError(
-                f"results_version = {shown(values['results_version'])} is not accepted: this "
+                f"results_version = {short_repr(values['results_version'])} is not accepted: this "
                 f"flockenv has version {RESULTS_VERSION}, in which flocks move otherwise; train "
                 "again"
             )
         seeds = values["training_seeds"]
         if not isinstance(seeds, list) or len(seeds) != 2:
             raise ParameterError(
-                f"training_seeds = {shown(seeds)} is not accepted: the first and the last seed of "
-                "the flocks that made the policies"
+                f"training_seeds = {short_repr(seeds)} is not accepted: the first and the last "
+                "seed of the flocks that made the policies"
             )
-        first, last = (whole(seed, "training_seeds") for seed in seeds)
+        first, last = (as_int(seed, "training_seeds") for seed in seeds)
         _check_seeds(first, last, "training_seeds")
         levels = values["levels"]
         if not isinstance(levels, Mapping) or not levels:
-            raise ParameterError(f"levels = {shown(levels)} is no table of levels and policies")
+            raise ParameterError(
+                f"levels = {short_repr(levels)} is no table of levels and policies"
+            )
         refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
         return cls(
             name=_text(values["name"], "name"),
@@ -215,7 +219,8 @@ _KEYS = (
 def _text(value: object, name: str) -> str:
     if not isinstance(value, str) or not value.isprintable() or not 0 < len(value) <= _LONGEST_TEXT:
         raise ParameterError(
-            f"{name} = {shown(value)} is not accepted: a text of at most {_LONGEST_TEXT} characters"
+            f"{name} = {short_repr(value)} is not accepted: a text of at most {_LONGEST_TEXT} "
+            "characters"
         )
     return value
 
@@ -223,7 +228,7 @@ def _text(value: object, name: str) -> str:
 def _hours(value: object, name: str) -> float:
     found = float(number(value, name))
     if not 0.0 <= found < math.inf:
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: hours, at least 0")
+        raise ParameterError(f"{name} = {short_repr(value)} is not accepted: hours, at least 0")
     return found
 
 
@@ -240,7 +245,9 @@ def _trainings(given: object, level: Level, folder: Path, trust: bool) -> tuple[
     """Return the policies that an entry names for a level, checked."""
     names = [given] if isinstance(given, str) else given
     if not isinstance(names, list) or not names or not all(isinstance(n, str) for n in names):
-        raise ParameterError(f"{level.name} = {shown(given)} is not accepted: files of policies")
+        raise ParameterError(
+            f"{level.name} = {short_repr(given)} is not accepted: files of policies"
+        )
     if len(set(names)) < len(names):
         raise ParameterError(f"{level.name} names a policy twice, which would count twice")
     return tuple(_training(name, level, folder, trust) for name in names)

@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from flockenv._io.arguments import blob
+from flockenv._io.arguments import as_bytes
 from flockenv.envs.batch import LeaderBatch
 from flockenv.envs.fixed_options import FixedOptions
 from flockenv.envs.options import EnvOptions
@@ -39,7 +39,7 @@ class Resumable(OwnFlocks):
 
     def set_state(self, state: bytes) -> Any:
         """Continue from `get_state` of an environment with the same options, bit for bit."""
-        self._batch.core.restore(blob(state, "state"))
+        self._batch.core.restore(as_bytes(state, "state"))
 
     def set_next_episodes(self, **options: Any) -> None:
         """Set ``bw_s`` or ``target`` for all episodes that are to come, until they are set again.

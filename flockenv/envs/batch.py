@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import listed, real_numbers, whole
+from flockenv._io.arguments import as_int, listed, real_numbers
 from flockenv.envs.options import TERMS, EnvOptions
 from flockenv.envs.reset_options import UPCOMING_OPTIONS
 from flockenv.envs.seeds import Seed
 from flockenv.envs.spaces import flock_feature_space, state_space
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
@@ -158,7 +158,7 @@ def is_plain(action: Any, shape: tuple[int, ...]) -> bool:
 
 def at_least_one(count: Any, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
-    number = whole(count, name)
+    number = as_int(count, name)
     if not 1 <= number <= _MOST:
-        raise ParameterError(f"{name} = {shown(number)} is not accepted: 1 to {_MOST}")
+        raise ParameterError(f"{name} = {short_repr(number)} is not accepted: 1 to {_MOST}")
     return number

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from flockenv import _core
 from flockenv._io.arguments import listed
-from flockenv.errors import ParameterError, UnknownOptionError, hint, shown
+from flockenv.errors import ParameterError, UnknownOptionError, hint, short_repr
 from flockenv.parameters import FlockParameters
 
 TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
@@ -103,9 +103,9 @@ class EnvOptions:
         own_reward = _taken_function(given)
         if own_reward is not None and not takes_function:
             raise ParameterError(
-                f"reward = {shown(own_reward)} is not accepted: weights by name. Environments of "
-                "many flocks take a function, LeadersVectorEnv and LeaderVecEnv; of one flock a "
-                "subclass or a wrapper computes a reward of its own"
+                f"reward = {short_repr(own_reward)} is not accepted: weights by name. Environments "
+                "of many flocks take a function, LeadersVectorEnv and LeaderVecEnv; of one flock "
+                "a subclass or a wrapper computes a reward of its own"
             )
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):

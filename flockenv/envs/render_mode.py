@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from flockenv._io.arguments import listed
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.rendering.frames import DEFAULT_SIZE, frame, renderer
 from flockenv.rendering.window import Window, require_pygame
 
@@ -34,10 +34,12 @@ class RenderMode:
     ) -> None:
         if mode is not None and mode not in modes:
             names = ", ".join(repr(name) for name in modes)
-            raise ParameterError(f"render_mode = {shown(mode)} is not accepted: None, {names}")
+            raise ParameterError(f"render_mode = {short_repr(mode)} is not accepted: None, {names}")
         size = listed(size)
         if not isinstance(size, tuple | list) or len(size) != 2:
-            raise ParameterError(f"render_size = {shown(size)} is not accepted: (width, height)")
+            raise ParameterError(
+                f"render_size = {short_repr(size)} is not accepted: (width, height)"
+            )
         self.mode = mode
         self.size = (size[0], size[1])
         self.fps = fps

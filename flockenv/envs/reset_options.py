@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flockenv._io.arguments import blob, once
+from flockenv._io.arguments import as_bytes, materialized
 from flockenv.envs.options import ARGUMENTS, NAMES
 from flockenv.errors import ParameterError
 
@@ -93,13 +93,13 @@ def reset_requests(
         for request, value in zip(
             requests, _values(name, options[name], flocks, is_each), strict=True
         ):
-            request[name] = blob(value, name) if name == "snapshot" else value
+            request[name] = as_bytes(value, name) if name == "snapshot" else value
     return requests
 
 
 def _values(name: str, value: Any, flocks: int, is_each: bool) -> Any:
     """Return the value of an option for each flock."""
-    held = once(value)
+    held = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
     if not is_each:
         # Of one flock a list is a range of noises, or a target for each leader.

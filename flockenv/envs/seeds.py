@@ -6,8 +6,8 @@ from typing import Any
 import gymnasium.utils.seeding
 import numpy as np
 
-from flockenv._io.arguments import once, whole
-from flockenv.errors import ParameterError, shown
+from flockenv._io.arguments import as_int, materialized
+from flockenv.errors import ParameterError, short_repr
 
 _SEEDS = 2**64
 
@@ -62,11 +62,11 @@ def seed_of(seed: Any) -> int:
 
 def seeds_from(first: Any, flocks: int) -> list[int]:
     """Return the seeds of flocks of which the first has this one, and each other the next."""
-    number = whole(first, "seed")
+    number = as_int(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
         raise ParameterError(
-            f"seed = {shown(number)} is not accepted: at least 0, and below 2^64 for the last of "
-            f"{flocks} flocks"
+            f"seed = {short_repr(number)} is not accepted: at least 0, and below 2^64 for the last "
+            f"of {flocks} flocks"
         )
     return [number + flock for flock in range(flocks)]
 
@@ -78,7 +78,7 @@ def seeds_of_flocks(seed: Any, flocks: int) -> Sequence[int | None]:
     """
     if seed is None:
         return [None] * flocks
-    seeds = seed.tolist() if isinstance(seed, np.ndarray) else once(seed)
+    seeds = seed.tolist() if isinstance(seed, np.ndarray) else materialized(seed)
     if not isinstance(seeds, Sequence) or isinstance(seeds, str | bytes):
         return seeds_from(seeds, flocks)
     if len(seeds) != flocks:

@@ -17,7 +17,7 @@ from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.reset_options import RESET_OPTIONS, reset_requests
 from flockenv.envs.seeds import drawn_seed, seeds_of_flocks
 from flockenv.envs.spaces import ObservationSpace, joint_action_space
-from flockenv.errors import EpisodeError, ParameterError, shown
+from flockenv.errors import EpisodeError, ParameterError, short_repr
 from flockenv.rendering.frames import DEFAULT_SIZE
 
 
@@ -283,7 +283,7 @@ def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
         if mode in (known, name, known.value):
             return known
     names = ", ".join(repr(name) for name in _CORE_NAMES.values())
-    raise ParameterError(f"autoreset_mode = {shown(mode)} is not accepted: one of {names}")
+    raise ParameterError(f"autoreset_mode = {short_repr(mode)} is not accepted: one of {names}")
 
 
 def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:

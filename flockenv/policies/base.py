@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import by_name, number, real_numbers, truth
+from flockenv._io.arguments import as_bool, by_name, number, real_numbers
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 
 
 class Layout(TypedDict, total=False):
@@ -121,7 +121,7 @@ class Policy:
             observation=by_name(
                 getattr(source, "observation", None) or {}, "a policy's observation"
             ),
-            mirror_to_target=truth(mirrors, "a policy's mirror_to_target"),
+            mirror_to_target=as_bool(mirrors, "a policy's mirror_to_target"),
             action_mode=mode,
             decision_period_s=_positive(source, "decision_period_s"),
             leaders=leaders,
@@ -148,16 +148,16 @@ class Policy:
         """Refuse another pool than the one that it was made for."""
         if self.pool is not None and self.pool != pool:
             raise ParameterError(
-                f"pool = {shown(pool)} is not accepted with {shown(self)}: it was made for "
-                f"pool = {self.pool!r}"
+                f"pool = {short_repr(pool)} is not accepted with {short_repr(self)}: it was made "
+                f"for pool = {self.pool!r}"
             )
 
     def check_action_mode(self, mode: str, where: str) -> None:
         """Refuse another action mode than the one that its actions are for."""
         if self.action_mode != mode:
             raise ParameterError(
-                f"{shown(self)} gives actions of action_mode {self.action_mode!r}: not accepted "
-                f"{where}, which takes action_mode {mode!r}"
+                f"{short_repr(self)} gives actions of action_mode {self.action_mode!r}: not "
+                f"accepted {where}, which takes action_mode {mode!r}"
             )
 
     def check_leaders(self, n_leaders: int) -> None:
@@ -181,7 +181,8 @@ class Policy:
         returned = self.source.predict(observation, state)
         if not isinstance(returned, tuple) or len(returned) != 2:
             raise ParameterError(
-                f"what a policy returns is not accepted: actions and a state, not {shown(returned)}"
+                f"what a policy returns is not accepted: actions and a state, not "
+                f"{short_repr(returned)}"
             )
         actions, state = real_numbers(returned[0], "what a policy returns"), returned[1]
         if np.ma.is_masked(actions):
@@ -201,7 +202,7 @@ def _positive(source: LeaderPolicy, name: str) -> float | None:
     """Return a number above 0 that an attribute of an object has, if it has one."""
     value = getattr(source, name, None)
     if value is not None and not 0.0 < number(value, name) < math.inf:
-        raise ParameterError(f"{name} = {shown(value)} of a policy is not accepted: above 0")
+        raise ParameterError(f"{name} = {short_repr(value)} of a policy is not accepted: above 0")
     return None if value is None else float(value)
 
 
@@ -255,11 +256,11 @@ class RowPolicy(ABC):
     ) -> None:
         if not isinstance(observation, Mapping | None):
             raise ParameterError(
-                f"observation = {shown(observation)} is not accepted: blocks by name"
+                f"observation = {short_repr(observation)} is not accepted: blocks by name"
             )
         if not isinstance(mirror_to_target, bool | np.bool_):
             raise ParameterError(
-                f"mirror_to_target = {shown(mirror_to_target)} is not accepted: True or False"
+                f"mirror_to_target = {short_repr(mirror_to_target)} is not accepted: True or False"
             )
         self.observation = dict(observation or {})
         self.mirror_to_target = bool(mirror_to_target)

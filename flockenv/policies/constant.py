@@ -5,7 +5,7 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._io.arguments import whole
+from flockenv._io.arguments import as_int
 from flockenv.policies.base import Layout, RowPolicy
 
 
@@ -29,7 +29,7 @@ class RandomRudders(RowPolicy):
 
     def __init__(self, seed: int = 0, **layout: Unpack[Layout]) -> None:
         super().__init__(**layout)
-        self._random = np.random.default_rng(whole(seed, "seed"))
+        self._random = np.random.default_rng(as_int(seed, "seed"))
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
         return self._random.uniform(-1.0, 1.0, len(rows))

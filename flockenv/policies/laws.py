@@ -17,7 +17,7 @@ from flockenv._io.arguments import number
 from flockenv._io.atomic_write import write_text
 from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.policies.base import CONTROL_HZ, Layout, RowPolicy
 from flockenv.policies.model import ModelPolicy, normalizing
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
@@ -379,10 +379,10 @@ def _json(values: dict[str, object]) -> str:
     try:
         return json.dumps(values, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
-        raise ParameterError(f"a law of {shown(values)} is not accepted: {error}") from error
+        raise ParameterError(f"a law of {short_repr(values)} is not accepted: {error}") from error
 
 
 def _plain(value: object) -> float:
     if isinstance(value, Real):
         return float(value)
-    raise TypeError(f"{shown(value)} is no number")
+    raise TypeError(f"{short_repr(value)} is no number")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import PAPERS_LAW
@@ -60,7 +60,8 @@ class Leaders:
         for seat in found.seats:
             if k == 0 and seat.policy.control_hz is not None:
                 raise ParameterError(
-                    f"policy = {shown(given)} is not accepted: with n_leaders = 0 it steers nobody"
+                    f"policy = {short_repr(given)} is not accepted: with n_leaders = 0 it steers "
+                    "nobody"
                 )
             if k > 0:
                 seat.policy.check_leaders(len(seat.leaders))
@@ -96,7 +97,7 @@ def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat,
     if given.keys() != set(names):
         accepted = ", ".join(names) or "none, since n_leaders = 0"
         raise ParameterError(
-            f"policy = {shown(dict(given))} is not accepted: a policy for each of {accepted}"
+            f"policy = {short_repr(dict(given))} is not accepted: a policy for each of {accepted}"
         )
     # Leaders with one policy are steered at once, as a model of several leaders needs it.
     found: dict[object, tuple[Policy, list[int]]] = {}

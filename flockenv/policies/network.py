@@ -16,7 +16,7 @@ from flockenv import _core
 from flockenv._io.arguments import items, number, real_numbers
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.envs.observation import BLOCKS, OBSERVATION_VERSION
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.policies.base import RowPolicy
 from flockenv.policies.torch_module import read_module
 
@@ -127,7 +127,7 @@ class NetworkPolicy(RowPolicy):
         refuse_unknown((action_mode,), _core.ACTION_MODES, "action mode")
         if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
             raise ParameterError(
-                f"decision_period_s = {shown(decision_period_s)} is not accepted: a time in s"
+                f"decision_period_s = {short_repr(decision_period_s)} is not accepted: a time in s"
             )
         self.action_mode = action_mode
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
@@ -177,7 +177,7 @@ class NetworkPolicy(RowPolicy):
 
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
-                f"space = {shown(space)} is not accepted: the space of observations of an "
+                f"space = {short_repr(space)} is not accepted: the space of observations of an "
                 "environment here"
             )
         layers = read_module(module, has_spread=has_spread)
@@ -265,11 +265,11 @@ class NetworkPolicy(RowPolicy):
             header = json.loads(str(arrays.pop("header")).removeprefix("\ufeff"))
             refuse_unknown(header, _HEADER, "entry of a network's header")
             if header["format"] != FORMAT:
-                raise ParameterError(f"format = {shown(header['format'])}, not {FORMAT!r}")
+                raise ParameterError(f"format = {short_repr(header['format'])}, not {FORMAT!r}")
             version = header["observation_version"]
             if version != OBSERVATION_VERSION:
                 raise ParameterError(
-                    f"it was made for version {shown(version)} of the observation, not "
+                    f"it was made for version {short_repr(version)} of the observation, not "
                     f"{OBSERVATION_VERSION}: train it again"
                 )
             activations, epsilons = header["activations"], header["norms"]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 
 from flockenv import _core
-from flockenv.errors import ParameterError, nearest, shown
+from flockenv.errors import ParameterError, nearest, short_repr
 from flockenv.policies.base import LeaderPolicy, Policy, Pool
 from flockenv.policies.constant import RandomRudders, StraightAhead
 from flockenv.policies.laws import DampedLaw, LawPolicy, LeaningLaw, NamedLaw, SteeringLaw
@@ -54,8 +54,8 @@ _ATTRIBUTE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 def _named(pool: Pool | None) -> str:
     if not isinstance(pool, str):
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted: tuned and learned leaders are for pools with a "
-            "name"
+            f"pool = {short_repr(pool)} is not accepted: tuned and learned leaders are for pools "
+            "with a name"
         )
     return pool
 
@@ -127,7 +127,7 @@ def _no_policy(found: object) -> ParameterError:
     words = "a policy's name or file, an object with predict, or a function that returns one"
     if hasattr(found, "state_dict"):
         words += "; a network of torch becomes one by NetworkPolicy.from_module"
-    return ParameterError(f"policy = {shown(found)} is not accepted: {words}")
+    return ParameterError(f"policy = {short_repr(found)} is not accepted: {words}")
 
 
 def _no_name(name: str) -> ParameterError:
@@ -198,7 +198,7 @@ def load(
         return LeaningLaw.learned(_named(pool))
     if pool is not None:
         raise ParameterError(
-            f"pool = {shown(pool)} is not accepted with the file {os.fspath(path)!r}: only "
+            f"pool = {short_repr(pool)} is not accepted with the file {os.fspath(path)!r}: only "
             f"{LEARNED!r} takes one"
         )
     if is_model_file(path):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 
 #: Names of torch's activations, with the settings that each is read with.
 _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
@@ -96,7 +96,8 @@ def _add(layers: list[ModuleLayer], layer: Any) -> None:
         last.activation = name
     else:
         raise ParameterError(
-            f"a module with the layer {shown(layer)} at this place is not accepted: {_ACCEPTED}"
+            f"a module with the layer {short_repr(layer)} at this place is not accepted: "
+            f"{_ACCEPTED}"
         )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from flockenv._io.arguments import check_function
 from flockenv._io.extras import require
 from flockenv.envs.spaces import ObservationSpace
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.model import (
     ModelPolicy,
@@ -72,13 +72,14 @@ class WrappedPolicy(ModelPolicy):
         is_single = not hasattr(unwrapped, "num_envs")
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
-                f"env = {shown(env)} is not accepted: a LeaderVecEnv or flockenv/Leaders-v0 as it "
-                "was before it was wrapped"
+                f"env = {short_repr(env)} is not accepted: a LeaderVecEnv or flockenv/Leaders-v0 "
+                "as it was before it was wrapped"
             )
         own = space_under_wrappers(model)
         if own is not None and own != space:
             raise ParameterError(
-                f"env = {shown(env)} is not accepted: the model was trained in {own}, not {space}"
+                f"env = {short_repr(env)} is not accepted: the model was trained in {own}, not "
+                f"{space}"
             )
         self._wrapper, self._is_each = wrapper, is_single
         self._space, self._actions = space, unwrapped.action_space

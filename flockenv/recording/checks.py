@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import number, real_numbers
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries
 from flockenv.order import QUANTITIES
 from flockenv.parameters import OBSTACLES, FlockParameters
@@ -71,7 +71,9 @@ def check_array(
 def check_seed(seed: Any, name: str = "seed") -> None:
     """Refuse what is no seed of a flock."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        raise ParameterError(f"{name} = {shown(seed)} is not accepted: an int from 0 to 2^64 - 1")
+        raise ParameterError(
+            f"{name} = {short_repr(seed)} is not accepted: an int from 0 to 2^64 - 1"
+        )
 
 
 def check_origin(origin: Mapping[str, Any]) -> None:
@@ -83,16 +85,18 @@ def check_origin(origin: Mapping[str, Any]) -> None:
             check_seed(value, name)
         elif name == "control_hz":
             if not 0.0 < number(value, name) < np.inf:
-                raise ParameterError(f"{name} = {shown(value)} is not accepted: a positive rate")
+                raise ParameterError(
+                    f"{name} = {short_repr(value)} is not accepted: a positive rate"
+                )
         elif not isinstance(value, str) or not re.fullmatch("[0-9a-f]{64}", value):
             words = "a SHA-256 of 64 hexadecimal digits"
-            raise ParameterError(f"{name} = {shown(value)} is not accepted: {words}")
+            raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {words}")
 
 
 def check_share(after: Any) -> None:
     """Refuse what is no share of a run."""
     if not 0.0 <= number(after, "after") <= 1.0:
-        raise ParameterError(f"after = {shown(after)} is not accepted: a share, 0 to 1")
+        raise ParameterError(f"after = {short_repr(after)} is not accepted: a share, 0 to 1")
 
 
 def check_ids(ids: Any, boats: int) -> None:
@@ -106,13 +110,13 @@ def check_ids(ids: Any, boats: int) -> None:
 def check_names(quantities: Any, of: str) -> None:
     """Refuse quantities of a user's own that are not by name, or whose names are taken."""
     if not isinstance(quantities, Mapping):
-        raise ParameterError(f"quantities = {shown(quantities)} is not accepted: {of} by name")
+        raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
     taken = {each.name for each in QUANTITIES} | {*TIMES, *MOTION, "boat", "id", "is_leader"}
     for name in quantities:
         if not isinstance(name, str) or not name.isidentifier() or name in taken:
             raise ParameterError(
-                f"quantity {shown(name)} is not accepted: an identifier that no quantity or column "
-                "of recordings has"
+                f"quantity {short_repr(name)} is not accepted: an identifier that no quantity or "
+                "column of recordings has"
             )
 
 
@@ -122,7 +126,8 @@ def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
     for name, function in functions.items():
         if not callable(function):
             raise ParameterError(
-                f"quantity {name!r} = {shown(function)} is not accepted: a function of a recording"
+                f"quantity {name!r} = {short_repr(function)} is not accepted: a function of a "
+                "recording"
             )
     return dict(functions)
 

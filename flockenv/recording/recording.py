@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flockenv._io.arguments import number, truth
+from flockenv._io.arguments import as_bool, number
 from flockenv._io.array_file import read_arrays, write_arrays
-from flockenv.errors import HintsAtNames, ParameterError, shown
+from flockenv.errors import HintsAtNames, ParameterError, short_repr
 from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import FlockParameters
@@ -231,7 +231,7 @@ class Recording(HintsAtNames):
         sample = self._sample_at(time_s)
         there = self._there(sample)
         if not there.any():
-            raise ParameterError(f"no boat is there at {shown(time_s)} s")
+            raise ParameterError(f"no boat is there at {short_repr(time_s)} s")
         return {
             "pose": self.pose[sample, there].astype(np.float64),
             "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
@@ -246,7 +246,7 @@ class Recording(HintsAtNames):
         start, end = self.time_s[0], self.time_s[-1]
         if not start <= number(time_s, "time_s") <= end:
             raise ParameterError(
-                f"time_s = {shown(time_s)} is not accepted: a time from {start} to {end} s"
+                f"time_s = {short_repr(time_s)} is not accepted: a time from {start} to {end} s"
             )
         return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
 
@@ -273,7 +273,7 @@ class Recording(HintsAtNames):
             ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
             ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
         """
-        return table_of(self, truth(boats, "boats"))
+        return table_of(self, as_bool(boats, "boats"))
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the recording as a dataset of xarray (extra ``sweep``).
@@ -406,7 +406,7 @@ class Recording(HintsAtNames):
         if Path(path).suffix.lower() != ".npz":
             words = "a name that ends in .npz; to_dataframe() has to_csv(), to_parquet() and others"
             raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: {words}")
-        write_arrays(path, arrays_of(self._fields()), compressed=truth(compressed, "compressed"))
+        write_arrays(path, arrays_of(self._fields()), compressed=as_bool(compressed, "compressed"))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 
 _LONGEST_SIDE = 65_535  # GIF counts in 16 bits
 _SLOWEST, _FASTEST = 0.1, 100.0
@@ -53,7 +53,7 @@ def save_animation(
     rate: Any = fps
     if not isinstance(rate, int | float) or not _SLOWEST <= rate <= _FASTEST:
         accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
-        raise ParameterError(f"fps = {shown(fps)} is not accepted: {accepted}")
+        raise ParameterError(f"fps = {short_repr(fps)} is not accepted: {accepted}")
     content = write(_checked(frames), fps)
     with atomic_write(path) as file:
         file.write(content)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._core import FrameRenderer
-from flockenv.errors import shown
+from flockenv.errors import short_repr
 from flockenv.flock import Flock
 from flockenv.recording import Recording
 
@@ -55,7 +55,7 @@ def frame(
         Shape (height, width, 3), uint8: red, green, blue.
     """
     if not isinstance(flock, Flock):
-        raise TypeError(f"a frame is of a Flock or a Recording, not of {shown(flock)}")
+        raise TypeError(f"a frame is of a Flock or a Recording, not of {short_repr(flock)}")
     return renderer(width, height).draw(flock._in_core, colors, caption)
 
 

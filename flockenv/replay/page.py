@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv._io.atomic_write import atomic_write
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries
 from flockenv.parameters import OBSTACLES
 from flockenv.recording import PHASES, Recording
@@ -113,7 +113,7 @@ def write_replay(
     name: Any
     for name, recording in recordings.items():
         if not isinstance(name, str) or not isinstance(recording, Recording):
-            raise ParameterError(f"{shown(given)} is not accepted: recordings by their names")
+            raise ParameterError(f"{short_repr(given)} is not accepted: recordings by their names")
         if len(recording) == 0 or not recording.has_poses:
             raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     page, every = _fitting_page(recordings)

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 
 FIRST_TRAINING_SEED = 1 << 32
 """Seeds from here on make policies, those below judge them."""
@@ -29,11 +29,13 @@ class SeedRange:
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
         """Return `count` seeds of a run, from its `start`-th on; others are refused."""
         if not 0 <= run < self.runs:
-            raise ParameterError(f"seed = {shown(run)} is not accepted: from 0 to {self.runs - 1}")
+            raise ParameterError(
+                f"seed = {short_repr(run)} is not accepted: from 0 to {self.runs - 1}"
+            )
         if not 0 <= start <= start + count <= self.of_a_run:
             raise ParameterError(
-                f"{shown(start + count)} seeds are not accepted: there are {self.of_a_run} for "
-                f"each run of {self.use}"
+                f"{short_repr(start + count)} seeds are not accepted: there are {self.of_a_run} "
+                f"for each run of {self.use}"
             )
         first = self.first + run * self.of_a_run + start
         return range(first, first + count)
@@ -79,7 +81,7 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(
-                f"seed = {shown(seed)} is not accepted: seeds for evaluation are from 0 to "
+                f"seed = {short_repr(seed)} is not accepted: seeds for evaluation are from 0 to "
                 "2^32 - 1, those above are for training"
             )
 
@@ -91,7 +93,7 @@ def release_seeds(tag: str, count: int) -> range:
     the count: seeds for evaluation that nobody chose.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
-        raise ParameterError(f"count = {shown(count)} is not accepted: from 1 to 2^32 - 1")
+        raise ParameterError(f"count = {short_repr(count)} is not accepted: from 1 to 2^32 - 1")
     number = int.from_bytes(hashlib.sha256(tag.encode()).digest()[:8], "big")
     first = number % (FIRST_TRAINING_SEED - count)
     return range(first, first + count)

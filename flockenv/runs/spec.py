@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from flockenv._io.arguments import number
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Pool
@@ -63,7 +63,9 @@ class RunSpec:
 
     def __post_init__(self) -> None:
         if not isinstance(self.parameters, FlockParameters):
-            raise TypeError(f"parameters must be FlockParameters, not {shown(self.parameters)}")
+            raise TypeError(
+                f"parameters must be FlockParameters, not {short_repr(self.parameters)}"
+            )
         refuse_unknown((self.policy,), NAMES, "policy of a run")
         _check_policy(self.policy, self.parameters.pool)
         if self.policy != EVERY_SUBSTEP and self.parameters.n_leaders == 0:

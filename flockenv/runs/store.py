@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from flockenv import _core
-from flockenv._io.arguments import check_function, items, whole
+from flockenv._io.arguments import as_int, check_function, items
 from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
@@ -163,7 +163,7 @@ def run_missing(
         If a finished run cannot be written.
     """
     check_function(progress, "progress")
-    if workers is not None and whole(workers, "workers") < 1:
+    if workers is not None and as_int(workers, "workers") < 1:
         raise ParameterError(f"workers = {workers} is not accepted: at least 1")
     missing = []
     specs = items(specs, "specs")

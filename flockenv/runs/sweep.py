@@ -17,7 +17,7 @@ import numpy as np
 from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_csv
 from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
-from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, short_repr
 from flockenv.flock import STEP_STATISTICS
 from flockenv.order import QUANTITIES
 from flockenv.parameters import FlockParameters
@@ -86,7 +86,7 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     refuse_unknown(values, _KEYS, "key of a sweep")
     fixed, grids, seeds = values.get("fixed", {}), _grids(values), _seeds(values.get("seeds"))
     if not isinstance(fixed, dict):
-        raise ParameterError(f"fixed = {shown(fixed)} is not accepted: a table [fixed]")
+        raise ParameterError(f"fixed = {short_repr(fixed)} is not accepted: a table [fixed]")
     axes = tuple(grids[0])
     for name in axes:
         if name in fixed:
@@ -125,7 +125,7 @@ def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
         for name, axis in grid.items():
             if not isinstance(axis, list) or not axis:
                 raise ParameterError(
-                    f"{name} = {shown(axis)} is not accepted in a grid: a list of one or more "
+                    f"{name} = {short_repr(axis)} is not accepted in a grid: a list of one or more "
                     "values (a field that does not vary belongs under [fixed])"
                 )
         if grid.keys() != grids[0].keys():
@@ -140,14 +140,14 @@ def _seeds(seeds: object) -> tuple[int, ...]:
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
         return tuple(seeds)
     raise ParameterError(
-        f"seeds = {shown(seeds)} is not accepted: how many (1 to {MOST_RUNS}), or a list of "
+        f"seeds = {short_repr(seeds)} is not accepted: how many (1 to {MOST_RUNS}), or a list of "
         "different seeds"
     )
 
 
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ParameterError(f"{name} = {shown(value)} is not accepted: a number")
+        raise ParameterError(f"{name} = {short_repr(value)} is not accepted: a number")
     return float(value)
 
 

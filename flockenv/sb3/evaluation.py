@@ -16,9 +16,9 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
-from flockenv._io.arguments import whole
+from flockenv._io.arguments import as_int
 from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.policies import ModelPolicy, Policy
 from flockenv.policies.model import lacks_normalizing, normalizing, space_under_wrappers
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
@@ -121,19 +121,20 @@ class _AsTrained:
         theirs = [each for each in layers if each.norm_obs]
         if not layers and lacks_normalizing(self.model):
             raise ParameterError(
-                f"{shown(self.model)} was trained in VecNormalize and loaded without it: evaluate "
+                f"{short_repr(self.model)} was trained in VecNormalize and loaded without it: "
+                "evaluate "
                 "it in VecNormalize.load(..., env), which has how observations were normalized"
             )
         if theirs and own is None and getattr(self.model, "env", None) is not None:
             raise ParameterError(
-                f"{shown(self.model)} was trained on observations that are not normalized: "
+                f"{short_repr(self.model)} was trained on observations that are not normalized: "
                 "evaluate it without VecNormalize"
             )
         normalized: Any = theirs[0].obs_rms if theirs else None
         shape = normalized.mean.shape if theirs else flocks.observation_space.shape
         if own is not None and own.obs_rms.mean.shape != shape:
             raise ParameterError(
-                f"{shown(self.model)} was trained on normalized observations of shape "
+                f"{short_repr(self.model)} was trained on normalized observations of shape "
                 f"{own.obs_rms.mean.shape}, not {shape}: evaluate it in wrappers in the same order"
             )
         if own is not None:
@@ -206,8 +207,8 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     for kind, (own, other) in spaces.items():
         if own is not None and own != other:
             raise ParameterError(
-                f"{shown(model)} is not accepted in these flocks: its {kind} space is {own}, not "
-                f"{other}"
+                f"{short_repr(model)} is not accepted in these flocks: its {kind} space is {own}, "
+                f"not {other}"
             )
 
 
@@ -219,7 +220,7 @@ def _check_options(model: Any, said: dict[str, Any], options: dict[str, Any]) ->
     """Refuse flocks with other options than those that a model is made for."""
     if differing := differing_options(said, options):
         raise ParameterError(
-            f"{shown(model)} is not accepted in these flocks: "
+            f"{short_repr(model)} is not accepted in these flocks: "
             + ", ".join(
                 f"it is made for {name} = {own!r}, not {other!r}"
                 for name, (own, other) in differing.items()
@@ -270,13 +271,13 @@ def evaluate_flocks(
         ``mirror_to_target`` or ``control_hz``), or is made for another pool, or was trained in a
         `VecNormalize` that it is loaded without, and for no episodes.
     """
-    episodes = whole(n_eval_episodes, "n_eval_episodes")
+    episodes = as_int(n_eval_episodes, "n_eval_episodes")
     if episodes < 1:
         raise ParameterError(f"n_eval_episodes = {n_eval_episodes} is not accepted: at least 1")
     counted = _per_flock(env)
     trained = _trained(model, counted)
     if seed is not None:
-        counted.seed(whole(seed, "seed"))
+        counted.seed(as_int(seed, "seed"))
     return _evaluated(trained, counted, episodes, deterministic)
 
 
@@ -357,12 +358,12 @@ class FlockEvalCallback(EvalCallback):
 
     def __init__(self, eval_env: VecEnv, *, seed: int | None = None, **options: Any) -> None:
         super().__init__(_per_flock(eval_env), **options)
-        self.n_eval_episodes = whole(self.n_eval_episodes, "n_eval_episodes")
+        self.n_eval_episodes = as_int(self.n_eval_episodes, "n_eval_episodes")
         if self.n_eval_episodes < 1:
             raise ParameterError(
                 f"n_eval_episodes = {self.n_eval_episodes} is not accepted: at least 1"
             )
-        self.seed = None if seed is None else whole(seed, "seed")
+        self.seed = None if seed is None else as_int(seed, "seed")
         self.evaluation: FlockEvaluation | None = None
         self.best_signed_order = math.nan
         self._evaluations_order: list[list[float]] = []

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv._io.arguments import items, once, whole
+from flockenv._io.arguments import as_int, items, materialized
 from flockenv.envs.base import ManyFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one
 from flockenv.envs.options import EnvOptions
@@ -19,7 +19,7 @@ from flockenv.envs.render_mode import RenderMode
 from flockenv.envs.reset_options import UPCOMING_OPTIONS, reset_requests
 from flockenv.envs.seeds import OwnGenerator, drawn_seed, seeds_from
 from flockenv.envs.spaces import ObservationSpace, leader_action_space
-from flockenv.errors import EpisodeError, ParameterError, shown
+from flockenv.errors import EpisodeError, ParameterError, short_repr
 from flockenv.rendering.frames import DEFAULT_SIZE
 from flockenv.sb3.leader_slot import LeaderSlot
 
@@ -184,7 +184,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             For options that are no dictionaries.
         """
         self._reset_options()
-        each = once({} if options is None else options)
+        each = materialized({} if options is None else options)
         each = [each] * self.num_envs if isinstance(each, Mapping) else each
         self._requests(each)
         super().set_options(list(each))
@@ -287,10 +287,10 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     def _chosen(self, indices: Any) -> list[int]:
         """Return the numbers of slots; an error names what is none."""
-        chosen = [whole(each, "indices") for each in items(self._get_indices(indices), "indices")]
+        chosen = [as_int(each, "indices") for each in items(self._get_indices(indices), "indices")]
         if any(not -self.num_envs <= slot < self.num_envs for slot in chosen):
             raise IndexError(
-                f"indices = {shown(indices)} are not accepted: slots 0 to {self.num_envs - 1}"
+                f"indices = {short_repr(indices)} are not accepted: slots 0 to {self.num_envs - 1}"
             )
         return chosen
 
@@ -377,7 +377,7 @@ def _equal(one: Any, other: Any) -> bool:
 
 def _leader_counts(n_leaders: Any) -> list[int]:
     """Leaders of the flocks, to be dealt out in turn."""
-    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else once(n_leaders)
+    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
     if not isinstance(dealt, Sequence) or isinstance(dealt, str):
         dealt = [dealt]
     if not dealt:

@@ -13,7 +13,7 @@ from stable_baselines3.common.preprocessing import get_action_dim
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
 
@@ -184,7 +184,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
         flock_of_slot = list(flock_of_slot)
         if hold_steps < 1 or not flock_of_slot:
             raise ParameterError(
-                f"hold_steps = {shown(hold_steps)} and {len(flock_of_slot)} slots are not "
+                f"hold_steps = {short_repr(hold_steps)} and {len(flock_of_slot)} slots are not "
                 "accepted: at least 1 each"
             )
         self._shared: dict[str, Any] = {

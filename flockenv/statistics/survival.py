@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv._io.arguments import number, with_gaps
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.statistics.intervals import CONFIDENCE
 
 
@@ -44,7 +44,7 @@ class Survival:
     def share_at(self, time_s: float) -> float:
         """Return the share of the runs that wait longer than a time in s."""
         if not number(time_s, "time_s") >= 0.0:
-            raise ParameterError(f"time_s = {shown(time_s)} is not accepted: at least 0 s")
+            raise ParameterError(f"time_s = {short_repr(time_s)} is not accepted: at least 0 s")
         place = int(np.searchsorted(self.time_s, time_s, side="right"))
         return 1.0 if place == 0 else float(self.share[place - 1])
 

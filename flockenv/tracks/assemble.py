@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import items, once, series, with_gaps
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv._io.arguments import items, materialized, series, with_gaps
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
@@ -93,14 +93,14 @@ def recording_of(
     poses, motion = poses[:, order], motion[:, order]
     lengths = series(hull, "hull")
     if lengths.shape != (2,):
-        raise ParameterError(f"hull = {shown(hull)} is not accepted: two numbers")
+        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
     parameters = FlockParameters(
         n_boats=len(names),
         n_leaders=len(leaders),
         pool=pool,
         boat_radius_cm=float(lengths[0]),
         boat_shape=float(lengths[1]),
-        target=once(target),
+        target=materialized(target),
         discs=discs,
         walls=walls,
     )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.tracks.formats import plain
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.table import Floats, Table
@@ -62,8 +62,8 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
                 return _typed(pandas, values)
             return _past_midnight(values.dt.total_seconds().to_numpy(np.float64))
     raise ParameterError(
-        f"column {found.name!r} holds {shown(str(texts.iloc[0]))}, which is no number, no time "
-        "12:34:56.7 and no date 2026-01-31 12:34:56.7"
+        f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is no number, no "
+        "time 12:34:56.7 and no date 2026-01-31 12:34:56.7"
     )
 
 

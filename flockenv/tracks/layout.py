@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from flockenv._io.toml import read_toml_file
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
 
 Rule = tuple[Callable[[Any], bool], str]
@@ -191,7 +191,9 @@ class TrackLayout:
             value = getattr(self, each.name)
             holds, accepted = _KINDS.get(each.type, (None, ""))
             if holds and not holds(value):
-                raise ParameterError(f"{each.name} = {shown(value)} is not accepted: {accepted}")
+                raise ParameterError(
+                    f"{each.name} = {short_repr(value)} is not accepted: {accepted}"
+                )
         if len(columns_of(self.x)) != len(columns_of(self.y)):
             raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
         if (self.confidence is None) != (self.least_confidence is None):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flockenv._io.arguments import check_function
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import frames_of
@@ -61,7 +61,7 @@ def read_tracks(
         Without the extra ``plot``.
     """
     if not isinstance(layout, TrackLayout | None):
-        raise TypeError(f"layout must be a TrackLayout, not {shown(layout)}")
+        raise TypeError(f"layout must be a TrackLayout, not {short_repr(layout)}")
     check_function(report, "report")
     if not isinstance(source, str | os.PathLike):
         if layout is None:

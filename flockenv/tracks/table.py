@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from flockenv._io.array_file import most_held
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.tracks.layout import TrackLayout
 
 if TYPE_CHECKING:
@@ -250,7 +250,7 @@ def plain_table(table: "pd.DataFrame") -> Table:
     if not hasattr(table, "columns") or not hasattr(table, "index"):
         raise TypeError(
             f"tracks must be a file, a DataFrame of pandas or a Dataset of xarray, not "
-            f"{shown(table)}"
+            f"{short_repr(table)}"
         )
     columns: Any = table.columns
     index: Any = table.index
@@ -309,7 +309,7 @@ def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
         whole, _, part = value.lstrip("-+").partition(decimal)
         is_other = whole.isdigit() and part.isdigit()
         raise ParameterError(
-            f"column {name!r} holds other things than numbers: {shown(value)} in "
+            f"column {name!r} holds other things than numbers: {short_repr(value)} in "
             f"{found.index.name} {line}{f'; is decimal = {decimal!r}?' if is_other else ''}"
         )
     return values

@@ -9,10 +9,10 @@ import numpy as np
 import tomli_w
 
 from flockenv import _core
-from flockenv._io.arguments import truth
+from flockenv._io.arguments import as_bool
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError, shown
+from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 
@@ -55,7 +55,7 @@ def export(
             f"path = {os.fspath(path)!r} is not accepted: a name that ends in {', '.join(EXPORTS)}"
         )
     if not isinstance(recording, Recording):
-        raise TypeError(f"recording must be a Recording, not {shown(recording)}")
+        raise TypeError(f"recording must be a Recording, not {short_repr(recording)}")
     if len(recording) == 0 or not recording.has_poses:
         raise ParameterError("this recording holds no poses to export")
     if ending == ".gsd":
@@ -65,7 +65,7 @@ def export(
     text = "# Columns and units of the table beside this file, for flockenv.\n"
     text += tomli_w.dumps(_layout(recording))
     is_other = beside.exists() and beside.read_bytes() != text.encode()
-    if not truth(overwrite, "overwrite") and is_other:
+    if not as_bool(overwrite, "overwrite") and is_other:
         raise ParameterError(f"{beside} is there already, with another layout: overwrite=True")
     table = recording.to_dataframe(boats=True)
     if ending == ".csv":

@@ -13,13 +13,13 @@ import tomli_w
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import whole
+from flockenv._io.arguments import as_int
 from flockenv._io.atomic_write import atomic_write, write_text
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv._io.plain_file import open_plain
 from flockenv._io.toml import read_toml_file
 from flockenv.comparison import run_episodes
-from flockenv.errors import FlockError, ParameterError, refuse_unknown, shown
+from flockenv.errors import FlockError, ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies import LeaningLaw
 from flockenv.policies.names import PAPERS_LAW, TUNED_LAW
@@ -84,7 +84,7 @@ class BranchTraining:
 
     def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: Any) -> None:
         refuse_unknown(options, OPTIONS, "option of the training")
-        first = branch_seed(whole(seed, "seed"))
+        first = branch_seed(as_int(seed, "seed"))
         self._core = _core.Trainer(parameters, options, seed, first)
         self.parameters = parameters
 
@@ -224,7 +224,7 @@ def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTra
     version = read_toml_file(folder / SETTINGS, str(folder / SETTINGS)).get("results_version")
     if version != RESULTS_VERSION:
         raise ParameterError(
-            f"{folder} was trained in results version {shown(version)}, and this flockenv has "
+            f"{folder} was trained in results version {short_repr(version)}, and this flockenv has "
             f"version {RESULTS_VERSION}: start again"
         )
     with open_plain(path) as file:

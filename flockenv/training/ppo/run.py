@@ -19,7 +19,7 @@ from stable_baselines3.common.logger import configure
 from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_text
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv._io.plain_file import open_plain
-from flockenv.errors import FlockError, InUseError, ParameterError, shown
+from flockenv.errors import FlockError, InUseError, ParameterError, short_repr
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.ppo.settings import TrainingSettings
@@ -127,7 +127,7 @@ def resume(
                 with zipfile.ZipFile(file) as archive:
                     done = json.loads(archive.read("data"))["num_timesteps"]
             if type(done) is not int or done < 0 or done % (model.n_steps * venv.num_envs):
-                raise ValueError(f"{shown(done)} samples are no whole number of rollouts")
+                raise ValueError(f"{short_repr(done)} samples are no whole number of rollouts")
             model.num_timesteps = done
         # What a damaged archive makes zipfile, pickle and torch raise is not one kind of error.
         except Exception as error:

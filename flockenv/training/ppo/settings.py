@@ -11,10 +11,10 @@ import tomli_w
 from stable_baselines3 import PPO
 from stable_baselines3.common.utils import LinearSchedule
 
-from flockenv._io.arguments import whole
+from flockenv._io.arguments import as_int
 from flockenv._io.toml import read_toml_file
 from flockenv.envs.options import EnvOptions
-from flockenv.errors import ParameterError, refuse_unknown, shown
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
@@ -79,19 +79,19 @@ class TrainingSettings:
 
     def __post_init__(self) -> None:
         if self.pool not in [*_TIMES_S]:
-            raise ParameterError(f"pool = {shown(self.pool)} is not accepted: wide or narrow")
+            raise ParameterError(f"pool = {short_repr(self.pool)} is not accepted: wide or narrow")
         hours: Any = self.flock_hours
         if (
             isinstance(hours, bool)
             or not isinstance(hours, int | float)
             or not 0.0 < hours < math.inf
         ):
-            raise ParameterError(f"flock_hours = {shown(hours)} is not accepted: above 0")
+            raise ParameterError(f"flock_hours = {short_repr(hours)} is not accepted: above 0")
         for name in ("environment", "ppo"):
             if not isinstance(getattr(self, name), Mapping):
-                raise ParameterError(f"{name} = {shown(getattr(self, name))} is no table")
+                raise ParameterError(f"{name} = {short_repr(getattr(self, name))} is no table")
         refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_OWN}, "option of PPO")
-        POLICY_SEEDS["training"].seeds(1, whole(self.seed, "seed"))
+        POLICY_SEEDS["training"].seeds(1, as_int(self.seed, "seed"))
 
     def flocks(self) -> dict[str, Any]:
         """Return the options of the environment that say which flocks are led."""
