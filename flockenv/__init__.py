@@ -2,11 +2,12 @@
 
 import importlib
 import importlib.util
+import os
+import sys
 from typing import TYPE_CHECKING, Any
 
 from flockenv import _avx2
 from flockenv._core import __version__
-from flockenv.envs.registration import register
 
 if TYPE_CHECKING:
     from flockenv import policies
@@ -74,8 +75,18 @@ _MADE = {
 }
 """What names of other packages are here."""
 
+
+def _prints_help_alone() -> bool:
+    """Return whether this process is the command line that prints its help or version and ends."""
+    program, *words = getattr(sys, "argv", None) or [""]
+    name = os.path.basename(program).removesuffix(".exe")
+    return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
+
+
 _avx2.choose()  # Before anything uses the core.
-register()
+# Gymnasium, which has no entry points for packages, and PettingZoo take as long to import as NumPy.
+if not _prints_help_alone():
+    importlib.import_module("flockenv.envs.registration").register()
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from flockenv._core import __version__
-from flockenv.cli.console import console, echo, errors
+from flockenv.cli.console import echo, errors
 from flockenv.errors import FlockError
 
 __all__ = ["app", "main"]
@@ -39,6 +39,9 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # Not every console has a Ψ.
     words = sys.argv[1:]
+    if words == ["--version"]:
+        _print_version()  # Typer would import pydantic to read a flag.
+        return
     try:
         # Words to be completed are in the environment.
         named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
@@ -73,11 +76,15 @@ def _app(named: Collection[str]) -> typer.Typer:
     return app
 
 
+def _print_version() -> None:
+    echo(__version__)
+
+
 def _root(
     version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
 ) -> None:
     if version:
-        console.print(__version__)
+        _print_version()
         raise typer.Exit
 
 

@@ -44,9 +44,13 @@ def test_import_needs_no_optional_library():
             "f.simulate(p, 1, 1.0, policy='learned')",
             ("rich", "typer"),
         ),
-        (
-            "import sys; sys.argv = ['flockenv', '--help']; from flockenv.cli import main; main()",
-            (),
+        *(
+            (
+                f"import sys; sys.argv = ['bin/flockenv', {words}]; "
+                "from flockenv.cli import main; main()",
+                ("gymnasium", "numpy", "pettingzoo", *absent),
+            )
+            for words, *absent in (("'--help'",), ("'-h'",), ("'--version'", "pydantic"))
         ),
     ],
 )

@@ -48,6 +48,23 @@ def test_ids_are_known_whichever_is_imported_first(imports):
     assert all(repr(env_id) in listed for env_id in ENVIRONMENTS)
 
 
+@pytest.mark.parametrize(
+    ("words", "are_known"),
+    [
+        ([], True),
+        (["flockenv", "--version"], False),
+        (["flockenv", "presets"], True),
+        (["flockenv", "run", "--help"], True),
+        (["train.py", "--help"], True),
+        (["flockenv.py"], True),
+    ],
+)
+def test_only_the_command_line_that_prints_its_help_knows_no_ids(words, are_known):
+    code = f"import sys; sys.argv = {words}; import flockenv, gymnasium; print(*gymnasium.registry)"
+    listed = subprocess.check_output([sys.executable, "-c", code], text=True).split()
+    assert {env_id in listed for env_id in ENVIRONMENTS} == {are_known}
+
+
 @pytest.mark.skipif(not hasattr(pettingzoo, "register"), reason="PettingZoo has no ids")
 @pytest.mark.parametrize("env_id", ENVIRONMENTS)
 def test_pettingzoo_makes_the_same_environments(env_id):
