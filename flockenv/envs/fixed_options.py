@@ -1,7 +1,8 @@
 """Options as attributes: setting one from outside would do nothing, and is refused."""
 
-import inspect
 import sys
+from itertools import takewhile
+from types import FrameType
 from typing import Any, ClassVar
 
 from flockenv.envs.options import ARGUMENTS, NAMES
@@ -12,7 +13,8 @@ class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
     Names in other case or without their unit are refused too. A subclass may keep attributes of any
-    name but those in `_kept`, which its methods set on ``self``; from then on they are its own.
+    name but those in `_kept`, which its methods set on ``self``, or its classmethods on what they
+    make; from then on they are its own, as are those that its class has.
     """
 
     #: Attributes of this class that are named like an argument.
@@ -24,7 +26,7 @@ class FixedOptions:
         """Set an attribute; an AttributeError says what sets an option instead."""
         if (words := _refusal(name, self._next_episode)) is not None:
             caller = sys._getframe(1)
-            if caller.f_locals.get("self") is not self:
+            if not _is_method_of(self, caller):
                 self._refuse_from_outside(name)
             elif name in self._kept:
                 if not _is_same(vars(self).get(name, value), value):
@@ -38,9 +40,23 @@ class FixedOptions:
         """Refuse to set an option, unless a subclass keeps an attribute of that name."""
         words = _refusal(name, self._next_episode)
         is_own = name in vars(self).get("_names_of_subclass", ())
-        is_own = is_own or inspect.isdatadescriptor(inspect.getattr_static(type(self), name, None))
+        if name not in self._kept:
+            subclasses = takewhile(_is_of_a_user, type(self).__mro__)
+            is_own = is_own or any(name in vars(each) for each in subclasses)
         if words is not None and not is_own:
             raise AttributeError(words)
+
+
+def _is_of_a_user(cls: type) -> bool:
+    return not cls.__module__.startswith("flockenv.")
+
+
+def _is_method_of(env: object, frame: FrameType) -> bool:
+    """Return whether a frame is of a method of an environment, or of a classmethod that made it."""
+    cls = frame.f_locals.get("cls")
+    return frame.f_locals.get("self") is env or (
+        isinstance(cls, type) and issubclass(cls, FixedOptions) and isinstance(env, cls)
+    )
 
 
 def _is_same(one: Any, other: Any) -> bool:

@@ -149,6 +149,7 @@ def test_a_tutorials_first_lines():
             return self.observation, self.reward, *ends
 
     env = Mine(**OPTIONS, render_mode="rgb_array")
+    env.reward = 1.0
     env.reset(seed=0)
     _, reward, *_ = env.step(np.zeros(2))
     assert env.reward == reward
@@ -157,6 +158,23 @@ def test_a_tutorials_first_lines():
     wrapped = gymnasium.wrappers.FlattenObservation(env)
     wrapped.set_wrapper_attr("target", "other")
     assert env.target == "other"
+
+
+def test_a_classmethod_sets_attributes_of_what_it_makes(base):
+    class Mine(base):
+        parameters = None if "parameters" in base._kept else {"mine": 1}
+
+        @classmethod
+        def from_config(cls, config):
+            env = cls(**config)
+            env.reward, env.target = 0.0, "goal"
+            return env
+
+    env = Mine.from_config(OPTIONS)
+    assert (env.reward, env.target) == (0.0, "goal")
+    for name in base._kept:
+        with pytest.raises(AttributeError, match="cannot be set as an attribute"):
+            setattr(env, name, 7)
 
 
 INTERFACES = {
