@@ -39,7 +39,11 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
-    temporary, file = _held_file(target.parent)
+    try:
+        temporary, file = _held_file(target.parent)
+    except OSError as error:  # Nobody knows the temporary file's name.
+        error.filename = os.fspath(path)
+        raise
     try:
         with file:
             _keep_access(target, file)

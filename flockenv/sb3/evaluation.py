@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from io import BufferedIOBase
 from pathlib import Path
 from typing import Any, TypeGuard, cast
 
@@ -17,12 +18,17 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
 
 from flockenv._io.arguments import as_int
+from flockenv._io.array_file import read_arrays
+from flockenv._io.atomic_write import atomic_write
+from flockenv._io.plain_file import check_writable
 from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
 from flockenv.errors import ParameterError, short_repr
 from flockenv.policies import ModelPolicy, Policy
 from flockenv.policies.model import lacks_normalizing, normalizing, space_under_wrappers
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.statistics import mean_interval
+
+_BEST = "best_model.zip"
 
 
 class PerFlock(VecEnvWrapper):
@@ -354,6 +360,8 @@ class FlockEvalCallback(EvalCallback):
     ParameterError
         Before the training, for flocks whose options are not those of the training, as
         `evaluate_flocks`, and for a file with another number of episodes to go on with.
+    OSError
+        Before the training, for files that are protected against writing.
     """
 
     def __init__(self, eval_env: VecEnv, *, seed: int | None = None, **options: Any) -> None:
@@ -374,6 +382,10 @@ class FlockEvalCallback(EvalCallback):
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
         _trained(self.model, self.eval_env)
+        if self.log_path is not None:
+            check_writable(f"{self.log_path}.npz")
+        if self.best_model_save_path is not None:
+            check_writable(Path(self.best_model_save_path, _BEST))
         if self.model.num_timesteps > 0 and not self._evaluations_order:
             self._go_on()
 
@@ -382,9 +394,9 @@ class FlockEvalCallback(EvalCallback):
         path = None if self.log_path is None else Path(f"{self.log_path}.npz")
         if path is None or not path.is_file():
             return
-        with np.load(path) as stored:
-            before = stored["timesteps"] <= self.model.num_timesteps
-            parts = {name: stored[name][before] for name in stored.files}
+        stored = read_arrays(path)
+        before = stored["timesteps"] <= self.model.num_timesteps
+        parts = {name: values[before] for name, values in stored.items()}
         episodes = parts["results"].shape[1]
         if episodes != self.n_eval_episodes:
             raise ParameterError(
@@ -423,7 +435,8 @@ class FlockEvalCallback(EvalCallback):
         goes_on = True
         if is_best:
             if self.best_model_save_path is not None:
-                self.model.save(Path(self.best_model_save_path) / "best_model")
+                with atomic_write(Path(self.best_model_save_path, _BEST)) as file:
+                    self.model.save(cast(BufferedIOBase, file))
             if self.callback_on_new_best is not None:
                 goes_on = self.callback_on_new_best.on_step()
         return goes_on and (self.callback is None or self._on_event())
@@ -454,7 +467,8 @@ class FlockEvalCallback(EvalCallback):
             }
             if self.evaluations_successes:
                 columns["successes"] = self.evaluations_successes
-            np.savez(self.log_path, **columns)
+            with atomic_write(f"{self.log_path}.npz") as file:
+                np.savez(file, **columns)
 
     def _log(self, found: FlockEvaluation) -> None:
         self.logger.record("eval/signed_order", found.mean)

@@ -111,6 +111,14 @@ def test_a_link_stays_a_link(name, there, tmp_path):
     assert not [each for each in tmp_path.rglob("*") if each.name.endswith(".tmp")]
 
 
+def test_a_link_into_no_folder_is_named(tmp_path):
+    """And not the temporary file, which nobody knows."""
+    (tmp_path / "a.txt").symlink_to("missing/a.txt")
+    with pytest.raises(FileNotFoundError) as raised:
+        write_text(tmp_path / "a.txt", "new")
+    assert raised.value.filename == str(tmp_path / "a.txt")
+
+
 def test_a_link_to_a_protected_file_is_protected(tmp_path):
     (tmp_path / "a.txt").write_text("somebody's")
     (tmp_path / "a.txt").chmod(0o444)

@@ -301,6 +301,24 @@ def test_a_training_that_goes_on_goes_on_with_its_evaluations_and_its_best(tmp_p
     assert np.load(tmp_path / "evaluations.npz")["timesteps"].tolist() == [96]
 
 
+@pytest.mark.parametrize("name", ["evaluations.npz", "best_model.zip"])
+def test_files_of_an_evaluation_that_somebody_protected_stay(tmp_path, name):
+    (tmp_path / name).write_text("somebody's")
+    (tmp_path / name).chmod(0o444)
+    model = ppo(make())
+    with pytest.raises(PermissionError, match="protected against writing"):
+        model.learn(96, evaluation(make(), str(tmp_path)))
+    assert model.num_timesteps == 0
+    assert (tmp_path / name).read_text() == "somebody's"
+
+
+def test_a_damaged_file_of_evaluations_is_named(tmp_path):
+    model = ppo(make()).learn(96)
+    (tmp_path / "evaluations.npz").write_bytes(b"PK")
+    with pytest.raises(ParameterError, match=r"evaluations\.npz is no whole, unharmed \.npz file"):
+        model.learn(96, evaluation(make(), str(tmp_path)), reset_num_timesteps=False)
+
+
 def test_callbacks_of_an_evaluation_are_called():
     stop = StopTrainingOnNoModelImprovement(max_no_improvement_evals=1, min_evals=0)
     model = ppo(make(), learning_rate=0.0)
