@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from numbers import Real
 from typing import Any
 
@@ -26,7 +27,10 @@ Schedule = Iterable[tuple[float, Mapping[str, object]]]
 Start = bytes | Mapping[str, object] | Recording
 """A snapshot, a state, or a recording whose last sample it is."""
 
-# Of them depends whether boats fit, which is tried before a run.
+Changes = list[tuple[float, str | tuple[str, ...] | FlockParameters]]
+"""Times of a schedule, and the target or the parameters that hold from then on."""
+
+# Whether boats fit depends on these, and is tried before a run.
 _PLACED = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
 
 
@@ -132,7 +136,6 @@ def simulate(
         leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
     flock = _started(parameters, seed, start, noise_seed)
-    start_sha256 = _start_digest(start, flock)
     plan = {
         "sample_hz": sample_hz,
         "single_precision": _is_single(dtype),
@@ -142,33 +145,53 @@ def simulate(
         "progress": progress,
     }
 
-    def recording(columns: dict[str, Any]) -> Recording:
-        series = columns.pop("contacts", None)
-        own = {
-            "phase": PHASES[columns["phase"]],
-            "order": OrderSeries(**columns["order"]),
-            "statistics": StepStatistics(**columns["statistics"]),
-        }
-        return Recording(
-            **columns | own,
-            contacts=None if series is None else ContactSeries.of_columns(series),
-            parameters=parameters,
-            seed=flock.seed,
-            version=_core.__version__,
-            policy=leaders.title,
-            noise_seed=None if noise_seed is None else as_int(noise_seed, "noise_seed"),
-            control_hz=None if control_hz is None else float(control_hz),
-            start_sha256=start_sha256,
-            schedule_sha256=_schedule_digest(parameters, changes, columns["time_s"]),
-        )
+    origin = {"parameters": parameters, "seed": flock.seed, "policy": leaders.title}
+    origin |= _origin(flock, start, noise_seed, control_hz)
+    run = _recorded(flock, duration_s, plan, partial(_recording, origin, changes))
+    return run.with_quantities(functions) if functions else run
 
+
+def _origin(
+    flock: Flock,
+    start: bytes | Mapping[str, object] | None,
+    noise_seed: int | None,
+    control_hz: float | None,
+) -> dict[str, object]:
+    """Return what sets a run apart from another of its parameters, seed and policy."""
+    return {
+        "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
+        "control_hz": None if control_hz is None else float(control_hz),
+        "start_sha256": _start_digest(start, flock),
+    }
+
+
+def _recorded(
+    flock: Flock,
+    duration_s: float,
+    plan: dict[str, Any],
+    recording: Callable[[dict[str, Any]], Recording],
+) -> Recording:
+    """Run a flock in the core; an error has the run until then as its ``recording``."""
     try:
-        run = recording(_core.record(flock._in_core, duration_s, plan))
+        columns = _core.record(flock._in_core, duration_s, plan)
     except BaseException as error:
         if (columns := vars(error).pop("columns", None)) is not None:
             vars(error)["recording"] = recording(columns)
         raise
-    return run.with_quantities(functions) if functions else run
+    return recording(columns)
+
+
+def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, Any]) -> Recording:
+    """Return the recording of what the core has recorded, with where it comes from."""
+    series = columns.pop("contacts", None)
+    read = {
+        "phase": PHASES[columns["phase"]],
+        "order": OrderSeries(**columns["order"]),
+        "statistics": StepStatistics(**columns["statistics"]),
+        "contacts": None if series is None else ContactSeries.of_columns(series),
+    }
+    digest = _schedule_digest(origin["parameters"], changes, columns["time_s"])
+    return Recording(**columns | read, **origin, version=_core.__version__, schedule_sha256=digest)
 
 
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
@@ -179,8 +202,7 @@ def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
         if own is None and control_hz is not None:
             raise ParameterError(
                 f"control_hz = {short_repr(control_hz)} is not accepted: without a policy the "
-                "paper's "
-                "law steers at every substep"
+                "paper's law steers at every substep"
             )
         rate = own if control_hz is None else control_hz
         return {"steer": leaders.law, "layouts": [], "control_hz": rate}
@@ -194,12 +216,10 @@ def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     }
 
 
-def _changes(
-    parameters: FlockParameters, schedule: Schedule, seed: int
-) -> list[tuple[float, str | tuple[str, ...] | FlockParameters]]:
+def _changes(parameters: FlockParameters, schedule: Schedule, seed: int) -> Changes:
     """Return the changes of a schedule: of the target alone, or of all parameters."""
     entries = [(*_change(entry), entry) for entry in items(schedule, "schedule")]
-    changes: list[tuple[float, str | tuple[str, ...] | FlockParameters]] = []
+    changes: Changes = []
     now, times = parameters, dict[float, set[str]]()
     for time_s, fields, entry in sorted(entries, key=lambda each: each[0]):
         try:
@@ -245,9 +265,7 @@ def _is_single(dtype: DTypeLike) -> bool:
 
 
 def _schedule_digest(
-    now: FlockParameters,
-    changes: list[tuple[float, str | tuple[str, ...] | FlockParameters]],
-    times_s: NDArray[np.float64],
+    now: FlockParameters, changes: Changes, times_s: NDArray[np.float64]
 ) -> str | None:
     """Return the SHA-256 of what changed when, from these parameters; None if nothing did."""
     named, length_s = [], round(times_s[-1] - times_s[0], 9)

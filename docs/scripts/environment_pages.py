@@ -14,7 +14,8 @@ from pathlib import Path
 
 import flockenv
 from docs.scripts.id_pages import draw_films, id_pages, plain_cell, registered
-from docs.scripts.plots import DOCS, markdown
+from docs.scripts.markdown import filled, markdown
+from docs.scripts.plots import DOCS
 from flockenv.envs.observation import (
     BLOCKS,
     Entry,
@@ -36,14 +37,11 @@ CLASSES = (
 EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
 
 
-MARKED = re.compile(r"(?<=<!-- ids -->\n\n).*?(?=\n\n<!-- end -->)", re.DOTALL)
-
-
 def pages() -> dict[Path, str]:
     """Return the text of every page that is committed."""
-    index = (FOLDER / "index.md").read_text(encoding="utf-8")
-    index = MARKED.sub(lambda _: registered(), index)
-    texts = {**id_pages(), "tables": tables(), "index": index}
+    index, listed = ((FOLDER / name).read_text("utf-8") for name in ("index.md", "tables.md"))
+    filled_in = {"index": filled(index, ids=registered()), "tables": tables(listed)}
+    texts = {**id_pages(), **filled_in}
     return {FOLDER / f"{name}.md": text for name, text in texts.items()}
 
 
@@ -55,64 +53,22 @@ def classes() -> str:
     return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{docs}\n"
 
 
-def tables() -> str:
-    """Return the page of everything that the core declares of the environments."""
-    options = markdown(
-        ["option", "default", "meaning"],
-        [
-            [f"`{name}`", f"`{each.default!r}`", plain_cell(each.doc)]
-            for name, each in OPTIONS.items()
-        ],
+def tables(page: str) -> str:
+    """Return the page of everything that the core declares of the environments, filled in."""
+    options = [
+        [f"`{name}`", f"`{option.default!r}`", plain_cell(option.doc)]
+        for name, option in OPTIONS.items()
+    ]
+    terms = [[f"`{name}`", plain_cell(meaning)] for name, meaning in TERMS.items()]
+    return filled(
+        page,
+        parameters=_parameters(),
+        options=markdown(["option", "default", "meaning"], options),
+        terms=markdown(["term", "meaning"], terms),
+        entries=_by_block(observation_entries(EVERY_BLOCK)),
+        state=_by_block(state_entries(1)),
+        features=_features(),
     )
-    terms = markdown(
-        ["term", "meaning"], [[f"`{name}`", plain_cell(meaning)] for name, meaning in TERMS.items()]
-    )
-    return f"""# Tables
-
-Every parameter of a flock, every option of the environments, every term of the reward, and every \
-number that a policy can observe. This page is written from what the core declares, so that it \
-lists what the installed version has.
-
-## Parameters
-
-The fields of `FlockParameters`, with their values in the presets: one value if all presets have \
-it. [The model](../model.md) says what they do to a flock.
-
-{_parameters()}
-
-## Options
-
-Any field of `FlockParameters` is an option too.
-
-{options}
-
-## Reward terms
-
-The option `reward` gives each a weight. `flockenv.envs.options.TERMS` holds this table.
-
-{terms}
-
-## Observation
-
-`observation_entries()` returns the rows of the blocks that are on, in the order of an \
-observation. The entries of `neighbors` and `obstacles` repeat for each boat or obstacle, nearest \
-first. A value is divided by its scale and then clipped at its bounds. *Mirrored* entries change \
-their sign if `mirror_to_target` reflects the view.
-
-{_by_block(observation_entries(EVERY_BLOCK))}
-
-## Global state
-
-`state()` has the entries of `boat` for each boat in order, then those of `clock`.
-
-{_by_block(state_entries(1))}
-
-## Flock features
-
-`flock_features()` has these for the normal boats, then for the leaders, then the rest.
-
-{_features()}
-"""
 
 
 def _parameters() -> str:

@@ -5,10 +5,10 @@ import re
 import tomllib
 from pathlib import Path
 
-from docs.scripts.plots import REPOSITORY, markdown
+from docs.scripts.markdown import filled, markdown
+from docs.scripts.plots import REPOSITORY
 
 PAGE = REPOSITORY / "ARCHITECTURE.md"
-MARKED = re.compile(r"(?<=<!-- floors -->\n\n).*?(?=\n\n<!-- end -->)", re.DOTALL)
 OUTSIDE = (
     ("`studies`, `baselines`, `examples`, `docs`", "Studies, trainings and pages, on public names"),
     ("`web`", "The live page: the same crate, compiled to WebAssembly"),
@@ -48,10 +48,5 @@ def _what(path: Path) -> str:
     return re.split(r"\.$|\.\s+(?=[A-Z])", " ".join(words.split()), maxsplit=1)[0]
 
 
-def filled(text: str) -> str:
-    """Return a page whose floors are those of the linter."""
-    return MARKED.sub(lambda _: floors(), text)
-
-
 if __name__ == "__main__":
-    PAGE.write_text(filled(PAGE.read_text("utf-8")), encoding="utf-8")
+    PAGE.write_text(filled(PAGE.read_text("utf-8"), floors=floors()), encoding="utf-8")

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from docs.scripts.loops import HEIGHT, SHOWN, draw, shown
-from docs.scripts.plots import STUDIES, Interval, Plot, Row, colors_of, listed, markdown, rows
+from docs.scripts.markdown import markdown
+from docs.scripts.plots import STUDIES, Interval, Plot, Row, colors_of, listed, rows
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries

@@ -158,11 +158,3 @@ def bar_lengths(
     below = [middle - end for middle, end in zip(mean, low, strict=True)]
     above = [end - middle for middle, end in zip(mean, high, strict=True)]
     return below, above
-
-
-def markdown(header: Sequence[str], body: Iterable[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    lines = [header, ["---"] * len(header), *body]
-    return "\n".join(
-        "|" + "".join(f" {cell} |" if cell else " |" for cell in line) for line in lines
-    )

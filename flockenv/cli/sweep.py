@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -76,8 +77,8 @@ def sweep(options: SweepOptions) -> None:
         _check_same(copy, work)
     prepare(copy)
     write_text(copy, options.spec.read_text("utf-8"))
-    total = sum(run.cost for run in runs)
     kept = f"The runs that were finished are stored in {folder}: the same command resumes."
+    total = sum(run.cost for run in runs)
     bar = progress(f"{len(runs)} runs", total, options.shows_nothing, ends=False, kept=kept)
     with bar as advance:
 
@@ -89,25 +90,39 @@ def sweep(options: SweepOptions) -> None:
         else:
             table = run_sweep(work, folder, engine, finished, warn, options.workers)
     if shard is not None:
-        for run, error in failures.items():
-            warn(f"the run of seed {run.seed} failed: {error}")
-        failed, where = len(failures), "see the warnings"
-        found = {"shard": str(shard), "runs": len(runs), "failed": failed}
-        done = f"Shard {shard}: {len(runs) - failed} of {len(runs)} runs are stored. "
-        done += "When all shards have ended, the same command without --shard writes the table."
+        failed, where = _show_shard(options, shard, len(runs), failures), "see the warnings"
     else:
-        failed, where = int((table["failure"] != "").sum()), "see the column failure"
-        found = json.loads(table.to_json(orient="records"))
-        done = f"{len(runs)} runs, written to {folder}"
-    if options.as_json:
-        print_json(found)
-    else:
-        echo(done)
-        if shard is None:
-            _show_critical_noises(table)
+        failed, where = _show_table(options, folder, len(runs), table), "see the column failure"
     if failed:
         echo(f"{failed} of {len(runs)} runs failed: {where}", errors)
         raise typer.Exit(1)
+
+
+def _show_shard(
+    options: SweepOptions, shard: Shard, runs: int, failures: Mapping[RunSpec, Exception]
+) -> int:
+    """Print what a shard has come to, and return the number of failed runs."""
+    for run, error in failures.items():
+        warn(f"the run of seed {run.seed} failed: {error}")
+    failed = len(failures)
+    if options.as_json:
+        print_json({"shard": str(shard), "runs": runs, "failed": failed})
+    else:
+        echo(
+            f"Shard {shard}: {runs - failed} of {runs} runs are stored. When all shards have "
+            "ended, the same command without --shard writes the table."
+        )
+    return failed
+
+
+def _show_table(options: SweepOptions, folder: Path, runs: int, table: "pd.DataFrame") -> int:
+    """Print the table, or where it is, and return the number of failed runs."""
+    if options.as_json:
+        print_json(json.loads(table.to_json(orient="records")))
+    else:
+        echo(f"{runs} runs, written to {folder}")
+        _show_critical_noises(table)
+    return int((table["failure"] != "").sum())
 
 
 def _show_critical_noises(table: "pd.DataFrame") -> None:
@@ -126,7 +141,7 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
 
 
 def _check_same(path: Path, work: "SweepSpec") -> None:
-    """Refuse to put another sweep in the place of one that is there, however it is written."""
+    """Refuse to put another sweep in the place of one that exists, however it is written."""
     from flockenv.runs.sweep import read_sweep
 
     try:

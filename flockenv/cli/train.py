@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import echo, errors, print_json
@@ -14,7 +14,10 @@ from flockenv.policies.names import TUNED_LAW
 from flockenv.statistics import paired_difference
 
 if TYPE_CHECKING:
-    from flockenv.training.ppo import Progress as TrainingProgress
+    import pandas as pd
+    from stable_baselines3 import PPO
+
+    from flockenv.training.ppo import Progress, TrainingSettings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,38 +86,53 @@ def train(options: TrainOptions) -> None:
 
         train_branches(given, out, options.episodes, options, resume=options.resume)
         return
-    from flockenv.comparison.report import overlap_notes
     from flockenv.training import ppo
     from flockenv.training.learning_curve import draw_curve
 
+    model, settings = _trained(options, given)
+    rows = ppo.compare_with_laws(model, settings, options.episodes)
+    write_csv(out / "comparison.csv", rows)
+    means = rows.groupby("policy", sort=False)["signed_order"].mean()
+    laws = {str(name): float(order) for name, order in means.drop(ppo.TRAINED).items()}
+    curve = ppo.learning_curve(out, settings.venv().decisions_hz)
+    draw_curve(curve, laws, out / "curve.png")
+    _show(options, rows)
+
+
+def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "TrainingSettings"]:
+    """Train with PPO, or go on with a training, and return the model."""
+    from flockenv.training import ppo
+
+    out = options.out
     kept = f"{out} holds the last checkpoint: --resume continues from it."
     with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
-        shown = 0.0
+        reported = 0.0
 
-        def report(now: "TrainingProgress") -> None:
-            nonlocal shown
+        def report(now: "Progress") -> None:
+            nonlocal reported
             share, order = now.samples / now.total, now.signed_order
-            advance(share - shown, None if order is None else f"signed order {order:.3f}")
-            shown = share
+            advance(share - reported, None if order is None else f"signed order {order:.3f}")
+            reported = share
 
         if options.resume:
             echo(f"Resuming from {out / ppo.CHECKPOINT}", errors)
             settings = ppo.stored_settings(out, options.flock_hours)
-            model = ppo.resume(out, flock_hours=options.flock_hours, report=report)
-        else:
-            settings = ppo.TrainingSettings.from_dict(given)
-            model = ppo.train(settings, out, report)
-    rows = ppo.compare_with_laws(model, settings, options.episodes)
-    write_csv(out / "comparison.csv", rows)
+            return ppo.resume(out, flock_hours=options.flock_hours, report=report), settings
+        settings = ppo.TrainingSettings.from_dict(given)
+        return ppo.train(settings, out, report), settings
+
+
+def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
+    """Print what the trained leaders reach beside the laws."""
+    from flockenv.comparison.report import overlap_notes
+    from flockenv.training import ppo
+
     orders = rows.pivot(index="seed", columns="policy", values="signed_order")
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
-    laws = {str(name): float(order) for name, order in means.drop(ppo.TRAINED).items()}
     gain = paired_difference(orders[ppo.TRAINED], orders[TUNED_LAW])
-    curve = ppo.learning_curve(out, settings.venv().decisions_hz)
-    draw_curve(curve, laws, out / "curve.png")
     if options.as_json:
         found = {"signed_order": means.to_dict(), "gain": [gain.mean, gain.low, gain.high]}
-        print_json({**found, "model": str(out / ppo.MODEL)})
+        print_json({**found, "model": str(options.out / ppo.MODEL)})
         return
     for name, order in means.items():
         echo(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
@@ -124,4 +142,4 @@ def train(options: TrainOptions) -> None:
     )
     for line in overlap_notes(rows):
         echo(line)
-    echo(f"Written to {out}")
+    echo(f"Written to {options.out}")

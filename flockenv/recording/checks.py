@@ -1,4 +1,4 @@
-"""What a recording's arrays must be."""
+"""Checks of a recording's arrays."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -12,7 +12,7 @@ from flockenv import _core
 from flockenv._io.arguments import number, real_numbers
 from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries
-from flockenv.order import QUANTITIES
+from flockenv.order import QUANTITIES, RECORDED, OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
 
 PHASES = np.array(_core.PHASES)
@@ -66,6 +66,37 @@ def check_array(
     # Sums are rounded.
     if bounds and ((array < bounds[0] - 1e-6) | (array > bounds[1] + 1e-6)).any():
         raise ParameterError(f"{name} must be within {bounds[0]:g} and {bounds[1]:g}")
+
+
+def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
+    """Refuse times that do not increase from 0 s to the end of the run."""
+    # Times are rounded to a nanosecond, and may lie beyond the end by that.
+    ends = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
+    if not (np.diff(time_s) > 0).all() or not (np.diff(ends) >= 0).all():
+        raise ParameterError(
+            "time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at "
+            "least one time if that is not given"
+        )
+
+
+def check_order(
+    order: OrderSeries, times: tuple[int, ...], normal_boats: int, *, tracked: bool, posed: bool
+) -> None:
+    """Refuse series that are not finite, unless too few boats define them or boats are missing."""
+    for quantity in RECORDED:
+        values = getattr(order, quantity.name)
+        undefined = normal_boats < quantity.least_boats
+        # A column that is younger than the file of a recording without poses.
+        undefined |= not posed and bool(np.isnan(values).all())
+        check_array(
+            f"order.{quantity.name}",
+            values,
+            times,
+            PRECISIONS[:1],
+            gaps=tracked,
+            all_nan=undefined,
+            bounds=quantity.range,
+        )
 
 
 def check_seed(seed: Any, name: str = "seed") -> None:

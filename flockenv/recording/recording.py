@@ -15,7 +15,7 @@ from flockenv._io.arguments import as_bool, number
 from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv.errors import HintsAtNames, ParameterError, short_repr
 from flockenv.flock import ContactSeries, Flock, StepStatistics
-from flockenv.order import RECORDED, OrderSeries
+from flockenv.order import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
     ORIGIN,
@@ -25,10 +25,12 @@ from flockenv.recording.checks import (
     check_array,
     check_contacts,
     check_ids,
+    check_order,
     check_origin,
     check_quantities,
     check_seed,
     check_share,
+    check_times,
     checked_functions,
     own_series,
 )
@@ -153,22 +155,9 @@ class Recording(HintsAtNames):
             raise ParameterError(f"phase holds other names than {', '.join(PHASES)}")
         if math.isnan(self.duration_s) and len(self.time_s) > 0:
             object.__setattr__(self, "duration_s", float(self.time_s[-1]))
-        # Times are rounded to a nanosecond, and may lie beyond the end by that.
-        ends = [0.0, *self.time_s[:1], *self.time_s[-1:], self.duration_s + 1e-9, 1e9 + 1e-3]
-        if not (np.diff(self.time_s) > 0).all() or not (np.diff(ends) >= 0).all():
-            raise ParameterError(
-                "time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at "
-                "least one time if that is not given"
-            )
+        check_times(self.time_s, self.duration_s)
         normal_boats = self.parameters.n_boats - self.parameters.n_leaders
-        for each in RECORDED:
-            values = getattr(self.order, each.name)
-            undefined = normal_boats < each.least_boats
-            # A column that is younger than the file of a recording without poses.
-            undefined |= not with_poses and bool(np.isnan(values).all())
-            how = {"gaps": True} if tracked else {"all_nan": undefined}
-            how["bounds"] = each.range
-            check_array(f"order.{each.name}", values, times, PRECISIONS[:1], **how)
+        check_order(self.order, times, normal_boats, tracked=tracked, posed=with_poses)
         object.__setattr__(self, "order", self.order.at(slice(None), self.time_s))
         check_seed(self.seed)
         check_origin({name: getattr(self, name) for name in ORIGIN})

@@ -113,17 +113,21 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         #: What actions stand for, and decisions per second.
         self.action_mode: str = settings["action_mode"]
         self.decisions_hz = fps
-        self.slots = [
-            LeaderSlot(self, flock, leader, self.observation_space, self.action_space, render_mode)
-            for flock, k in enumerate(leaders)
-            for leader in range(k)
-        ]
+        self.slots = self._made_slots(leaders)
         #: Flock of each slot.
         self.flock_of_slot = np.repeat(np.arange(num_flocks), leaders)
         self._actions: NDArray[np.float64] | None = None
         super().__init__(len(self.slots), self.observation_space, self.action_space)
         self.metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": fps}
         self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
+
+    def _made_slots(self, leaders: Sequence[int]) -> list[LeaderSlot]:
+        spaces = self.observation_space, self.action_space
+        return [
+            LeaderSlot(self, flock, leader, *spaces, self.render_mode)
+            for flock, k in enumerate(leaders)
+            for leader in range(k)
+        ]
 
     @cached_property
     def spec(self) -> EnvSpec | None:

@@ -1,4 +1,4 @@
-"""What a recording of tracked boats is made of: poses with gaps, velocities, order parameters."""
+"""Recordings of tracked boats from poses with gaps."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -73,47 +73,22 @@ def recording_of(
         boat above 10 m/s, centers more than a hull's width outside the water, and unknown or
         repeated names.
     """
-    times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
-    shape = (times.size, np.atleast_2d(poses).shape[1], 3)
-    check_array("time_s", times, shape[:1], PRECISIONS)
-    check_array("pose", poses, shape, PRECISIONS, gaps=True)
-    if not (np.diff(times) > 0.0).all():
-        raise ParameterError("time_s must increase")
-    if np.isnan(poses).all():
-        raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
-    names = [str(each) for each in items(range(shape[1]) if ids is None else ids, "ids")]
-    if len(names) != shape[1]:
-        raise ParameterError(f"ids holds {len(names)} names for {shape[1]} boats")
-    leaders = [str(each) for each in items(leaders, "leaders")]
+    times, poses = _checked_poses(time_s, pose)
+    names, leaders = _names(ids, poses.shape[1]), [str(name) for name in items(leaders, "leaders")]
     order = _leaders_first(names, leaders)
     poses[..., 2] = unwrapped(poses[..., 2])
-    given = None if velocity is None else with_gaps(velocity, "velocity")
-    motion = Motion.of(times, poses).velocity if given is None else given
-    check_array("velocity", motion, shape, PRECISIONS, gaps=True)
-    poses, motion = poses[:, order], motion[:, order]
-    lengths = series(hull, "hull")
-    if lengths.shape != (2,):
-        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
+    motion = _velocities(velocity, times, poses)[:, order]
+    poses = poses[:, order]
+    others = {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(
-        n_boats=len(names),
-        n_leaders=len(leaders),
-        pool=pool,
-        boat_radius_cm=float(lengths[0]),
-        boat_shape=float(lengths[1]),
-        target=materialized(target),
-        discs=discs,
-        walls=walls,
+        **_hull(hull), n_boats=len(names), n_leaders=len(leaders), pool=pool, **others
     )
     _check_units(poses, motion, parameters)
-    # Without phases all samples count.
-    phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
-    if phase is not None:
-        phases = np.array([*map(str, items(phase, "phase"))])
-        analyzed = _core.sampled_analysis_window(times, phases.tolist())
+    phases, analyzed = _phases(phase, times)
     is_leader = np.arange(len(names)) < len(leaders)
     return Recording(
         time_s=times,
-        phase=phases.astype(PHASES.dtype),
+        phase=phases,
         in_analysis_window=analyzed,
         pose=poses,
         velocity=motion,
@@ -125,13 +100,59 @@ def recording_of(
     )
 
 
+def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
+    """Return times and poses that a recording can have."""
+    times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
+    shape = (times.size, np.atleast_2d(poses).shape[1], 3)
+    check_array("time_s", times, shape[:1], PRECISIONS)
+    check_array("pose", poses, shape, PRECISIONS, gaps=True)
+    if not (np.diff(times) > 0.0).all():
+        raise ParameterError("time_s must increase")
+    if np.isnan(poses).all():
+        raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
+    return times, poses
+
+
+def _names(ids: Sequence[str] | None, boats: int) -> list[str]:
+    """Return a name for each boat."""
+    names = [str(name) for name in items(range(boats) if ids is None else ids, "ids")]
+    if len(names) != boats:
+        raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
+    return names
+
+
+def _velocities(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
+    """Return the velocities that are given, or differences of the poses."""
+    given = None if velocity is None else with_gaps(velocity, "velocity")
+    motion = Motion.of(times, poses).velocity if given is None else given
+    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
+    return motion
+
+
+def _hull(hull: tuple[float, float]) -> dict[str, Any]:
+    """Return the fields of a hull by name."""
+    lengths = series(hull, "hull")
+    if lengths.shape != (2,):
+        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
+    return {"boat_radius_cm": float(lengths[0]), "boat_shape": float(lengths[1])}
+
+
+def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
+    """Return the phase of each sample and whether it is analyzed, as all are without phases."""
+    phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
+    if phase is not None:
+        phases = np.array([*map(str, items(phase, "phase"))])
+        analyzed = _core.sampled_analysis_window(times, phases.tolist())
+    return phases.astype(PHASES.dtype), analyzed
+
+
 def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
-    """Return the places of leaders, in their order, and then those of the others."""
+    """Return the indices of leaders, in their order, and then those of the others."""
     refuse_unknown(leaders, names, "leader among the ids")
     if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
         raise ParameterError("ids or leaders holds a name more than once")
     ranks = {name: rank for rank, name in enumerate(leaders)}
-    return sorted(range(len(names)), key=lambda place: ranks.get(names[place], len(ranks)))
+    return sorted(range(len(names)), key=lambda i: ranks.get(names[i], len(ranks)))
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
@@ -143,12 +164,12 @@ def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) ->
             f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
-    there = ~np.isnan(distance)
+    present = ~np.isnan(distance)
     margin = 2 * parameters.boat_radius_cm
-    outside = there & ~in_water(parameters.pool, pose, margin)
+    outside = present & ~in_water(parameters.pool, pose, margin)
     if outside.any():
         raise ParameterError(
-            f"{outside.sum() / there.sum():.0%} of the centers ({outside.sum()}) lie outside the "
+            f"{outside.sum() / present.sum():.0%} of the centers ({outside.sum()}) lie outside the "
             "pool, or in the obstacle in its middle: are positions in cm, from the center of the "
             "pool, and rows of boats that are not there NaN?"
         )

@@ -44,7 +44,8 @@ def tables():
     """The page of tables: its rows by section."""
     from docs.scripts import environment_pages
 
-    sections = re.split(r"^## ", environment_pages.tables(), flags=re.MULTILINE)[1:]
+    page = environment_pages.pages()[environment_pages.FOLDER / "tables.md"]
+    sections = re.split(r"^## ", page, flags=re.MULTILINE)[1:]
     return {text.split("\n", 1)[0]: re.findall(r"^\| `(.+?)` ", text, re.M) for text in sections}
 
 
