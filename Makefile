@@ -152,6 +152,9 @@ studies: build $(STAMPS)/studies ## make the runs of studies/ that are missing, 
 studies-trial: build $(STAMPS)/studies ## run every study in its shortest form, and judge the committed results (minutes)
 	$(PYTEST) -c studies/pyproject.toml -n $(JOBS) --max-worker-restart 0 studies $(PYTEST_ARGS)
 
+check-entries: build $(STAMPS)/studies ## score every entry of suite v3 again, and refuse a row that differs by a digit (minutes)
+	OMP_NUM_THREADS=1 $(BIN)/python -m studies.levels.score_levels --check
+
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)
 
@@ -169,7 +172,7 @@ licenses publish-check:
 addresses check-addresses: $(STAMPS)/venv
 	$(BIN)/python .github/addresses.py $(if $(filter check-%,$@),--check)
 
-release-check: check-addresses audit publish-check test-processors docs test-oldest test-wheel extend studies-trial ## all of a release that can run here, and what is left for the owner
+release-check: check-addresses audit publish-check test-processors docs test-oldest test-wheel extend studies-trial check-entries ## all of a release that can run here, and what is left for the owner
 	.github/release.sh owner
 
 throughput soak speed-vs-error lint-benches: build $(STAMPS)/test ## measure, and compare with other engines (minutes; benches/Makefile)

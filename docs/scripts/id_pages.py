@@ -19,6 +19,7 @@ from PIL import Image
 from docs.scripts.loops import HEIGHT, SHOWN, draw, shown
 from docs.scripts.markdown import markdown
 from docs.scripts.plots import STUDIES, Interval, Plot, Row, colors_of, listed, rows
+from flockenv.comparison.levels import LEVEL_IDS
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.observation import observation_entries
@@ -277,7 +278,10 @@ def reached(env_id: str) -> tuple[Plot, str] | None:
     task = next((name for name, each in TASK_IDS.items() if each == env_id), None)
     if task is not None:
         return _suite(task)
-    return DATA[env_id]() if env_id in DATA else None
+    if env_id in DATA:
+        return DATA[env_id]()
+    level = next((name for name, each in LEVEL_IDS.items() if each == env_id), None)
+    return None if level is None else _level(level)
 
 
 def _suite(task: str) -> tuple[Plot, str]:
@@ -296,6 +300,18 @@ def _suite(task: str) -> tuple[Plot, str]:
     )
     label = f"signed order minus the tuned law's {own:.2f}"
     return _plot([SCORES], intervals, label, 0.0), words
+
+
+def _level(level: str) -> tuple[Plot, str]:
+    file = STUDIES / "levels" / "results" / "laws.csv"
+    found = rows(file, level=level)
+    words = (
+        f"Mean signed order of laws with 95 % intervals, in the {found[0]['flocks']} flocks of "
+        f"suite v3 ([laws.csv](../../studies/levels/results/laws.csv)). [The suite](../levels.md) "
+        f"scores what learns from nothing here, as its level `{level}`: 0 for `straight ahead`, 1 "
+        "for the damped law."
+    )
+    return _plot([file], {row["policy"]: _interval(row, "signed_order") for row in found}), words
 
 
 AT_THREE = {"case": "wide-bw-0.31", "leaders": "3"}

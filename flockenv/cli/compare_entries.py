@@ -4,14 +4,15 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from flockenv._io.atomic_write import write_csv
-from flockenv._io.extras import require
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
 from flockenv.comparison.levels import FLOCKS, LEVELS, SUITE
-from flockenv.comparison.suite_entry import SuiteEntry, ranked
+from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.errors import ParameterError, refuse_unknown
 
 
@@ -39,26 +40,14 @@ def compare_entries(
     prepare(table)
     if flocks < FLOCKS:
         echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
-    pandas = require("pandas", "plot")
-    policies = {
-        level: sum(len(each.trainings.get(level, ())) for each in entries) for level in levels
-    }
-    hours = sum(LEVELS[level].flock_hours(flocks) * (2 + policies[level]) for level in levels)
-    rows, led = [], []
+    policies = [len(each.trainings.get(level, ())) for each in entries for level in levels]
+    led = [LEVELS[level].flock_hours(flocks) for _ in entries for level in levels]
+    hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
     kept = f"{table} holds the rows of entries that were finished."
     with progress("scoring", 3600 * hours, printing.shows_nothing, kept=kept) as advance:
-        ends = {level: LEVELS[level].references(flocks, advance) for level in levels}
-        for entry in entries:
-            own = {
-                level: entry.run(level, flocks, advance)
-                for level in levels
-                if level in entry.trainings
-            }
-            rows += [entry.row(level, orders, *ends[level]) for level, orders in own.items()]
-            led += [entry.orders_table(level, orders) for level, orders in own.items()]
-            write_csv(table, ranked(rows), float_format="%.6g")
-            write_csv(out / "orders.csv", pandas.concat(led), float_format="%.6g")
-    found = ranked(rows)
+        for found, orders in scored(entries, levels, flocks, advance):
+            write_csv(table, found, float_format="%.6g")
+            write_csv(out / "orders.csv", orders, float_format="%.6g")
     if printing.as_json:
         print_json({"entries": json.loads(found.to_json(orient="records"))})
         return

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -18,6 +18,8 @@ from flockenv.comparison.levels import (
     BUDGETS,
     FLOCKS,
     LEVELS,
+    NO_STEERING,
+    REFERENCE,
     SUITE,
     Level,
     budget_of,
@@ -187,15 +189,46 @@ class SuiteEntry:
             "link": self.link,
         }
 
-    def orders_table(self, level: str, orders: NDArray[np.float64]) -> "pd.DataFrame":
-        """Return the signed order of each flock of a level, a column for each training."""
-        columns = {each.given: own for each, own in zip(self.trainings[level], orders, strict=True)}
-        table: pd.DataFrame = require("pandas", "plot").DataFrame(columns)
-        table = table.melt(var_name="policy", value_name="signed_order", ignore_index=False)
-        table = table.rename_axis("flock").reset_index()
-        table.insert(0, "entry", self.name)
-        table.insert(0, "level", level)
-        return table
+
+def scored(
+    entries: Sequence[SuiteEntry],
+    levels: Sequence[str],
+    flocks: int = FLOCKS,
+    progress: Progress = no_progress,
+) -> Iterator[tuple["pd.DataFrame", "pd.DataFrame"]]:
+    """Score entries one after another, each on those of the levels that it has policies for.
+
+    Yields after each entry the rows of all entries so far, ranked, and the orders of all flocks:
+    first those of both references of each level. Raises what `SuiteEntry.run` raises.
+    """
+    pandas = require("pandas", "plot")
+    named = [name for name in levels if any(name in entry.trainings for entry in entries)]
+    ends = {name: LEVELS[name].references(flocks, progress) for name in named}
+    parts = [
+        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), np.array(each))
+        for name, each in ends.items()
+    ]
+    rows: list[dict[str, object]] = []
+    for entry in entries:
+        own = [name for name in named if name in entry.trainings]
+        led = {name: entry.run(name, flocks, progress) for name in own}
+        for name, orders in led.items():
+            rows.append(entry.row(name, orders, *ends[name]))
+            given = [each.given for each in entry.trainings[name]]
+            parts.append(orders_table(name, entry.budget, entry.name, given, orders))
+        yield ranked(rows), pandas.concat(parts, ignore_index=True)
+
+
+def orders_table(
+    level: str, budget: str, entry: str, policies: Sequence[str], orders: NDArray[np.float64]
+) -> "pd.DataFrame":
+    """Return a row for each flock of each policy, of orders (policies, flocks)."""
+    pandas = require("pandas", "plot")
+    index = pandas.MultiIndex.from_product([policies, range(orders.shape[1])])
+    table: pd.DataFrame = pandas.DataFrame({"signed_order": orders.ravel()}, index)
+    table = table.rename_axis(["policy", "flock"]).reset_index()
+    names: pd.DataFrame = pandas.DataFrame({"level": level, "budget": budget, "entry": entry}, [0])
+    return names.merge(table, how="cross")
 
 
 def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":

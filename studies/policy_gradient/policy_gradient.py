@@ -28,7 +28,7 @@ The first design regressed y on the features in two halves of the flocks, in the
 of it the cases in `wide` were seen: p = 0.013, 0.19 and 0.35.
 
 27 boats, three leaders, critical noise, physics of trainings. Seeds follow from the words "policy
-gradient".
+gradient". A case that OUT has is not made again.
 """
 
 import argparse
@@ -43,7 +43,7 @@ from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
 from studies.flocks import lean
-from studies.study import run, write_table
+from studies.study import resumed, run, write_table
 
 FLOCKS, ROUNDS, BEFORE_S, BRANCH_S, HELD_S, HOLDS, SKIPPED_S = 256, 20, 240, 64, 16, 2, 8
 OFFSET_RAD, FLIPS = 0.4, 2000
@@ -156,8 +156,9 @@ def main(arguments: list[str] | None = None) -> None:
         "--out", type=Path, default=Path("studies/policy_gradient/results/gradient.csv")
     )
     options = parser.parse_args(arguments)
-    made, rows = {}, []
-    for pool, policy, named in CASES:
+    made, rows = {}, resumed(options.out).to_dict("records")
+    done = {(row["pool"], row["policy"], row["features"]) for row in rows}
+    for pool, policy, named in (case for case in CASES if case not in done):
         if (pool, policy) not in made:
             made[pool, policy] = pairs(pool, policy, options.flocks, options.rounds)
         offsets, features, y = made[pool, policy]

@@ -64,3 +64,22 @@ def test_it_writes_every_case(script, monkeypatch, tmp_path) -> None:
     assert [tuple(row) for row in cases.to_numpy()] == list(script.CASES)
     assert table["metric"].tolist() == ["lean", "weights"] * len(script.CASES)
     assert np.isfinite(table["squared_gradient"]).all()
+
+
+def test_an_interrupted_command_resumes(script, monkeypatch, tmp_path) -> None:
+    monkeypatch.setattr(script, "BEFORE_S", 2)
+    given = ["--flocks", "2", "--rounds", "1", "--out", str(tmp_path / "found.csv")]
+    script.main(given)
+    whole = pd.read_csv(tmp_path / "found.csv")
+    whole[:4].to_csv(tmp_path / "found.csv", index=False)
+    monkeypatch.setattr(script, "pairs", only_narrow(script.pairs))
+    script.main(given)
+    pd.testing.assert_frame_equal(pd.read_csv(tmp_path / "found.csv"), whole)
+
+
+def only_narrow(pairs):
+    def checked(pool, policy, *rest):
+        assert (pool, policy) != ("wide", "tuned law"), "this case was there"
+        return pairs(pool, policy, *rest)
+
+    return checked

@@ -7,7 +7,7 @@ import pytest
 import tomli_w
 
 from flockenv.comparison.levels import LEVELS
-from flockenv.comparison.suite_entry import SuiteEntry, ranked
+from flockenv.comparison.suite_entry import SuiteEntry, ranked, scored
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy
@@ -165,7 +165,11 @@ def test_a_row_says_what_was_scored(entered, tmp_path: Path) -> None:
     found = entry.run(LEVEL, 2)
     assert found[0].tolist() == LEVELS[LEVEL].orders("straight ahead", 2).tolist()
     assert found[1].tolist() != found[0].tolist()
-    assert entry.orders_table(LEVEL, found)["signed_order"].tolist() == found.ravel().tolist()
+    ((rows, orders),) = scored([entry], [*LEVELS], 2)
+    assert rows["entry"].tolist() == ["mine"]
+    led = orders.groupby("policy", sort=False)["signed_order"].apply(list)
+    assert led.index.tolist() == ["straight ahead", "damped law", *names]
+    assert led["b.npz"] == found[1].tolist()
 
 
 def test_rows_are_sorted_by_level_budget_and_score() -> None:

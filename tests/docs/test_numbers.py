@@ -113,6 +113,27 @@ TRAININGS_PAGE = "studies/trainings/README.md"
 PLANNING = "studies/planning/results/plan_"
 
 
+def levels() -> list[Number]:
+    """Numbers of suite v3: what laws reach in each level."""
+    page, file, laws = "docs/levels.md", "studies/levels/results/laws.csv", []
+    before = {
+        "order-easy": "0.3 s | 2 min |",
+        "order-noisy": "`narrow` | 0.45 s | 2 min |",
+        "order-narrow": "0.45 s | 4 min |",
+        "order-wide": "0.31 s | 8 min |",
+    }
+    columns = {
+        "straight ahead": "{} | # | #",
+        "paper's law": "# | {} | #",
+        "damped law": "# | # | {}",
+    }
+    for level, words in before.items():
+        for policy, shown in columns.items():
+            row = {"level": level, "policy": policy}
+            laws.append(Number(page, f"{words} {shown} |", file, row, "signed_order"))
+    return laws
+
+
 def readme() -> list[Number]:
     """Numbers of the front page."""
     page = "README.md"
@@ -352,6 +373,7 @@ def lessons() -> list[Number]:
 
 NUMBERS = [
     *readme(),
+    *levels(),
     *leaders("README.md"),
     *leaders("docs/leaders.md"),
     *plans("docs/leaders.md"),

@@ -23,6 +23,7 @@ EXECUTED = {
     "docs/runs.md": ["python"],
     "docs/extend/policy.md": ["python"],
     "docs/extend/task.md": ["python"],
+    "docs/levels.md": ["python", "sh"],
     "docs/suite.md": ["python"],
     "docs/train.md": ["python", "sh"],
     "docs/training_reference.md": ["python", "sh"],

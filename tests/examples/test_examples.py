@@ -17,6 +17,7 @@ SMALL = {
     "own_reward.py": ["4", "5"],
     "own_order_parameter.py": ["0.5"],
     "own_tracks.py": [],
+    "train_with_pettingzoo.py": ["1"],
     "train_with_torchrl.py": ["1"],
 }
 
@@ -33,6 +34,10 @@ def _without_a_screen(tmp_path, monkeypatch):
 def test_an_example(name, monkeypatch, tmp_path, capsys):
     if name == "train_with_torchrl.py":
         pytest.importorskip("torchrl")
+    if name == "train_with_pettingzoo.py":
+        pytest.importorskip("torch")
+        if not hasattr(pytest.importorskip("pettingzoo"), "register"):
+            pytest.skip("PettingZoo has no ids")
     monkeypatch.setattr(sys, "argv", [name, *SMALL[name]])
     runpy.run_path(str(EXAMPLES / name), run_name="__main__")
     assert capsys.readouterr().out

@@ -1,0 +1,94 @@
+"""Law: entries that differ are told apart, the table is that of the rows, and rows stay."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import tomli_w
+
+from flockenv.comparison.levels import LEVELS
+from flockenv.envs.observation import observation_entries
+from flockenv.policies import NetworkPolicy
+from flockenv.runs.store import RESULTS_VERSION
+
+FLOCKS = 64
+
+
+def orders(script, **means: float) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Rows and orders of entries of five trainings, with what flocks share."""
+    random = np.random.default_rng(5)
+    shared = random.normal(0.0, 0.3, FLOCKS)
+    every = {"reference": np.array([shared, shared + 0.4])}
+    for name, mean in means.items():
+        trainings = mean + random.normal(0.0, 0.01, (5, 1)) + random.normal(0.0, 0.05, (5, FLOCKS))
+        every[name] = shared + trainings
+    parts = []
+    for name, each in every.items():
+        budget = "0" if name == "reference" else "30"
+        for place, own in enumerate(each):
+            part = pd.DataFrame({"flock": range(FLOCKS), "signed_order": own})
+            parts.append(part.assign(level="order-easy", budget=budget, entry=name, policy=place))
+    rows = pd.DataFrame({"level": "order-easy", "budget": "30", "entry": [*means], "trainings": 5})
+    return rows, pd.concat(parts)
+
+
+def test_a_difference_is_found_in_units_of_the_score(script) -> None:
+    found = script.pairs(*orders(script, good=0.3, same=0.3, bad=0.1)).set_index("worse")
+    assert found["better"].tolist() == ["good", "good", "same"]
+    bad = found.loc["bad"].iloc[0]
+    # 0.2 of order, of the 0.4 between the references.
+    assert bad["difference"] == pytest.approx(0.5, abs=0.05)
+    assert bad["difference_low"] > 0.4
+    assert (bad["improvement"], bad["improvement_low"]) == (1.0, 1.0)
+    # 2 of the 252 ways to deal ten trainings out are as far apart; three pairs are judged.
+    assert bad["p"] == pytest.approx(2 / 252)
+    assert bad["p_of_all_pairs"] == pytest.approx(6 / 252)
+    same = found.loc["same"]
+    assert same["difference_low"] < 0.0 < same["difference_high"]
+    assert same["p"] > 0.05
+
+
+def test_how_often_one_is_better_is_known_on_paper(script) -> None:
+    assert script.better(np.array([1.0, 3.0]), np.array([2.0, 3.0, 0.0])) == pytest.approx(3.5 / 6)
+    both = script.better(np.array([[1.0, 3.0]] * 2), np.array([[2.0, 2.0]] * 2))
+    assert both.tolist() == [0.5, 0.5]
+
+
+def test_a_digit_is_a_difference(script) -> None:
+    rows = pd.DataFrame({"level": ["a", "a"], "budget": ["30", "30"], "entry": ["x", "y"]})
+    rows["score"], rows["searched_hours"] = [0.123456, 0.5], np.nan
+    stored = script.rounded(rows.assign(results_version=6))
+    assert script.differing(rows, stored) == []
+    assert script.differing(rows.assign(score=[0.1234561, 0.5]), stored) == []
+    assert script.differing(rows.assign(score=[0.123457, 0.5]), stored) == ["a, 30, x"]
+    assert script.differing(rows[:1], stored) == ["a, 30, y"]
+
+
+def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_path) -> None:
+    """From files of entries to the page, with two levels' laws as trainings."""
+    scored = script.scored
+    monkeypatch.setattr(script, "scored", lambda given, levels: scored(given, levels, 4))
+    network = {"observation": LEVELS["order-easy"].observation, "mirror_to_target": True}
+    size = len(observation_entries(network["observation"]))
+    for place, seed in enumerate(range(4)):
+        weights = np.random.default_rng(seed).normal(size=(size, 1))
+        NetworkPolicy([weights], [[0.0]], **network).save(tmp_path / f"{place}.npz")
+    for name, own in (("a", ["0.npz", "1.npz"]), ("b", ["2.npz", "3.npz"])):
+        entry = {"suite": "v3", "results_version": RESULTS_VERSION, "name": name, "class": "none"}
+        entry |= {"link": "studies/levels/README.md", "flock_hours": 0.0}
+        entry |= {"training_seeds": [2**32, 2**32], "levels": {"order-easy": own}}
+        (tmp_path / f"{name}.toml").write_text(tomli_w.dumps(entry), "utf-8")
+    page = tmp_path / "page.md"
+    page.write_text("Before.\n\n<!-- entries -->\n\nold\n\n<!-- end -->\n\nAfter.\n", "utf-8")
+    given = ["--entries", str(tmp_path), "--out", str(tmp_path / "out"), "--page", str(page)]
+    script.main(given)
+    text = page.read_text("utf-8")
+    assert text.startswith("Before.\n")
+    assert text.endswith("\n\nAfter.\n")
+    assert "old" not in text
+    assert text.count("| order-easy | 30 |") == 2
+    assert len(pd.read_csv(tmp_path / "out" / "pairs.csv")) == 1
+    script.main([*given, "--check"])
+    (tmp_path / "3.npz").write_bytes((tmp_path / "2.npz").read_bytes())
+    with pytest.raises(SystemExit, match="order-easy, 30, b"):
+        script.main([*given, "--check"])
+    assert page.read_text("utf-8") == text
