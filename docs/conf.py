@@ -143,13 +143,15 @@ def _link_environment_pages(
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
-    # Links to and from the folder studies, where it was copied to; notebooks have their depth.
+    # Links to and from the folder studies, and to notebooks, where they were copied to; notebooks
+    # have their depth.
     link, here = (
         ("../../studies/", "../studies/") if "/" in docname else ("../studies/", "studies/")
     )
     if docname.startswith("studies/"):
         link, here = "../../docs/", "../../"
     source[0] = source[0].replace(f"]({link}", f"]({here}")
+    source[0] = re.sub(r"\]\((?:\.\./)+(examples/\w+\.ipynb)\)", r"](/\1)", source[0])
 
 
 def _open_comments(app: Sphinx, docname: str, source: list[str]) -> None:

@@ -77,9 +77,30 @@ def test_the_notebook_on_training(tmp_path):
         assert (film.size, film.n_frames) == ((600, 300), len(names["times_s"]))
 
 
+def test_the_notebook_on_gymnasium():
+    names = _run("with_gymnasium.ipynb", FLOCKS="2")
+    assert names["orders"].shape == (2,)
+    assert names["orders"][0] == names["summary"]["signed_order"]
+
+
+def test_the_notebook_on_pettingzoo():
+    """Rivals earn opposite signed orders; only the random one's rudder costs it something."""
+    rewards = _run("with_pettingzoo.ipynb")["rewards"]
+    left = rewards[:, 1] + rewards[:, 2]
+    assert -0.05 - 1e-6 <= left.min() <= left.max() <= 1e-6
+    assert left.mean() < -0.01
+
+
+def test_the_notebook_on_torchrl():
+    pytest.importorskip("torchrl")
+    names = _run("with_torchrl.ipynb", FLOCKS="8", UPDATES="300")
+    assert names["loss"].item() < 0.1 * names["shown"].var().item()
+
+
 def test_every_example_is_run():
     found = {path.name for path in EXAMPLES.glob("*.py")}
     elsewhere = {"train_leaders.py", "train_with_rllib.py"}
     assert found == {*SMALL, *elsewhere}
     notebooks = {path.name for path in EXAMPLES.glob("*.ipynb")}
-    assert notebooks == {"order_against_noise.ipynb", "train_compare_film.ipynb"}
+    interfaces = {f"with_{name}.ipynb" for name in ("gymnasium", "pettingzoo", "torchrl")}
+    assert notebooks == {"order_against_noise.ipynb", "train_compare_film.ipynb", *interfaces}
