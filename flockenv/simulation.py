@@ -268,12 +268,17 @@ def _schedule_digest(
     now: FlockParameters, changes: Changes, times_s: NDArray[np.float64]
 ) -> str | None:
     """Return the SHA-256 of what changed when, from these parameters; None if nothing did."""
-    named, length_s = [], round(times_s[-1] - times_s[0], 9)
+    before, length_s = now, round(times_s[-1] - times_s[0], 9)
+    after: dict[float, FlockParameters] = {}  # Of changes at one time the last.
     # A change acts after the sample at its time: a run that ended early has not seen it.
     for time_s, each in ((time_s, each) for time_s, each in changes if time_s < length_s):
-        before, now = now, each if isinstance(each, FlockParameters) else now.replace(target=each)
+        now = each if isinstance(each, FlockParameters) else now.replace(target=each)
+        after[time_s] = now
+    named = []
+    for time_s, now in after.items():
         if now != before:
             named.append((time_s, now.to_dict()))
+        before = now
     return hashlib.sha256(json.dumps(named, sort_keys=True).encode()).hexdigest() if named else None
 
 
