@@ -1,5 +1,6 @@
 """A command of the command line, which answers an unknown option with the line to type."""
 
+import re
 import shlex
 from collections import Counter
 from collections.abc import Sequence, Set
@@ -13,6 +14,7 @@ from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, nearest
 from flockenv.parameters import FlockParameters
 
+_COMMA = r"[+-]?\d*,\d+"
 _FIELDS = tuple(each.name for each in fields(FlockParameters))
 
 
@@ -37,7 +39,22 @@ class Command(typer.core.TyperCommand):
                 known = [each for parameter in self.params for each in parameter.opts]
                 raise ParameterError(_answer(words, name, known)) from None
             _refuse_repeated(order, {word.partition("=")[0] for word in args})
-        return super().parse_args(ctx, args)
+        try:
+            return super().parse_args(ctx, list(args))
+        except typer.BadParameter as error:
+            _refuse_decimal_comma(args, error)
+            raise
+
+
+def _refuse_decimal_comma(args: Sequence[str], error: typer.BadParameter) -> None:
+    """Answer a value that is no number, because it has a comma for the point."""
+    names = error.param.opts if error.param else []
+    pairs = zip(args, [*args[1:], ""], strict=True)
+    given = [text.partition("=")[::2] if "=" in text else (text, after) for text, after in pairs]
+    for name, text in given:
+        if name in names and "integer" not in error.message and re.fullmatch(_COMMA, text):
+            point = text.replace(",", ".")
+            raise ParameterError(f"{name} {text} is not accepted: type `{name} {point}`") from None
 
 
 def _refuse_repeated(order: Sequence[Any], given: Set[str]) -> None:

@@ -1,5 +1,6 @@
 """The parameters of a command: a preset, a TOML file, single fields."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,6 +51,8 @@ class Flocks:
             value = getattr(self, name)
             if value is not None and name in changed:
                 raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
+            if name == "pool" and re.fullmatch(r"[\d.]+, *[\d.]+", value or ""):
+                raise ParameterError(f"--pool {value} is not accepted: type `--pool '({value})'`")
             if value is not None:
                 changed[name] = _value(value) if isinstance(value, str) else value
         return fields | changed

@@ -58,6 +58,8 @@ def run(options: RunOptions) -> None:
 
     Example: `flockenv run --n-boats 27 --n-leaders 3 --bw-s 0.3 --seed 7`
     """
+    if options.minutes == 0.0:
+        raise ParameterError("--minutes 0 is not accepted: more than 0, as in --minutes 0.1")
     parameters = options.parameters()
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
     out = options.out or _free(_OUT)

@@ -56,6 +56,25 @@ def test_a_field_that_is_given_twice_is_refused(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("line", "answer"),
+    [
+        ("run --bw-s 0,3", "--bw-s 0,3 is not accepted: type `--bw-s 0.3`"),
+        ("run --minutes=0,5 -q", "--minutes 0,5 is not accepted: type `--minutes 0.5`"),
+        ("run --pool 180,97", "--pool 180,97 is not accepted: type `--pool '(180,97)'`"),
+        ("run --minutes 0", "--minutes 0 is not accepted: more than 0, as in --minutes 0.1"),
+    ],
+)
+def test_a_number_in_another_form_is_answered_with_what_to_type(cli, tmp_path, line, answer):
+    done = cli(*shlex.split(line), "--out", tmp_path / "a.npz")
+    assert (done.returncode, done.stderr.strip()) == (2, f"Error: {answer}")
+    assert not any(tmp_path.iterdir())
+
+
+def test_an_integer_with_a_comma_is_no_decimal(cli):
+    assert "`--n-boats 3.5`" not in cli("run", "--n-boats", "3,5").stderr
+
+
+@pytest.mark.parametrize(
     ("line", "twice"),
     [
         ("run --bw-s 0.2 --bw-s=0.3", "--bw-s"),
