@@ -12,11 +12,11 @@ from docs.scripts.plots import (
     Row,
     TableError,
     bar_lengths,
-    colors_of,
     draw_intervals,
     name_heights,
 )
 from flockenv.comparison.episodes import NO_LEADERS
+from flockenv.comparison.figure import policy_colors
 from studies.study import Options, StudyError
 
 
@@ -53,7 +53,7 @@ def across(
     for row in rows:
         point = (float(row[x]), *(float(row[name]) for name in columns))
         lines.setdefault(row[by], []).append(point)
-    colors = colors_of(lines)
+    colors = policy_colors(lines)
     colors.update({name: "0.4" for name in lines if name == NO_LEADERS})
     for place, name in enumerate(lines):
         at, mean, low, high = zip(*sorted(lines[name]), strict=True)
@@ -83,7 +83,7 @@ def grouped(
     """
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
-    colors = colors_of(series) if colors is None else colors
+    colors = policy_colors(series) if colors is None else colors
     names = [*dict.fromkeys(name for intervals in series.values() for name in intervals)]
     for place, (own, intervals) in enumerate(series.items()):
         off = shift * (place - (len(series) - 1) / 2)
@@ -92,7 +92,7 @@ def grouped(
     name_heights(axes, names)
 
 
-COLORS = colors_of(["mine", "damped law", "paper's law", "tuned law"])
+COLORS = policy_colors(["mine", "damped law", "paper's law", "tuned law"])
 OWN = COLORS["mine"]
 """The color of what a reader trains."""
 _ENDS = ("signed_order", "low", "high")

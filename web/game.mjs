@@ -8,7 +8,7 @@ export const ROUND_SECONDS = 300;
 const signed = (value) => fixed(value, 2, true);
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
-/** Mean over flocks of the mean order towards the target until now. */
+/** Mean over flocks of the mean signed order until now. */
 export function scoreOf(runs) {
   return mean(runs.map((run) => run.mean("signed_order")));
 }

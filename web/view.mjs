@@ -2,7 +2,7 @@
 
 import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
-import { colors } from "../flockenv/replay/shared/scene.mjs";
+import { colors, giveColors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
 import { doing } from "./doing.mjs";
 import { ROUND_SECONDS, scoreOf } from "./game.mjs";
@@ -80,6 +80,7 @@ export class View {
     document.body.classList.toggle("pair", isPair);
     document.body.classList.toggle("many", seen.length > 1 && !isPair);
     document.body.classList.toggle("recorded", isRecorded);
+    giveColors(runs);
     this.panels = seen.map((run, place) => new Panel(run, place, isPair));
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; redraw(); }, (boat) => pin(boat === this.pinned ? null : boat));

@@ -18,7 +18,8 @@ from PIL import Image
 
 from docs.scripts.loops import HEIGHT, SHOWN, draw, shown
 from docs.scripts.markdown import markdown
-from docs.scripts.plots import STUDIES, Interval, Plot, Row, colors_of, listed, rows
+from docs.scripts.plots import STUDIES, Interval, Plot, Row, listed, rows
+from flockenv.comparison.figure import policy_colors
 from flockenv.comparison.levels import LEVEL_IDS
 from flockenv.comparison.suite import REFERENCE, TASK_IDS
 from flockenv.envs.ids import ENVIRONMENTS
@@ -368,7 +369,7 @@ def _plot(
     label: str = "signed order",
     reference: float | None = None,
 ) -> Plot:
-    colors = colors_of(dict.fromkeys(map(_policy, intervals)))
+    colors = policy_colors(dict.fromkeys(map(_policy, intervals)))
 
     def draw_intervals(figure: Figure) -> None:
         axes = figure.subplots()

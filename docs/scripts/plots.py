@@ -13,9 +13,10 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
-from flockenv.comparison.figure import OWN_COLORS, policy_colors
+from flockenv.comparison.figure import policy_colors
 
 REPOSITORY = Path(__file__).parents[2]
 DOCS, STUDIES = REPOSITORY / "docs", REPOSITORY / "studies"
@@ -28,6 +29,9 @@ Interval = tuple[float, float, float]
 DATA = "Data"
 """The key of a picture's metadata that holds the digest of what it was drawn from."""
 
+LETTERS = "Letters"
+"""The key of a picture's metadata that holds the size of its smallest letters in pixels."""
+
 # Legible where a phone shows the picture 390 pixels wide.
 _STYLE = {
     "font.size": 11,
@@ -38,6 +42,13 @@ _STYLE = {
     "grid.alpha": 0.25,
     "legend.frameon": False,
 }
+
+
+def smallest_letters(figure: Figure, dpi: float) -> str:
+    """Return the size of the smallest letters of a figure at these dots per inch, in pixels."""
+    figure.draw_without_rendering()  # Ticks have no text before.
+    texts = figure.findobj(lambda each: isinstance(each, Text) and bool(each.get_text().strip()))
+    return f"{min(each.get_fontsize() for each in texts) * dpi / 72:.1f}"
 
 
 class TableError(Exception):
@@ -105,16 +116,10 @@ class Plot:
         with mpl.rc_context(_STYLE):
             figure = Figure(figsize=self.size, layout="constrained")
             self.draw(figure)
-            stamp = {"Software": None, DATA: self.digest()}
+            letters = smallest_letters(figure, 150)
+            stamp = {"Software": None, DATA: self.digest(), LETTERS: letters}
             path.parent.mkdir(parents=True, exist_ok=True)
             figure.savefig(path, format="png", dpi=150, metadata=stamp)
-
-
-def colors_of(names: Iterable[str]) -> dict[str, str]:
-    """Return a color for each policy: as in every figure, and the damped law's own on the pages."""
-    every = [*names]
-    others = policy_colors(name for name in every if name != "damped law")
-    return {name: others.get(name, OWN_COLORS[3]) for name in every}
 
 
 def listed(
@@ -129,7 +134,7 @@ def listed(
     """
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
-    colors = colors_of(intervals) if colors is None else colors
+    colors = policy_colors(intervals) if colors is None else colors
     for line, (name, interval) in enumerate(intervals.items()):
         draw_intervals(axes, [line], [interval], color=colors[name])
     name_heights(axes, intervals)

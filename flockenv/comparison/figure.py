@@ -18,9 +18,9 @@ from flockenv.statistics import CONFIDENCE
 COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 """The color that a policy has in every figure."""
 
-_FREE = [color for color in OKABE_ITO.values() if color not in COLORS.values()]
-# Without black, which axes have, and with three that differ from Okabe and Ito's.
-OWN_COLORS = (*_FREE[:-1], "#332288", "#661100", "#ddcc77")
+_OKABE_ITO = [OKABE_ITO[name] for name in ("vermilion", "purple", "sky blue", "blue")]
+# With two that differ from Okabe and Ito's, and from those of laws.
+OWN_COLORS = (*_OKABE_ITO, "#999933", "#ddcc77")
 """Colors of other policies, in turn."""
 
 _ORDER = r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$"

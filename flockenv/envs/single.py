@@ -77,7 +77,7 @@ class LeadersEnv(
     ## Rewards
     The weighted sum of reward terms, mean over leaders. `reward` has the weights for all leaders
     or, as a list of dictionaries, for each. By default `signed_order` alone counts: the mean of the
-    order of the normal boats towards the target, in [-1, 1], over the control step. Other terms are
+    signed order of the normal boats, in [-1, 1], over the control step. Other terms are
     of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and, of its contacts,
     `contact_push`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 

@@ -33,7 +33,7 @@ def frame(
     the bow. Boats that head clockwise are blue, counter-clockwise ones orange, and those that head
     along the radius (outward in a jam) gray; leaders have an amber ring. If leaders have opposite
     targets, those with a counter-clockwise one have a plum ring. The corners show the time and
-    phase, the target and bw, Ψ_o and the order towards the target. Without a common target they
+    phase, the target and bw, Ψ_o and the signed order. Without a common target they
     show the rotation Ψ_o·sin φ_o, positive clockwise, instead. Several threads may draw at a time.
     A ParameterError refuses a size out of range, other colors, and a time outside the recording.
 

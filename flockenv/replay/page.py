@@ -181,6 +181,7 @@ def _run(
     described = {
         "name": name,
         "seed": str(recording.seed),
+        "policy": recording.policy,
         "version": recording.version,
         "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
         "boats": parameters.n_boats,

@@ -6,7 +6,7 @@ import { linkTo, readLink } from "./link.mjs";
 import { LinkWriter } from "./shared/link.mjs";
 import { colorKey, Panel, parameterTable, runSwitch } from "./shared/panel.mjs";
 import { span } from "./shared/run.mjs";
-import { colors } from "./shared/scene.mjs";
+import { colors, giveColors } from "./shared/scene.mjs";
 import { Transport } from "./shared/transport.mjs";
 import { caption, fixed } from "./shared/words.mjs";
 
@@ -19,7 +19,7 @@ const MINUTE = 60;
 function watchWords(runs) {
   const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
   if (runs.some(({ target }) => target !== null)) {
-    return "Watch whether the boats come to circle with the leaders, which have a ring: the order towards the target is 1 if all do, and " +
+    return "Watch whether the boats come to circle with the leaders, which have a ring: the signed order is 1 if all do, and " +
       "−1 if all circle the other way.";
   }
   return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the boats follow" : "whether the boats come to circle together"}: ${towards}.`;
@@ -46,6 +46,7 @@ export class Player {
     [this.start, this.end] = span(runs);
     this.time = this.start;
     this.forceScale = forceScale(runs);
+    giveColors(runs);
     this.panels = runs.map((run, place) => new Panel(run, place, runs.length > 1));
     document.body.classList.toggle("pair", runs.length > 1);
     document.getElementById("watch").textContent = watchWords(runs);

@@ -159,7 +159,7 @@ def summary(run: Recording) -> dict[str, float]:
     dict
         ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
-        the nematic order, milling, the signed order towards the target and the rotation
+        the nematic order, milling, the signed order and the rotation
         m = Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
         turns round. Over the frames that define them, NaN if none does. Then the run's
         ``worst_overlap_cm``, ``unsolved`` and ``halved_substeps``, NaN if they are unknown.

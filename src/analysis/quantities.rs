@@ -127,7 +127,7 @@ pub const QUANTITIES: &[Quantity] = &[
         }),
     },
     Quantity {
-        name: "signed_order", label: "order towards target", symbol: "", unit: "", range: SIGNED, least_boats: 1,
+        name: "signed_order", label: "signed order", symbol: "", unit: "", range: SIGNED, least_boats: 1,
         is_averaged: true, meaning: "Ψ_o·cos(φ_o - φ_target)", source: "the reward of the environments",
         formula: Formula::Derived(OrderParameters::signed_order),
     },

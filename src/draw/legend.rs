@@ -4,17 +4,18 @@ use super::look::{Look, target_of};
 use super::palette::{FAINT, INK, LEADER, OPPONENT, Rgb};
 use super::text::Typeface;
 use crate::flock::Flock;
+use crate::integrator::Phase;
 use crate::parameters::Target;
 use tiny_skia::Pixmap;
 
 /// The shorter side of a frame over the size of its letters.
-const SIDE_OVER_SIZE: f32 = 46.0;
+const SIDE_OVER_SIZE: f32 = 40.0;
 /// The smallest letters, in pixels.
-const LEGIBLE_SIZE: f32 = 8.0;
+const LEGIBLE_SIZE: f32 = 9.0;
 /// What the text of a corner takes, in sizes, and how far from the middle it has to stay, as a share of
 /// the frame's shorter side: smaller frames show the boats alone.
 const CORNER: (f32, f32) = (13.0, 4.0);
-const CLEAR: f32 = 0.4;
+const CLEAR: f32 = 0.39;
 /// Distance of two baselines, and distance to the frame's edge, in sizes.
 const LINE: f32 = 1.45;
 const EDGE: f32 = 0.9;
@@ -64,7 +65,7 @@ impl Legend {
             lines.push((cut(typeface, look.caption, CORNER.0 * size), INK));
         }
         lines.push((format!("{:.1} s", flock.time_s()), INK));
-        lines.push((flock.phase().phase.name().to_owned(), INK));
+        lines.push((motors(flock.phase().phase).to_owned(), INK));
         if let Some(spacing_cm) = grid_cm {
             lines.push((format!("grid {spacing_cm} cm"), FAINT));
         }
@@ -85,7 +86,7 @@ impl Legend {
             right(&text, top(line), color);
         }
         let (words, towards) = match target_of(flock) {
-            Some(target) => ("order towards target", target),
+            Some(target) => ("signed order", target),
             None => ("rotation", Target::Clockwise),
         };
         let signed = order.map(|order| signed_text(order.signed_order(towards)));
@@ -96,30 +97,43 @@ impl Legend {
 /// The target, the backward duration, and the leaders that there are beside their color.
 fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
     let parameters = flock.parameters();
-    let backward = (format!("bw {:.2} s", parameters.bw_s), None);
-    let several = match parameters.n_leaders {
-        0 => return vec![backward],
-        1 => "1 leader".to_owned(),
-        several => format!("{several} leaders"),
-    };
+    let count = parameters.n_leaders;
+    let backward = (format!("backward {:.2} s", parameters.bw_s), None);
+    if count == 0 {
+        return vec![backward];
+    }
     let target = match target_of(flock) {
-        Some(Target::Clockwise) => "target ↻ cw",
-        Some(Target::CounterClockwise) => "target ↺ ccw",
+        Some(Target::Clockwise) => "target ↻ clockwise",
+        Some(Target::CounterClockwise) => "target ↺ counter-clockwise",
         None => {
-            let targets = (0..parameters.n_leaders).map(|leader| parameters.target.of(leader));
+            let targets = (0..count).map(|leader| parameters.target.of(leader));
             let clockwise = targets.filter(|&each| each == Target::Clockwise).count();
             return vec![
                 ("targets ↻ and ↺".to_owned(), None),
                 backward,
-                (format!("{clockwise} cw"), Some(LEADER)),
-                (
-                    format!("{} ccw", parameters.n_leaders - clockwise),
-                    Some(OPPONENT),
-                ),
+                (leaders(clockwise) + " ↻", Some(LEADER)),
+                (leaders(count - clockwise) + " ↺", Some(OPPONENT)),
             ];
         }
     };
-    vec![(target.to_owned(), None), backward, (several, Some(LEADER))]
+    vec![
+        (target.to_owned(), None),
+        backward,
+        (leaders(count), Some(LEADER)),
+    ]
+}
+
+fn leaders(count: usize) -> String {
+    format!("{count} leader{}", if count == 1 { "" } else { "s" })
+}
+
+/// What the motors do, in the replay page's words.
+fn motors(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Forward => "forward",
+        Phase::Backward => "backward",
+        Phase::DriftAfterForward | Phase::DriftAfterBackward => "motors off",
+    }
 }
 
 /// A text that is so many pixels wide at most.

@@ -107,10 +107,18 @@ declare_palette! {
     FORCE = "force": hex(0xC2185B), hex(0xFF5C9A);
     /// The ring around the boat that is chosen.
     PIN = "pin": hex(0x1F2A36), hex(0xFFFFFF);
-    /// The first run's lines.
-    RUN_1 = "run-1": hex(0x5E2CA5), hex(0xD0B3FF);
-    /// The second run's lines.
-    RUN_2 = "run-2": hex(0x2E7D32), hex(0x7BD88F);
+    /// The paper's law, in pages and plots. Policies have none of the colors of directions.
+    PAPER_LAW = "paper-law": hex(0x5E2CA5), hex(0xD0B3FF);
+    /// The damped law.
+    DAMPED_LAW = "damped-law": hex(0x7A4A12), hex(0xA0705F);
+    /// The tuned law, which is the damped law with other gains.
+    TUNED_LAW = "tuned-law": ORANGE, ORANGE;
+    /// The learned leaders.
+    LEARNED = "learned": GREEN, hex(0x7BD88F);
+    /// A run that no law led, or a second one of its law.
+    RUN_1 = "run-1": hex(0x3A4651), hex(0xE8EDF2);
+    /// The second of such runs.
+    RUN_2 = "run-2": hex(0xB5508A), hex(0xE8A0C8);
     /// Rails of gauges, and borders.
     TRACK = "track": hex(0xDDDCD6), hex(0x2C353E);
     /// Faces of buttons and cards.

@@ -2,7 +2,7 @@
 
 use super::LeaningLaw;
 use crate::boat::{Course, DampedLaw, steering_law};
-use crate::draw::palette::{BLUE, GREEN, ORANGE, Rgb};
+use crate::draw::palette::{DAMPED_LAW, LEARNED, PAPER_LAW, Rgb, TUNED_LAW};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
@@ -78,25 +78,25 @@ impl Law {
         NamedLaw {
             name: Self::EVERY_SUBSTEP,
             doc: "The paper's law, eq. (10), at every substep, from the flock itself.",
-            color: None,
+            color: Some(PAPER_LAW),
             origin: Origin::Everywhere(|| Self::EverySubstep),
         },
         NamedLaw {
             name: "paper's law",
             doc: "The paper's law at every decision, from what a leader observes, as all that follow.",
-            color: Some(BLUE),
+            color: Some(PAPER_LAW),
             origin: Origin::Everywhere(|| Self::Paper),
         },
         NamedLaw {
             name: "damped law",
             doc: "The damped law with its default gains.",
-            color: None,
+            color: Some(DAMPED_LAW),
             origin: Origin::Everywhere(|| Self::Damped(DampedLaw::default())),
         },
         NamedLaw {
             name: "tuned law",
             doc: "The damped law with the gains tuned in the pool.",
-            color: Some(ORANGE),
+            color: Some(TUNED_LAW),
             origin: Origin::OfPool(|pool| {
                 DampedLaw::tuned("law", "tuned law", pool).map(Self::Damped)
             }),
@@ -104,7 +104,7 @@ impl Law {
         NamedLaw {
             name: "learned",
             doc: "The pretrained leaders of the pool.",
-            color: Some(GREEN),
+            color: Some(LEARNED),
             origin: Origin::OfPool(|pool| {
                 LeaningLaw::learned(pool).map(|law| Self::Leaning(Box::new(law)))
             }),

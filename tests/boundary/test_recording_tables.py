@@ -60,7 +60,7 @@ def test_order_is_drawn_against_time(run):
     assert np.array_equal(signed.get_ydata(), run.order.signed_order("ccw"))
     assert [velocity.get_label(), signed.get_label()] == [
         "velocity Ψ_v [cm/s]",
-        "order towards target",
+        "signed order",
     ]
     assert axes.get_xlabel() == "time [s]"
 

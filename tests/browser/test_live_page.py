@@ -174,7 +174,7 @@ def test_a_second_flock_runs_beside(live):
         live.script("return page.runs.map((each) => each.mean('signed_order'))")
     ):
         words, _, number = live.text(".so-far", run).rpartition(" ")
-        assert words == "mean order towards target so far"
+        assert words == "mean signed order so far"
         assert float(number.replace("−", "-")) == pytest.approx(mean, abs=0.006)
     live.choose("#beside", "")
     assert live.script("return page.runs.length") == 1

@@ -134,7 +134,7 @@ def test_two_runs_side_by_side(pair, law, damped):
 
 
 def test_it_says_what_to_watch_and_the_means_so_far(pair, law, damped):
-    assert "the order towards the target is 1 if all do" in pair.text("#watch")
+    assert "the signed order is 1 if all do" in pair.text("#watch")
     pair.press("END")
     for place, recording in enumerate((law, damped)):
         seen = recording.in_analysis_window

@@ -164,5 +164,5 @@ def test_a_run_without_leaders_names_no_target(cli, tmp_path):
     for leaders in (0, 1):
         options = ["--set", f"n_leaders={leaders}", "--set", "n_boats=4", "--minutes", "0.2"]
         done = cli.succeeds("run", *options, "--out", tmp_path / f"{leaders}.npz")
-        assert ("towards target" in done.stdout) == (leaders == 1)
+        assert ("signed order" in done.stdout) == (leaders == 1)
         assert "rotation" in done.stdout

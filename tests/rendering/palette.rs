@@ -63,19 +63,11 @@ fn named(name: &str) -> Swatch {
     *PALETTE.iter().find(|each| each.name == name).unwrap()
 }
 
-#[test]
-fn every_eye_tells_directions_and_rings_apart() {
-    let names = [
-        "clockwise",
-        "counter-clockwise",
-        "radial",
-        "leader",
-        "opponent",
-    ]
-    .map(named);
+fn assert_apart(names: &[&str]) {
+    let swatches: Vec<Swatch> = names.iter().map(|name| named(name)).collect();
     for eye in EYES {
         for of in [|each: Swatch| each.light, |each: Swatch| each.dark] {
-            let seen = names.map(|each| lab(of(each), eye));
+            let seen: Vec<_> = swatches.iter().map(|&each| lab(of(each), eye)).collect();
             for (k, one) in seen.iter().enumerate() {
                 for other in &seen[..k] {
                     let squares = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b));
@@ -85,6 +77,29 @@ fn every_eye_tells_directions_and_rings_apart() {
             }
         }
     }
+}
+
+#[test]
+fn every_eye_tells_directions_and_rings_apart() {
+    assert_apart(&[
+        "clockwise",
+        "counter-clockwise",
+        "radial",
+        "leader",
+        "opponent",
+    ]);
+}
+
+#[test]
+fn every_eye_tells_policies_and_other_runs_apart() {
+    assert_apart(&[
+        "paper-law",
+        "damped-law",
+        "tuned-law",
+        "learned",
+        "run-1",
+        "run-2",
+    ]);
 }
 
 #[test]

@@ -39,7 +39,7 @@ const HANDS = {
   "of a person": (heading, runs) => Math.sign((blue(runs) < 0.4 ? 45 : 75) - heading) * STEP,
 };
 
-/** The mean order towards the target of flocks that are steered by a hand; none for those that a law steers. */
+/** The mean signed order of flocks that are steered by a hand; none for those that a law steers. */
 function scoreOf(requests, hand) {
   const runs = requests.map((request, place) => {
     const { parameters, lengths } = core.open(place, request);

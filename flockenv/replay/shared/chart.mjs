@@ -91,12 +91,12 @@ export class Chart {
       this.#windows(context, palette);
     }
     this.#axes(context, palette);
-    for (const [place, run] of this.runs.entries()) {
+    for (const run of this.runs) {
       const column = run.columns.get(quantity.key);
       if (column) {
         const dense = (run.length * (this.to - this.from)) / (run.time.at(-1) - run.time[0] || 1);
         const draw = dense > 2 * this.width ? drawBand : drawLine;
-        draw(this, context, run, column, palette[`run-${place + 1}`]);
+        draw(this, context, run, column, palette[run.color]);
       }
     }
   }
@@ -148,11 +148,11 @@ export class Chart {
 
 /** What stands above a chart: the series' words, its value in each run at a time, and `hasMeans` its mean so far. */
 export function legendOf(runs, quantity, time, hasMeans = false) {
-  const parts = runs.map((run, place) => {
+  const parts = runs.map((run) => {
     const part = element("span", "value");
     if (runs.length > 1) {
       part.title = run.name;
-      part.append(element("span", `swatch run-${place + 1}`), element("span", "unseen", `${run.name} `));
+      part.append(element("span", `swatch ${run.color}`), element("span", "unseen", `${run.name} `));
     }
     const sample = run.sampleAt(time);
     part.append(element("b", "", fixed(run.value(quantity.key, sample), quantity.decimals)));

@@ -44,7 +44,7 @@ export function runSwitch(runs, show) {
   const buttons = runs.map((run, place) => {
     const button = element("button", "wide");
     button.type = "button";
-    button.append(element("span", `swatch run-${place + 1}`), run.name);
+    button.append(element("span", `swatch ${run.color}`), run.name);
     button.addEventListener("click", () => { choose(place); show(); });
     return button;
   });
@@ -67,7 +67,7 @@ export class Panel {
     this.root = element("article", "run");
     this.root.dataset.run = String(place);
     const title = element("h2");
-    const swatch = element("span", `swatch run-${place + 1}`);
+    const swatch = element("span", `swatch ${run.color}`);
     title.append(...(several ? [swatch] : []), element("span", "name", run.name),
       element("span", "faint origin", run.ids ? "tracks" : `seed ${run.seed} · flockenv ${run.version}`));
     this.picture = element("div", "picture");
@@ -150,7 +150,7 @@ export class Panel {
     return corner;
   }
 
-  /** Order towards the target; without leaders there is none, and rotation stands in its place. */
+  /** The signed order; without leaders there is none, and rotation stands in its place. */
   #sense() {
     const hasTarget = this.run.target !== null;
     this.signedKey = hasTarget ? "signed_order" : "rotation";
@@ -158,7 +158,7 @@ export class Panel {
     this.signed = element("span", "signed");
     this.signedBar = element("div", "bar");
     const [line, gauge] = [element("div"), element("div", "gauge middle")];
-    line.append(hasTarget ? "order towards target " : "rotation ", this.signed);
+    line.append(hasTarget ? "signed order " : "rotation ", this.signed);
     gauge.append(this.signedBar);
     corner.append(line, gauge);
     return corner;

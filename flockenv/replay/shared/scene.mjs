@@ -5,11 +5,26 @@ import { drawForces } from "./forces.mjs";
 const MARGIN = 0.022;
 const TRAIL_PIECES = 6;
 
+/** Colors of runs: of the laws that lead them, as in plots, and of others. */
+const LAWS = ["paper-law", "damped-law", "tuned-law", "learned"];
+const OTHERS = ["run-1", "run-2"];
+
+/** Gives each run the color of the law that leads it, unless a run of another name has it. */
+export function giveColors(runs) {
+  const taken = new Map();
+  for (const run of runs) {
+    const steering = (run.leaders > 0 && run.policy ? run.policy : "").replace("'s", "").replaceAll(" ", "-");
+    const own = LAWS.filter((law) => !steering.includes(",") && `${steering}-`.startsWith(`${law}-`));
+    run.color = [...own, ...OTHERS].find((each) => (taken.get(each) ?? run.name) === run.name);
+    taken.set(run.color, run.name);
+  }
+}
+
 /** Colors of the style sheet, by name. */
 export function colors() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "clockwise", "counter-clockwise", "radial", "normal",
-    "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", "run-1", "run-2", "track", "circles-from"];
+    "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", ...LAWS, ...OTHERS, "track", "circles-from"];
   const palette = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
   return { ...palette, window: `${palette.ink}12` };
 }

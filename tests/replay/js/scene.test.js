@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { tintOf } from "../../../flockenv/replay/shared/scene.mjs";
+import { giveColors, tintOf } from "../../../flockenv/replay/shared/scene.mjs";
 
 /** The tint of a boat east of the middle, by its heading in degrees: south is clockwise, east outward. */
 const tints = (...degrees) => degrees.map((each) => tintOf([70, 0, (each * Math.PI) / 180], 0.5));
@@ -15,4 +15,26 @@ test("clockwise, counter-clockwise, and along the radius", () => {
 
 test("west of the middle it is the other way round", () => {
   assert.equal(tintOf([-70, 0, Math.PI / 2], 0.5), "clockwise");
+});
+
+/** The colors of runs [name, policy, leaders]. */
+const given = (...runs) => {
+  const described = runs.map(([name, policy, leaders = 3]) => ({ name, policy, leaders }));
+  giveColors(described);
+  return described.map(({ color }) => color);
+};
+
+test("a run has the color of its law, whatever it is called and wherever it stands", () => {
+  assert.deepEqual(given(["a", "paper's law at every substep"], ["b", "learned 3f2a"]), ["paper-law", "learned"]);
+  assert.deepEqual(given(["b", "learned"], ["a", "tuned law"]), ["learned", "tuned-law"]);
+});
+
+test("others have colors of no law, and no two runs the same", () => {
+  assert.deepEqual(given(["a", "mine"], ["b", null]), ["run-1", "run-2"]);
+  assert.deepEqual(given(["a", "paper's law"], ["b", "paper's law"]), ["paper-law", "run-1"]);
+  assert.deepEqual(given(["a", "paper's law", 0], ["b", "paper's law,learned"]), ["run-1", "run-2"]);
+});
+
+test("copies of a flock have its color", () => {
+  assert.deepEqual(given(["you", "you"], ["you", "you"], ["the law", "paper's law"]), ["run-1", "run-1", "paper-law"]);
 });
