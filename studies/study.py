@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 import flockenv
+from docs.scripts.plots import LETTERS, smallest_letters
 from flockenv.rendering.palette import OKABE_ITO
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
@@ -419,10 +420,10 @@ def histograms(column: pd.Series) -> NDArray[np.float64]:
 COLORS = (*OKABE_ITO.values(),)
 
 _STYLE: dict[str, Any] = {
-    "font.size": 8,
-    "axes.titlesize": 8,
+    "font.size": 9,
+    "axes.titlesize": 9,
     "legend.frameon": False,
-    "legend.fontsize": 7,
+    "legend.fontsize": 8.5,
     "axes.linewidth": 0.6,
     "lines.linewidth": 1.1,
     "lines.markersize": 3,
@@ -439,7 +440,8 @@ def picture(
         figure = Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained")
         yield figure
         file = io.BytesIO()
-        figure.savefig(file, format="png", dpi=130, metadata={"Software": None})
+        stamp = {"Software": None, LETTERS: smallest_letters(figure, 130)}
+        figure.savefig(file, format="png", dpi=130, metadata=stamp)
     write(path := options.folder / "pictures" / f"{name}.png", file.getvalue())
     print(f"Drawn: {path}")
 

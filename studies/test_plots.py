@@ -1,9 +1,11 @@
 """Law: a picture of a study was drawn from the committed data."""
 
 import importlib
+import re
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from studies import make
 
@@ -43,3 +45,19 @@ def test_every_picture_is_on_a_page():
     text = "".join(page.read_text(encoding="utf-8") for page in pages)
     pictures = STUDIES.glob("*/pictures/*.png")
     assert [path.name for path in pictures if f"pictures/{path.name}" not in text] == []
+
+
+README_PX = 830
+"""Width of a README where a repository is read."""
+
+
+def test_the_letters_of_the_readmes_pictures_have_nine_pixels():
+    readme = (STUDIES.parent / "README.md").read_text(encoding="utf-8")
+    shown = dict.fromkeys(re.findall(r"studies/[\w/]+\.png", readme), README_PX)
+    sized = re.findall(r'src="(\S+\.png)".*?width="(\d+)"', readme)
+    shown |= {name: int(width) for name, width in sized}
+    assert len(shown) > len(sized) > 0
+    for name, width in shown.items():
+        with Image.open(STUDIES.parent / name) as file:
+            letters = float(file.info["Letters"]) * min(width / file.width, 1.0)
+        assert letters >= 9.0, name

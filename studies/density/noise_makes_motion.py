@@ -137,7 +137,7 @@ def draw_density(options: Options, found: dict[tuple[str, str, int], pd.DataFram
         left.set(ylabel="rise of mean |m| by backing (bw)", ylim=(-0.03, 1.0))
         right.set(ylabel="mean |m| at bw = 0")
         for axes in (left, right):
-            axes.set_xlabel("boats over room on the wall; wide: 0.19, 0.25, 0.47")
+            axes.set_xlabel("boats over room on the wall\n(wide: 0.19, 0.25, 0.47)")
         right.legend()
 
 

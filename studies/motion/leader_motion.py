@@ -13,6 +13,7 @@ from matplotlib.patches import Circle
 
 import flockenv
 from flockenv import FlockParameters
+from flockenv.comparison.figure import policy_colors
 from flockenv.statistics import mean_interval
 from studies.study import run, write_table
 
@@ -62,7 +63,8 @@ def draw() -> None:
         pose = leaders("wide", policy, 7).pose[-round(120 * SAMPLE_HZ) :, :LEADERS]
         for radius_cm in FlockParameters(pool="wide").pool_radii_cm:
             axes.add_patch(Circle((0, 0), radius_cm, fill=False, color="0.6"))
-        axes.plot(pose[..., 0], pose[..., 1], lw=1)
+        for leader, style in enumerate(("-", "--", ":")):
+            axes.plot(*pose[:, leader, :2].T, style, color=policy_colors([policy])[policy])
         axes.plot(pose[0, :, 0], pose[0, :, 1], "k.")
         axes.set(title=policy, aspect="equal", xlim=(-185, 185), ylim=(-185, 185))
         axes.axis("off")

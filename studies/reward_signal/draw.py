@@ -14,15 +14,20 @@ SIGNALS = RESULTS / "signals.csv"
 
 def signals(figure: Figure) -> None:
     """Draw how clearly samples of each reward show the way to a better policy."""
-    names = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
+    names = {
+        "leader_velocity": "leader's velocity",
+        "contact_push": "push of its contacts",
+        "contact_alignment": "turning by contacts",
+        "signed_order": "signed order",
+    }
     cases = (("rudder", "wide"), ("rudder", "narrow"), ("lean", "wide"))
     panels = figure.subplots(1, 3, sharey=True)
     for axes, (mode, pool) in zip(panels, cases, strict=True):
         found = {}
-        for name in names:
+        for name, words in names.items():
             (row,) = rows(SIGNALS, pool=pool, action_mode=mode, reward=name)
             z, error = float(row["z_per_million"]), float(row["error"])
-            found[name] = (z, z - 1.96 * error, z + 1.96 * error)
+            found[words] = (z, z - 1.96 * error, z + 1.96 * error)
         listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
         axes.set(title=f"{mode}s in {pool}", xlabel="z for a million samples")
 

@@ -11,6 +11,8 @@ from studies.section4.section4 import CW, FREE, READING, STUDY, at, setup, withi
 from studies.study import COLORS, Options, main, picture
 
 END_S = 480.0
+_PAPERS_P = {CW: 0.01, FREE: 0.003}
+"""The paper's p that the time to order does not fall with noise."""
 ANGLES = {"ordered_quarter_s": "π/4", "ordered_s": "π/20 as printed"}
 _LEAST_SHARE = 0.25
 """Share of the runs that order, from which on a noise counts as one where flocking is observed."""
@@ -107,9 +109,11 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                 x = np.array([0.0, *left.time_s, END_S]) / 60
                 y = [1.0, *left.share, left.share_at(END_S)]
                 axes.step(x, y, where="post", color=color, label=f"bw = {bw_s:g} s")
-            axes.set(title=f"{name} ({runs['seed'].nunique()} runs each)", xlabel="time (min)")
+            title = f"{name} ({runs['seed'].nunique()} runs each)"
+            paper = f"paper: sooner with noise, p = {_PAPERS_P[name]}"
+            axes.set(title=f"{title}\n{paper}", xlabel="time (min)")
         panels[0].set(ylabel="share of runs not yet ordered", ylim=(-0.03, 1.03))
-        panels[1].legend(loc="upper right", ncols=2)
+        figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=6)
 
 
 script = judging("fig08", STUDY, judge, draw)

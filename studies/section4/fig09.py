@@ -18,6 +18,7 @@ from studies.section4.section4 import (
     CCW,
     CW,
     FREE,
+    LOST_S,
     LOW_S,
     READING,
     SETUPS,
@@ -181,11 +182,12 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             runs = setup(table, name)
             found = [histograms(runs.loc[runs["bw_s"] == b, "phi_histogram"]) for b in noises]
             image = density_map(axes, noises, PHI_EDGES, found, 6.0)
-            axes.axvline(1.4 if name == FREE else 2.0, color="w", linestyle="--")
-            axes.set_title(f"{name} ({len(runs) // len(noises)} runs each)")
-            axes.set(xlabel="bw (s); dashed: lost in the paper", yticks=[-np.pi / 2, 0, np.pi / 2])
+            axes.axvline(LOST_S[name], color="w", linestyle="--")
+            axes.set(title=name, yticks=[-np.pi / 2, 0, np.pi / 2])
             axes.set_yticklabels(["−π/2", "0", "π/2"])
         panels[0].set_ylabel("φ_o")
+        each = f"{len(runs) // len(noises)} runs each"
+        figure.supxlabel(f"bw (s), {each}; dashed: lost in the paper", fontsize="medium")
         figure.colorbar(image, ax=list(panels), label="density over uniform", extend="max")
 
 

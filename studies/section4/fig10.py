@@ -10,6 +10,7 @@ from studies.section4.section4 import (
     CW,
     FREE,
     HIGH_S,
+    LOST_S,
     LOW_S,
     MEDIUM_S,
     READING,
@@ -56,7 +57,7 @@ def judge(table: pd.DataFrame) -> Claims:
             ),
             least=1.2,
         )
-        lost_s, noises = (1.4 if name == FREE else 2.0), sorted(runs["bw_s"].unique())
+        lost_s, noises = LOST_S[name], sorted(runs["bw_s"].unique())
         claims.add(
             f"Ψ_o becomes that of disorder around bw = {lost_s} s",
             f"bw (s) at which mean Ψ_o falls through {DISORDER:g}, {name}",
@@ -118,8 +119,13 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             axes.plot(runs["bw_s"], runs["psi_o"], ".", color="0.7", markersize=2)
             groups = runs.groupby("bw_s")["psi_o"]
             curve(axes, groups.groups, [mean(each) for _, each in groups], color=color)
-            axes.set(title=f"{name} ({runs['seed'].nunique()} runs each)", xlabel="bw (s)")
+            axes.axvline(LOST_S[name], color="0.4", linestyle="--")
+            axes.fill_between((LOST_S[name], runs["bw_s"].max()), 0.0, 0.3, color="0.9", zorder=0)
+            axes.set(title=name, ylim=(0, 1.03))
         panels[0].set_ylabel("mean Ψ_o")
+        words = "dashed: lost in the paper; shaded: its disorder"
+        each = f"{runs['seed'].nunique()} runs each"
+        figure.supxlabel(f"bw (s), {each}; {words}", fontsize="medium")
 
 
 script = judging("fig10", STUDY, judge, draw)

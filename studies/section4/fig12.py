@@ -63,7 +63,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             groups = runs.groupby("n_leaders")["psi_o"]
             curve(axes, groups.groups, [mean(each) for _, each in groups], color=color)
             axes.set(xlabel="leaders", ylim=(0, 1))
-            axes.set_title(f"bw = {bw_s:g} s ({runs['seed'].nunique()} runs each)")
+            paper = "\nthe paper's rises, p = 0.002" if bw_s == NOISES_S[0] else "\n"
+            axes.set_title(f"bw = {bw_s:g} s ({runs['seed'].nunique()} runs each){paper}")
         panels[0].set_ylabel("mean Ψ_o")
 
 

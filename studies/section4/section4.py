@@ -11,6 +11,8 @@ LEVELS_S = tuple(round(0.2 * place, 1) for place in range(15))
 """Backward durations from 0 to 2.8 s; the paper's begin at 0.4 s."""
 
 FREE, CCW, CW = "no leaders", "3 leaders, CCW", "3 leaders, CW"
+LOST_S = {FREE: 1.4, CCW: 2.0, CW: 2.0}
+"""Backward durations at which the paper's flocks lose their order (caption of figure 9)."""
 SETUPS: dict[str, tuple[int, str]] = {FREE: (0, "cw"), CCW: (3, "ccw"), CW: (3, "cw")}
 READING = "experiment (leapfrog, white), narrow, n = 27"
 LOW_S, MEDIUM_S, HIGH_S = (0.0, 0.8), (1.0, 1.6), (1.8, 2.8)

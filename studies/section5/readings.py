@@ -7,7 +7,15 @@ import pandas as pd
 
 from studies.claim import Claims, Interval, mean, write_claims
 from studies.section5 import fig14, fig15, fig16, fig17
-from studies.section5.section5 import PRESETS, READINGS, SERIES, STUDY, Evidence
+from studies.section5.section5 import (
+    LOST_S,
+    PRESETS,
+    READINGS,
+    SERIES,
+    STUDY,
+    Evidence,
+    in_words,
+)
 from studies.study import COLORS, Options, main, picture, write
 
 
@@ -34,7 +42,7 @@ def write_table(options: Options, found: dict[str, Claims]) -> None:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw the bw at which each reading loses its order, if it has any, and the jam of 50 boats."""
-    names = sorted(READINGS)
+    names = sorted(READINGS, key=in_words)
     evidence = [Evidence(table, name) for name in names]
     with picture(options, "readings", height_cm=12.0) as figure:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(2, 1))
@@ -43,11 +51,11 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             _bars(left, lost, 0.18 * (place - 1.5), color, f"{n} boats, {k} of them lead")
         jams = [fig17.densities(e).query("n_boats == 50")["jammed"] for e in evidence]
         _bars(right, [mean(each) for each in jams], 0.0, COLORS[2], "")
-        left.axvspan(0.6, 0.8, color="0.9", zorder=0)
-        left.set_yticks(range(len(names)), names)
-        left.set(xlabel="bw at which order is lost (s); shaded: the paper's", ylim=(15.6, -0.6))
-        right.set(xlabel="jammed share, n = 50, bw = 0", xlim=(0, 1.02))
-        figure.legend(loc="outside upper center", ncols=4)
+        left.axvspan(*LOST_S, color="0.9", zorder=0)
+        left.set_yticks(range(len(names)), map(in_words, names))
+        left.set(xlabel="bw at which order is lost (s)\nshaded: in the paper", ylim=(15.6, -0.6))
+        right.set(xlabel="jammed share of\n50 boats at bw = 0", xlim=(0, 1.02))
+        figure.legend(loc="outside upper center", ncols=2)
 
 
 def _bars(axes: Any, found: list[Interval], shift: float, color: str, label: str) -> None:

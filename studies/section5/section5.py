@@ -36,6 +36,23 @@ READINGS: dict[str, Row] = {
 }
 """Readings by name, the most decisive first. Tolerance counts in the scheme `paper` alone."""
 
+
+def in_words(name: str) -> str:
+    """Return a reading's scheme and noise, and its overlap, step and pool if they are others."""
+    row, usual = READINGS[name], READINGS["simulation"]
+    words = ["literal scheme" if row["scheme"] == "paper" else str(row["scheme"])]
+    words.append("white noise" if row["noise_scheme"] == "white" else "noise per step")
+    others = {
+        "overlap_tolerance_cm": f"overlap {row['overlap_tolerance_cm']} cm",
+        "dt_s": f"steps of {row['dt_s']} s",
+        "pool": f"pool {row['pool']}",
+    }
+    return ", ".join([*words, *(text for key, text in others.items() if row[key] != usual[key])])
+
+
+LOST_S = (0.6, 0.8)
+"""Backward durations between which the paper's simulated flocks lose their order."""
+
 SERIES = [(n, k) for n in (20, 50) for k in (0, n // 5)]
 """Numbers of boats and of leaders: the four panels of figures 14 to 16."""
 PRESETS = ("simulation", "paper")
@@ -136,11 +153,9 @@ def draw_means(
                 found = [mean(each) for _, each in groups]
                 curve(axes, groups.groups, found, color=color, marker=marker, label=e.name)
                 axes.set_title(panel_title(n, k, runs))
-            if column == "psi_o":
-                axes.axvspan(0.6, 0.8, color="0.9", zorder=0)
-        shaded = "; shaded: where the paper has order lost" if column == "psi_o" else ""
+            axes.axvspan(*LOST_S, color="0.9", zorder=0)
         for axes in panels[1]:
-            axes.set_xlabel(f"bw (s){shaded}")
+            axes.set_xlabel("bw (s); shaded: where the paper has order lost")
         for axes in panels[:, 0]:
             axes.set_ylabel(label)
         panels[0, 0].legend()

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, colors_of, rows
+from docs.scripts.plots import Interval, Plot, Row, rows
+from flockenv.comparison.figure import policy_colors
 from studies.plots import drawing, grouped
 from studies.study import main
 
@@ -47,7 +48,7 @@ def grid(figure: Figure) -> None:
     """Draw the scores of each algorithm with each input: all seeds together, and each as a dot."""
     panels = figure.subplots(1, 2, sharey=True)
     found = {words: rows(GRID, input=name) for name, words in INPUTS.items()}
-    colors = colors_of(found)
+    colors = policy_colors(found)
     for axes, what, reference in zip(panels, ("iqm", "improvement"), (0.0, 0.5), strict=True):
         names = (what, f"{what}_low", f"{what}_high")
         means = {

@@ -27,19 +27,23 @@ ALGORITHMS = {
 
 
 def budgets(figure: Figure) -> None:
-    """Draw the order of each seed against the flock-hours of its training."""
+    """Draw the order of each seed, those of a budget beside each other."""
     axes = figure.subplots()
     # Beside other algorithms the example is called `train_leaders`.
-    found = [each for each in rows(EXAMPLE) if each["policy"].startswith("train")]
-    for place, row in enumerate(found):
-        seed_points(axes, [{**row, "at": str(500 + 16 * (place - 2))}], "at", fmt="o")
-    for hours, file in MIXED.items():
-        mixed = [each for each in rows(file) if each["policy"].startswith("seed")]
-        for place, row in enumerate(mixed):
-            at = hours + 16 * (place - 3.5)
-            seed_points(axes, [{**row, "at": str(at)}], "at", fmt="s", mfc="white")
+    groups = [
+        (EXAMPLE, "train", "500\nthree leaders", {"fmt": "o"}),
+        (MIXED[500], "seed", "500\none to four", {"fmt": "s", "mfc": "white"}),
+        (MIXED[1101], "seed", "1101\none to four", {"fmt": "s", "mfc": "white"}),
+    ]
+    for middle, (file, start, _, style) in enumerate(groups):
+        found = [each for each in rows(file) if each["policy"].startswith(start)]
+        for place, row in enumerate(found):
+            at = middle + 0.08 * (place - (len(found) - 1) / 2)
+            seed_points(axes, [{**row, "at": str(at)}], "at", **style)
     levels(axes, rows(MIXED[1101])[:2])
-    axes.set(xlabel="flock-hours of the training", ylabel="signed order", xlim=(120, 1300))
+    axes.set_xticks(range(len(groups)), [each[2] for each in groups])
+    axes.set(xlabel="flock-hours of the training, and its leaders", ylabel="signed order")
+    axes.set_xlim(-0.75, 2.5)
 
 
 def algorithms(figure: Figure) -> None:

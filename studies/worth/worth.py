@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from flockenv.comparison.figure import OWN_COLORS, policy_colors
+from flockenv.comparison.figure import policy_colors
 from studies.claim import Claims, Interval, bca, judging, mean, unknown
 from studies.study import Options, curve, main, picture
 from studies.worth.worth_runs import LAW, NOISES_S, POLICIES, STUDY
@@ -150,7 +150,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     with picture(options, "worth") as figure:
         left, right = figure.subplots(1, 2)
         noises = sorted(set(NOISES_S) & set(table.loc[table["n_boats"] == 27, "bw_s"]))
-        colors = policy_colors(map(_named, POLICIES)) | {"damped law": OWN_COLORS[3]}
+        colors = policy_colors(map(_named, POLICIES))
         for place, (policy, color) in enumerate(zip(POLICIES, colors.values(), strict=True)):
             known = [b for b in noises if len(of(table, policy=policy, bw_s=b, leaders=1))]
             shift = 0.004 * place
