@@ -140,6 +140,7 @@ def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
         f"{ppo.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
         f"{gain.high:+.3f}), paired by flock"
     )
-    for line in overlap_notes(rows):
+    own = overlap_notes(ppo.episodes_of(options.out), "episodes of the training")
+    for line in own + overlap_notes(rows):
         echo(line)
     echo(f"Written to {options.out}")

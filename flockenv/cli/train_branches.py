@@ -13,6 +13,7 @@ import numpy as np
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option_of
+from flockenv.comparison.report import overlap_note
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
 from flockenv.policies.names import TUNED_LAW
@@ -57,6 +58,8 @@ def train_branches(
         mean, own = _mean(each)
         echo(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
     echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
+    for line in overlap_note(*training.overlaps, "branches of the training"):
+        echo(line)
     echo(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
 
 

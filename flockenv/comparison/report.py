@@ -182,15 +182,19 @@ class ComparisonReport:
         return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
 
 
-def overlap_notes(episodes: "pd.DataFrame") -> list[str]:
+def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str]:
     """Return a line that says in how many episodes overlaps exceeded the tolerance, if any."""
     deep = episodes[episodes["unsolved"] > 0]
-    if len(deep) == 0:
+    return overlap_note(len(episodes), len(deep), deep["worst_overlap_cm"].max(), words)
+
+
+def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str]:
+    """Return the line for `deep` of a total with such overlaps, no line for none."""
+    if deep == 0:
         return []
-    worst = deep["worst_overlap_cm"].max()
     return [
-        f"{len(deep)} of {len(episodes)} episodes left overlaps deeper than tolerance_cm; "
-        f"the deepest is {worst:.2g} cm"
+        f"{deep} of {total} {words} left overlaps deeper than tolerance_cm; "
+        f"the deepest is {worst_cm:.2g} cm"
     ]
 
 

@@ -111,6 +111,11 @@ class BranchTraining:
         order = self.curve["signed_order"]
         return Progress(done, total, float(order[-1]) if len(order) else math.nan)
 
+    @property
+    def overlaps(self) -> tuple[int, int, float]:
+        """Branches, those that left overlaps beyond ``tolerance_cm``, and the deepest one in cm."""
+        return self._core.overlaps
+
     def advance(self) -> None:
         """Take a round: a branch of every pair, and a step of the weights.
 

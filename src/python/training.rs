@@ -77,6 +77,12 @@ impl PyTrainer {
         Ok(self.0.read()?.curve().collect())
     }
 
+    /// Branches, those that left overlaps deeper than the tolerance, and the deepest overlap in cm.
+    #[getter]
+    fn overlaps(&self) -> Result<(u64, u64, f64)> {
+        Ok(self.0.read()?.overlaps())
+    }
+
     #[getter]
     fn law(&self) -> Result<PyLaw> {
         Ok(PyLaw(Law::Leaning(Box::new(self.0.read()?.law()?))))

@@ -5,8 +5,9 @@ use super::regression::{Features, SIZE};
 use super::settings::Decisions;
 use crate::contact::KeepGoing;
 use crate::environment::observation::LEAN_FEATURES;
-use crate::environment::{EnvSettings, FlockEnv, ResetRequest, Start, TargetChoice};
+use crate::environment::{EnvSettings, Episode, FlockEnv, ResetRequest, Start, TargetChoice};
 use crate::error::{FlockError, Result};
+use crate::flock::Flock;
 use crate::parameters::{FlockParameters, Target};
 use crate::policies::LeaningLaw;
 use crate::random::{Stream, StreamRng};
@@ -46,6 +47,10 @@ pub(super) struct Shown {
     pub features: Vec<Features>,
     /// Mean order of both.
     pub order: f64,
+    /// Whether a substep of either left an overlap deeper than the tolerance.
+    pub is_unsolved: bool,
+    /// Deepest overlap of either since its start, in cm.
+    pub worst_overlap_cm: f64,
 }
 
 /// One of both flocks after its branch.
@@ -53,7 +58,8 @@ struct Side {
     features: Vec<Features>,
     order: f64,
     judged: f64,
-    env: FlockEnv,
+    is_unsolved: bool,
+    flock: Flock,
 }
 
 fn coin(random: &mut StreamRng) -> bool {
@@ -169,6 +175,7 @@ impl Task {
             env.prepare(&self.env_settings, request, keep_going)?,
             &mut seen,
         );
+        let unsolved = flock_of(&env)?.statistics().unsolved;
         let mut features = vec![[0.0; SIZE]; offsets.len()];
         let (mut actions, mut rewards) = (vec![0.0; leaders], vec![0.0; leaders]);
         let (mut order, mut judged) = (0.0, 0.0);
@@ -196,11 +203,13 @@ impl Task {
             order += rewards[0];
             judged += if decision >= blind { rewards[0] } else { 0.0 };
         }
+        let flock = flock_of(&env)?.clone();
         Ok(Side {
             features,
             order,
             judged,
-            env,
+            is_unsolved: flock.statistics().unsolved > unsolved,
+            flock,
         })
     }
 
@@ -209,6 +218,7 @@ impl Task {
         let features: Vec<Features> = both
             .map(|(a, b)| std::array::from_fn(|k| 0.5 * (a[k] + b[k])))
             .collect();
+        let worst = |side: &Side| side.flock.statistics().worst_overlap_cm;
         let mut tried = [0.0; SIZE];
         for (offset, felt) in offsets.iter().zip(&features) {
             for (sum, value) in tried.iter_mut().zip(felt) {
@@ -220,6 +230,8 @@ impl Task {
             difference: plus.judged - minus.judged,
             features,
             order: 0.5 * (plus.order + minus.order) / self.decisions.branch as f64,
+            is_unsolved: plus.is_unsolved || minus.is_unsolved,
+            worst_overlap_cm: worst(plus).max(worst(minus)),
         }
     }
 
@@ -233,14 +245,17 @@ impl Task {
                 episode: pair.episode + 1,
             });
         }
-        let episode = continued.env.episode();
-        let none = || FlockError::Episode("the branch has no flock".to_owned());
         Ok(Pair {
-            snapshot: Some(episode.ok_or_else(none)?.flock().snapshot()),
+            snapshot: Some(continued.flock.snapshot()),
             left: pair.left - 1,
             ..pair.clone()
         })
     }
+}
+
+fn flock_of(env: &FlockEnv) -> Result<&Flock> {
+    let none = || FlockError::Episode("the branch has no flock".to_owned());
+    env.episode().map(Episode::flock).ok_or_else(none)
 }
 
 /// Adds what is observed, and 1 for the bias, times a factor.

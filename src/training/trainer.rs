@@ -12,7 +12,7 @@ use crate::parameters::FlockParameters;
 use crate::policies::LeaningLaw;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: Magic = *b"flocktr1";
+const MAGIC: Magic = *b"flocktr2";
 
 /// What a training remembers between two rounds.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -27,6 +27,9 @@ struct Memory {
     /// Sum of the features' squares, and how many rounds count in it.
     features: Matrix,
     rounds: f64,
+    /// Branches in which a flock left an overlap deeper than the tolerance, and the deepest of all, in cm.
+    unsolved: u64,
+    worst_overlap_cm: f64,
     pairs: Vec<Pair>,
 }
 
@@ -39,7 +42,7 @@ impl Memory {
             .chain(&self.features)
             .chain([&self.differences]);
         let numbers = sums.chain(&self.weights).flatten().chain(&self.orders);
-        let mut all = numbers.chain([&self.rounds]);
+        let mut all = numbers.chain([&self.rounds, &self.worst_overlap_cm]);
         all.all(|number| number.is_finite())
             && self.weights.len() == self.orders.len() + 1
             && self.pairs.len() == pairs
@@ -91,6 +94,8 @@ impl Trainer {
             differences: [0.0; SIZE],
             features: [[0.0; SIZE]; SIZE],
             rounds: 0.0,
+            unsolved: 0,
+            worst_overlap_cm: 0.0,
             pairs: pairs.collect(),
         };
         let under_way = Vec::new();
@@ -135,6 +140,18 @@ impl Trainer {
         (1..)
             .zip(&self.memory.orders)
             .map(move |(round, &order)| (hours * f64::from(round), order))
+    }
+
+    /// Branches of whole rounds: all, and those in which a flock left an overlap deeper than the tolerance; then the
+    /// deepest overlap of all flocks in cm.
+    pub fn overlaps(&self) -> (u64, u64, f64) {
+        let branches = self.memory.orders.len() * self.task.settings.pairs;
+        let Memory {
+            unsolved,
+            worst_overlap_cm,
+            ..
+        } = self.memory;
+        (branches as u64, unsolved, worst_overlap_cm)
     }
 
     /// Takes up to so many more branches of pairs, and a step where a round is over.
@@ -189,6 +206,8 @@ impl Trainer {
                 add_square(&mut memory.features, share, each);
             }
             order += shown.order / settings.pairs as f64;
+            memory.unsolved += u64::from(shown.is_unsolved);
+            memory.worst_overlap_cm = memory.worst_overlap_cm.max(shown.worst_overlap_cm);
             *pair = next;
         }
         let gradient = ridge(&memory.tried, settings.ridge, &memory.differences);

@@ -54,6 +54,20 @@ def test_it_needs_no_other_package_and_resumes_to_the_same_policy(cli, tmp_path:
     )
 
 
+def test_overlaps_beyond_the_tolerance_are_said_in_one_line(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = ["train", *TINY, "--flock-hours", "0.03"]
+    assert "tolerance" not in cli.succeeds(*options, "--out", tmp_path / "none").stdout
+    overlaps = property(lambda training: (2, 1, 0.0314))
+    monkeypatch.setattr("flockenv.training.branches.BranchTraining.overlaps", overlaps)
+    said = cli.succeeds(*options, "--out", tmp_path / "some").stdout.splitlines()
+    assert said[-2] == (
+        "1 of 2 branches of the training left overlaps deeper than tolerance_cm; the deepest is "
+        "0.031 cm"
+    )
+
+
 def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     for arguments, words in (
         (["--algorithm", "branch"], "'branch' is no algorithm"),

@@ -1,6 +1,7 @@
 """`flockenv train` trains, resumes, compares, and names what is wrong or missing."""
 
 import json
+import re
 import signal
 from pathlib import Path
 
@@ -36,6 +37,14 @@ def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     assert low <= gain <= high
     assert len((tmp_path / "run" / "comparison.csv").read_text().splitlines()) == 1 + 3 * 2
     assert (tmp_path / "run" / "curve.png").stat().st_size > 0
+    # As if the boats of one episode had overlapped.
+    episodes = tmp_path / "run" / "0.monitor.csv"
+    rows = episodes.read_text().splitlines()
+    columns = rows[1].split(",")
+    assert columns[-2:] == ["worst_overlap_cm", "unsolved"]
+    assert all(float(row.split(",")[-2]) <= 1e-4 for row in rows[2:])
+    rows[2] = ",".join([*rows[2].split(",")[:-2], "0.0314", "2"])
+    episodes.write_text("\n".join(rows) + "\n")
     hours = str(128 * 48 / 3600)
     more = cli.succeeds(
         "train", "--resume", "--flock-hours", hours, "--episodes", "2", "--out", out
@@ -43,6 +52,12 @@ def test_it_trains_resumes_and_compares(cli, tmp_path: Path) -> None:
     assert f"Resuming from {out}/checkpoint.zip" in more.stderr.replace("\n", "")
     assert "trained: signed order " in more.stdout
     assert "trained minus tuned law: " in more.stdout
+    (line,) = (line for line in more.stdout.splitlines() if "tolerance_cm" in line)
+    assert re.fullmatch(
+        r"1 of \d+ episodes of the training left overlaps deeper than tolerance_cm; the deepest is "
+        r"0\.031 cm",
+        line,
+    )
     assert load(found["model"], trust=True).provenance["samples"] == str(128 * 48 * 2)
 
 

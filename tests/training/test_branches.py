@@ -41,6 +41,30 @@ def test_a_training_goes_on_from_its_bytes(mode):
     assert whole.policy().to_json() != tiny(seed=1, action_mode=mode).policy().to_json()
 
 
+def test_branches_that_left_overlaps_beyond_the_tolerance_are_counted():
+    def overlaps(training: BranchTraining) -> tuple[int, int, float]:
+        while not training.has_ended:
+            training.advance()
+            training = BranchTraining.from_bytes(training.to_bytes())
+        return training.overlaps
+
+    tolerance_cm = tiny().parameters.tolerance_cm
+    assert tiny().overlaps == (0, 0, 0.0)
+    branches, deep, worst_cm = overlaps(tiny())
+    assert (branches, deep) == (4, 0)
+    assert 0.0 < worst_cm <= tolerance_cm
+    # Boats that pass each other within the shortest substep stay entangled in some branches.
+    speeds = {"speed_cm_s": 1e4, "reverse_speed_cm_s": 1e4, "dt_s": 1.0, "bw_s": 2.0}
+    fast = training_flocks("narrow", n_boats=6, n_leaders=2, **speeds)
+    short = {"branch_s": 4.0, "hold_s": 2.0, "trial_s": 2.0, "blind_s": 1.0, "episode_s": 8.0}
+    branches, deep, worst_cm = overlaps(
+        BranchTraining(fast, seed=2, pairs=2, flock_hours=0.006, **short)
+    )
+    assert branches == 4
+    assert 0 < deep < 4
+    assert worst_cm > tolerance_cm
+
+
 def test_before_the_first_round_leans_are_those_of_the_tuned_law_and_rudders_are_zero():
     assert set(tiny().policy().weights.values()) == {0.0}
     law = tiny(action_mode="rudder").policy()

@@ -8,7 +8,7 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.training.ppo.curve import TRAINED, compare_with_laws, learning_curve
+from flockenv.training.ppo.curve import TRAINED, compare_with_laws, episodes_of, learning_curve
 from flockenv.training.ppo.run import (
     CHECKPOINT,
     MODEL,
@@ -28,6 +28,7 @@ __all__ = [
     "TrainingError",
     "TrainingSettings",
     "compare_with_laws",
+    "episodes_of",
     "learning_curve",
     "resume",
     "stored_settings",

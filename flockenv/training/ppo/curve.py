@@ -17,13 +17,25 @@ TRAINED = "trained"
 """The name of the trained leaders in the comparison."""
 
 
+def episodes_of(folder: Path) -> "pd.DataFrame":
+    """Return the episodes of a training, as stable-baselines3's ``load_results``.
+
+    Parameters
+    ----------
+    folder
+        That of the training: its `FlockMonitor`'s files hold the ``signed_order``,
+        ``worst_overlap_cm`` and ``unsolved`` of each episode.
+    """
+    return load_results(str(folder))
+
+
 def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.DataFrame":
     """Return the mean signed order of a training's episodes against flock-hours.
 
     Parameters
     ----------
     folder
-        Of a `FlockMonitor`'s file with the ``signed_order`` of each episode.
+        As of `episodes_of`.
     decisions_hz
         Decisions per second, which turns lengths of episodes into hours.
     points
@@ -34,7 +46,7 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     pandas.DataFrame
         ``flock_hours`` and ``signed_order``.
     """
-    episodes = load_results(str(folder))
+    episodes = episodes_of(folder)
     hours = episodes["l"].cumsum() / decisions_hz / 3600.0
     group = (episodes.index * points // max(1, len(episodes))).to_numpy()
     order = episodes["signed_order"].groupby(group).mean()

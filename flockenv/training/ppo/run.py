@@ -25,6 +25,8 @@ from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.ppo.settings import TrainingSettings
 
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
+#: What is kept of each episode.
+_SUMMARY = ("signed_order", "worst_overlap_cm", "unsolved")
 
 
 class TrainingError(FlockError, RuntimeError):
@@ -55,8 +57,8 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
     """Train into an empty folder, and return the model.
 
     The folder gets ``model.zip``, ``checkpoint.zip``, ``settings.toml``, ``0.monitor.csv`` with the
-    order of each flock's episodes, and stable-baselines3's log in ``log-0``. After a resume, names
-    have the samples so far instead of 0.
+    order and overlaps of each flock's episodes, and stable-baselines3's log in ``log-0``. After a
+    resume, names have the samples so far instead of 0.
 
     Parameters
     ----------
@@ -172,9 +174,7 @@ def _advance(
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:
-            monitor = FlockMonitor(
-                venv, str(folder / str(done)), ("signed_order",), override_existing=True
-            )
+            monitor = FlockMonitor(venv, str(folder / str(done)), _SUMMARY, override_existing=True)
             stack.callback(monitor.close)
             model.set_env(monitor)
             model.set_random_seed((settings.seed + rollouts) % (1 << 32))
