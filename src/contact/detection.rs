@@ -58,6 +58,11 @@ impl ContactDetector {
         }
     }
 
+    /// Finds contacts of whole substeps of another length from now on.
+    pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
+        self.shortest_s = SHORTEST_SHARE * dt_s;
+    }
+
     /// The hull that all boats share.
     pub fn hull(&self) -> Hull {
         self.hull

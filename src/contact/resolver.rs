@@ -131,6 +131,12 @@ impl ContactResolver {
         }
     }
 
+    /// Resolves whole substeps of another length from now on.
+    pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
+        self.whole_substep_s = seconds(ticks(dt_s));
+        self.detector.set_whole_substep(dt_s);
+    }
+
     /// Impulses of the last substep's contacts; some are zero.
     pub(crate) fn warm_start_impulses(&self) -> &[CachedImpulse] {
         self.warm_start_cache.impulses()

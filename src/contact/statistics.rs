@@ -39,6 +39,8 @@ pub struct Statistics {
     /// cm²/s: its changes, each positive, summed. Hulls that slide past each other while they overlap
     /// have no way apart that keeps it.
     pub displaced_angular_momentum_cm2_s: f64,
+    /// Largest error in cm that an advance stated; 0 if none was asked to.
+    pub worst_error_cm: f64,
 }
 
 impl Statistics {
@@ -48,7 +50,7 @@ impl Statistics {
             factored_rows most_factor_entries unsolved halved_substeps depenetration_passes
             neighbor_builds);
         let worst = named_fields!(self; worst_residual_cm_s worst_overlap_cm
-            displaced_angular_momentum_cm2_s);
+            displaced_angular_momentum_cm2_s worst_error_cm);
         counts.into_iter().chain(worst).collect()
     }
 

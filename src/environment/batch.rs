@@ -10,7 +10,7 @@ use crate::parallel;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
-const MAGIC: Magic = *b"flocken3";
+const MAGIC: Magic = *b"flocken4";
 
 /// Where a step writes: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]

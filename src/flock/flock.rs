@@ -22,6 +22,8 @@ pub struct Flock {
     /// That of the noise, if the flock continues a snapshot with other noise than its seed's.
     noise_seed: Option<u64>,
     pub(crate) time: Ticks,
+    /// `dt_s` when the flock was made: white noise keeps the paths that follow from it.
+    pub(super) noise_dt_s: f64,
     pub(crate) integrator: Integrator,
     /// The motion before the last advance, to return to if it fails.
     before: Box<Checkpoint>,
@@ -77,6 +79,7 @@ impl Flock {
             seed,
             noise_seed: None,
             time: 0,
+            noise_dt_s: parameters.dt_s,
             parameters,
         }
     }

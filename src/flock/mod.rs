@@ -11,6 +11,7 @@ mod placement;
 mod recorder;
 mod snapshot;
 mod state;
+mod step;
 
 pub use change::Change;
 pub use contact_force::ContactForce;

@@ -11,7 +11,7 @@ use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, refused, seal, unseal};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-const MAGIC: Magic = *b"flockst3";
+const MAGIC: Magic = *b"flockst4";
 
 /// What a snapshot holds.
 #[derive(Debug, Serialize, Deserialize)]
@@ -20,13 +20,23 @@ struct Snapshot {
     seed: u64,
     noise_seed: Option<u64>,
     time: Ticks,
+    noise_dt_s: f64,
     motion: Checkpoint,
 }
 
 impl Snapshot {
+    /// The parameters that the flock was made with, before its step changed.
+    fn as_made(&self) -> FlockParameters {
+        FlockParameters {
+            dt_s: self.noise_dt_s,
+            ..self.parameters.clone()
+        }
+    }
+
     /// A state that a flock can hold: right sizes, everything finite, indices in range.
     fn checked(self) -> Result<Self> {
         self.parameters.check()?;
+        self.as_made().check()?;
         let n = self.parameters.n_boats;
         let motion = &self.motion;
         let last = &motion.last;
@@ -91,13 +101,15 @@ impl Flock {
             seed: self.seed,
             noise_seed: self.noise_seed(),
             time: self.time,
+            noise_dt_s: self.noise_dt_s,
             motion: self.integrator.checkpoint(),
         }
     }
 
     /// The flock of a checked state.
     fn of_state(state: Snapshot, noise_seed: Option<u64>) -> Self {
-        let mut flock = Self::unplaced(state.parameters, state.seed);
+        let mut flock = Self::unplaced(state.as_made(), state.seed);
+        flock.replace_step(state.parameters.dt_s);
         flock.time = state.time;
         flock.integrator.return_to(&state.motion);
         flock.branch(noise_seed.or(state.noise_seed));

@@ -15,7 +15,7 @@ pub use gap::{Feature, Gap, Placed, pair_gap, pair_gaps};
 pub(crate) use lap_frame::LapFrame;
 pub(crate) use neighbors::NeighborList;
 pub use obstacle::Obstacle;
-pub use pose::{Pose, Velocity};
+pub use pose::{Pose, Velocity, rms_distance};
 
 /// A vector in the plane, in cm or cm/s.
 pub type Vec2 = nalgebra::Vector2<f64>;

@@ -1,6 +1,6 @@
 //! Where a boat is and how it moves.
 
-use super::Vec2;
+use super::{Vec2, wrap_angle};
 
 /// The largest position (cm), heading (rad), velocity (cm/s) or angular velocity (rad/s) that a state
 /// may hold: squares and products of such numbers are far from overflowing.
@@ -47,6 +47,17 @@ impl Pose {
     pub(crate) fn is_in_range(&self) -> bool {
         are_in_range([self.position.x, self.position.y, self.heading])
     }
+}
+
+/// Distance in cm of two sets of poses of the same boats: the root mean square over boats of |Δx|² + ρ²Δα², the metric
+/// that contacts minimize in. Whole turns do not count.
+pub fn rms_distance(a: &[Pose], b: &[Pose], gyration_radius_cm: f64) -> f64 {
+    let square = |(a, b): (&Pose, &Pose)| {
+        let turn = gyration_radius_cm * wrap_angle(a.heading - b.heading);
+        (a.position - b.position).norm_squared() + turn * turn
+    };
+    let sum: f64 = a.iter().zip(b).map(square).sum();
+    (sum / a.len() as f64).sqrt()
 }
 
 /// Linear and angular velocity of a boat.

@@ -75,8 +75,14 @@ impl Integrator {
     /// Continues with the noise of a branch.
     pub(crate) fn branch_noise(&mut self, noise_seed: u64) {
         if let Some(noise) = &mut self.noise {
-            *noise = noise_paths(&self.parameters, Stream::BRANCH_NOISE.rng(noise_seed));
+            noise.replace_keys(Stream::BRANCH_NOISE.rng(noise_seed));
         }
+    }
+
+    /// Takes whole substeps of another length from now on, on the noise paths that there are.
+    pub(crate) fn set_step(&mut self, dt_s: f64) {
+        self.parameters.dt_s = dt_s;
+        self.contacts.set_whole_substep(dt_s);
     }
 
     /// Works out the direction vectors of the poses.

@@ -5,7 +5,8 @@ use super::exclusive::{Exclusive, interruptible};
 use super::parameters::PyParameters;
 use super::value::{given, noise_seed_from, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
-use crate::contact::Partner;
+use crate::clock::Ticks;
+use crate::contact::{KeepGoing, Partner};
 use crate::draw::{FrameRenderer, Look};
 use crate::error::{FlockError, Result};
 use crate::flock::{ContactForce, Flock, State};
@@ -25,6 +26,23 @@ impl PyFlock {
     /// A flock for Python.
     pub(super) fn of(flock: Flock) -> Self {
         Self(Exclusive::new(flock, "the flock"))
+    }
+
+    /// Advances by a duration without the interpreter lock.
+    fn advance_by<T: Send>(
+        &self,
+        py: Python<'_>,
+        seconds: &Bound<'_, PyAny>,
+        rudder: Option<&Bound<'_, PyAny>>,
+        advance: fn(&mut Flock, KeepGoing, Ticks, Steering) -> Result<T>,
+    ) -> PyResult<T> {
+        let seconds = given(seconds, "seconds")?;
+        let rudder = rudders_from(rudder, &*self.0.read()?)?;
+        let mut flock = self.0.write()?;
+        let flock = &mut *flock;
+        let end = flock.end_of(seconds)?;
+        let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
+        interruptible(py, |keep_going| advance(flock, keep_going, end, steering))
     }
 }
 
@@ -137,13 +155,23 @@ impl PyFlock {
         seconds: &Bound<'_, PyAny>,
         rudder: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let seconds = given(seconds, "seconds")?;
-        let rudder = rudders_from(rudder, &*self.0.read()?)?;
-        let mut flock = self.0.write()?;
-        let flock = &mut *flock;
-        let end = flock.end_of(seconds)?;
-        let steering = rudder.as_deref().map_or(Steering::Law, Steering::Held);
-        interruptible(py, |keep_going| flock.advance_to(keep_going, end, steering))
+        self.advance_by(py, seconds, rudder, Flock::advance_to)
+    }
+
+    /// Advances and returns the error of the step in cm.
+    #[pyo3(signature = (seconds, rudder=None))]
+    fn advance_with_error(
+        &self,
+        py: Python<'_>,
+        seconds: &Bound<'_, PyAny>,
+        rudder: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<f64> {
+        self.advance_by(py, seconds, rudder, Flock::advance_to_with_error)
+    }
+
+    fn set_step(&self, dt_s: &Bound<'_, PyAny>) -> PyResult<()> {
+        let dt_s = given(dt_s, "dt_s")?;
+        Ok(self.0.write()?.set_step(dt_s)?)
     }
 
     fn steering_law<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArray1<f64>>> {

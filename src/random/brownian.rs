@@ -97,6 +97,12 @@ impl BrownianPaths {
         }
     }
 
+    /// Other paths in the same cells.
+    pub(crate) fn replace_keys(&mut self, keys: StreamRng) {
+        let boats = self.normals.keys.len();
+        *self = Self::of(keys, boats, self.cell_length, self.shift);
+    }
+
     /// `increments[boat] = W(to) − W(from)`, times in half ticks, in units of sqrt(s).
     pub fn increments(&mut self, from: u64, to: u64, increments: &mut [f64]) {
         let (from, to) = (from + self.shift, to + self.shift);

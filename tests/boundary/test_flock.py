@@ -101,14 +101,16 @@ def test_rudders_of_any_layout_do_the_same(flock, form):
 
 @pytest.mark.parametrize("seconds", BAD_SECONDS)
 def test_bad_durations_are_refused(unchanged, seconds):
-    with pytest.raises(ParameterError, match="seconds"):
-        unchanged.advance(seconds)
+    for advance in (unchanged.advance, unchanged.advance_with_error):
+        with pytest.raises(ParameterError, match="seconds"):
+            advance(seconds)
 
 
 @pytest.mark.parametrize("rudder", BAD_RUDDERS)
 def test_bad_rudders_are_refused(unchanged, rudder):
-    with pytest.raises(ParameterError, match="rudder"):
-        unchanged.advance(0.1, rudder=rudder)
+    for advance in (unchanged.advance, unchanged.advance_with_error):
+        with pytest.raises(ParameterError, match="rudder"):
+            advance(0.1, rudder=rudder)
 
 
 @pytest.mark.parametrize("array", BAD_DTYPES)
@@ -202,6 +204,42 @@ def test_target_moves_the_law_and_the_parameters(flock):
         flock.set_target("left")
     with pytest.raises(TypeError, match="target"):
         flock.set_target(None)
+
+
+def test_the_stated_error_is_the_distance_from_eighths_of_the_step(flock):
+    flock.advance(3.0)
+    finer, plain = copy.copy(flock), copy.copy(flock)
+    finer.set_step(flock.parameters.dt_s / 8.0)
+    for other in (finer, plain):
+        other.advance(0.5, [0.5, -1.0])
+    stated = flock.advance_with_error(0.5, [0.5, -1.0])
+    away = plain.pose - finer.pose
+    away[:, 2] *= flock.parameters.gyration_radius_cm
+    assert stated == pytest.approx(math.sqrt((away**2).sum() / len(away)), rel=1e-9)
+    assert stated > 0.0
+    assert np.array_equal(flock.pose, plain.pose)
+    assert flock.statistics.worst_error_cm == stated
+    assert plain.statistics.worst_error_cm == 0.0
+
+
+def test_a_new_step_moves_the_parameters(flock):
+    flock.set_step(0.007)
+    assert flock.parameters == flock.parameters.replace(dt_s=0.007)
+    assert flock.parameters.dt_s == 0.007
+
+
+@pytest.mark.parametrize("dt_s", [math.nan, 0.0, -0.02, 1e-7, 1.5])
+def test_a_step_out_of_range_is_refused(unchanged, dt_s):
+    with pytest.raises(ParameterError, match=r"dt_s.*1e-6 to 1 s"):
+        unchanged.set_step(dt_s)
+
+
+def test_a_step_without_an_eighth_states_no_error(flock):
+    flock.set_step(2e-6)
+    before = flock.snapshot()
+    with pytest.raises(ParameterError, match=r"dt_s.*8e-6 s or more"):
+        flock.advance_with_error(1e-4)
+    assert flock.snapshot() == before
 
 
 def test_copies_are_independent_and_go_on_alike(flock):

@@ -97,19 +97,19 @@ fn stored_flock() -> Flock {
     flock
 }
 
-/// Written by format 3. One parameter, option, reward term, block or quantity more is stored by name: these stay as they
+/// Written by format 4. One parameter, option, reward term, block or quantity more is stored by name: these stay as they
 /// are and read as before. Where anything else that is stored changes, such as the motion or the camera, a state belongs
 /// to the build that wrote it. This test then fails: raise the format in the magic, write these again by
 /// `WRITE_FIXTURES=1 cargo test --test environment`, and rename them.
-const BATCH: &[u8] = include_bytes!("../fixtures/environment_3.state");
-const FLOCK: &[u8] = include_bytes!("../fixtures/flock_3.snapshot");
+const BATCH: &[u8] = include_bytes!("../fixtures/environment_4.state");
+const FLOCK: &[u8] = include_bytes!("../fixtures/flock_4.snapshot");
 
 #[test]
 fn stored_states_are_read_as_the_states_that_they_were() {
     let (mut batch, flock) = (stored_batch(), stored_flock().snapshot());
     if std::env::var_os("WRITE_FIXTURES").is_some() {
-        std::fs::write("tests/fixtures/environment_3.state", batch.to_bytes()).unwrap();
-        std::fs::write("tests/fixtures/flock_3.snapshot", &flock).unwrap();
+        std::fs::write("tests/fixtures/environment_4.state", batch.to_bytes()).unwrap();
+        std::fs::write("tests/fixtures/flock_4.snapshot", &flock).unwrap();
     }
     let raise = "what is stored by place has changed: raise the format";
     let mut read = EnvBatch::from_bytes(BATCH).expect(raise);
@@ -173,7 +173,7 @@ fn states_of_another_format_are_refused_by_its_number() {
     older[7] = b'1';
     let error = Flock::from_snapshot(&older, None).unwrap_err().to_string();
     assert!(
-        error.contains("format 1") && error.contains("format 3"),
+        error.contains("format 1") && error.contains("format 4"),
         "{error}"
     );
 }

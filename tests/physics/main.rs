@@ -47,6 +47,7 @@ mod solver;
 mod solver_agreement;
 mod speed_spread;
 mod steady_turning;
+mod step_error;
 mod structure;
 mod symmetry;
 mod touches;

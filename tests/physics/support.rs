@@ -383,7 +383,7 @@ pub fn first_kick_s(scheme: Scheme, dt_s: f64) -> f64 {
 }
 
 /// The name of the field that a refusal names.
-pub fn refused_field(result: Result<(), FlockError>) -> &'static str {
+pub fn refused_field<T: Debug>(result: Result<T, FlockError>) -> &'static str {
     match result {
         Err(FlockError::Parameter { field, .. } | FlockError::Shape { field, .. }) => field,
         other => panic!("accepted or another error: {other:?}"),

@@ -14,7 +14,7 @@ pub mod wall_push;
 use crate::Configuration;
 use crate::table::Table;
 use flockenv::FlockParameters;
-use flockenv::geometry::{Pose, wrap_angle};
+use flockenv::geometry::{Pose, rms_distance};
 use rayon::prelude::*;
 
 /// How much to measure.
@@ -51,13 +51,7 @@ pub fn on_all_cores<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Send
     items.par_iter().map(work).collect()
 }
 
-/// Distance of two sets of poses in cm: the root mean square over boats of |Δx|² + ρ²Δα², the metric
-/// that contacts minimize in.
+/// Distance of two sets of poses in cm, in the metric of these boats.
 pub fn distance(parameters: &FlockParameters, a: &[Pose], b: &[Pose]) -> f64 {
-    let square = |(a, b): (&Pose, &Pose)| {
-        let turn = parameters.gyration_radius_cm * wrap_angle(a.heading - b.heading);
-        (a.position - b.position).norm_squared() + turn * turn
-    };
-    let sum: f64 = a.iter().zip(b).map(square).sum();
-    (sum / a.len() as f64).sqrt()
+    rms_distance(a, b, parameters.gyration_radius_cm)
 }

@@ -1,0 +1,92 @@
+//! The step of a flock: changed on the way with the noise kept, and the error that it makes.
+
+use super::flock::Flock;
+use crate::clock::Ticks;
+use crate::contact::KeepGoing;
+use crate::error::{FlockError, Result};
+use crate::geometry::rms_distance;
+use crate::integrator::Steering;
+use crate::parameters::{FlockParameters, Noise};
+
+/// An error is the distance from where substeps lead that are so many times as short. Halves do not show it: an impact's
+/// error depends on when in its substep it happens, and that may be as wrong in both.
+const FINER: f64 = 8.0;
+/// The shortest substep in s.
+const SHORTEST_S: f64 = 1e-6;
+
+impl Flock {
+    /// Changes `dt_s` from now on. White noise keeps its paths: flocks that were made alike meet the same noise whatever
+    /// their steps.
+    ///
+    /// # Errors
+    /// [`FlockError::Parameter`] for a step out of range; the flock is unchanged then.
+    pub fn set_step(&mut self, dt_s: f64) -> Result<()> {
+        let parameters = FlockParameters {
+            dt_s,
+            ..self.parameters.clone()
+        };
+        parameters.check()?;
+        self.replace_step(dt_s);
+        Ok(())
+    }
+
+    /// As [`Self::set_step`], for a step that was checked.
+    pub(super) fn replace_step(&mut self, dt_s: f64) {
+        self.parameters.dt_s = dt_s;
+        self.integrator.set_step(dt_s);
+    }
+
+    /// Advances as [`Self::advance`], and returns the error that the step made on the way: the distance in cm from where
+    /// substeps of an eighth lead from the same start on the same noise paths, as [`rms_distance`] has it. That takes nine
+    /// times as long. Errors of advances one after another do not add up: boats that press against a wall forget some, and
+    /// impacts enlarge others.
+    ///
+    /// # Errors
+    /// As for [`Self::advance`]; [`FlockError::Parameter`] for a step that has no eighth, and for noise that is another
+    /// one in each step. The flock is unchanged then.
+    pub fn advance_with_error(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<f64> {
+        let end = self.end_of(duration_s)?;
+        self.check_rudder(rudder)?;
+        let steering = rudder.map_or(Steering::Law, Steering::Held);
+        self.advance_to_with_error(&|| true, end, steering)
+    }
+
+    /// As [`Self::advance_with_error`] to a time with checked steering, asking now and then whether to continue.
+    ///
+    /// # Errors
+    /// As for [`Self::advance_to`] and [`Self::advance_with_error`].
+    pub fn advance_to_with_error(
+        &mut self,
+        keep_going: KeepGoing,
+        end: Ticks,
+        steering: Steering,
+    ) -> Result<f64> {
+        let mut finer = self.with_finer_step()?;
+        finer.advance_to(keep_going, end, steering)?;
+        self.advance_to(keep_going, end, steering)?;
+        let error = rms_distance(
+            self.poses(),
+            finer.poses(),
+            self.parameters.gyration_radius_cm,
+        );
+        let worst = &mut self.integrator.statistics.worst_error_cm;
+        *worst = worst.max(error);
+        Ok(error)
+    }
+
+    fn with_finer_step(&self) -> Result<Self> {
+        let p = &self.parameters;
+        let has_path = p.noise_scheme == Noise::White || p.c4 == 0.0;
+        let accepted = "\"white\", or c4 = 0: noise that is drawn for each step has no path that shorter steps could \
+                        follow, so that no error can be stated";
+        FlockError::unless(has_path, "noise_scheme", p.noise_scheme.name(), accepted)?;
+        let least = FINER * SHORTEST_S;
+        let accepted = format!(
+            "{least:e} s or more: an error is stated against substeps of an eighth, at least {SHORTEST_S:e} s"
+        );
+        FlockError::unless(p.dt_s >= least, "dt_s", p.dt_s, accepted)?;
+        let mut finer = self.clone();
+        finer.replace_step(p.dt_s / FINER);
+        Ok(finer)
+    }
+}
