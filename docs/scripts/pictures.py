@@ -8,6 +8,7 @@ from flockenv.rendering.palette import OKABE_ITO
 
 ENGINES = DOCS / "speed_vs_error/short_engines.csv"
 IMPACT = DOCS / "speed_vs_error/impact.csv"
+STEP_CONTROL = DOCS / "speed_vs_error/step_control.csv"
 LEARNERS = DOCS / "throughput/learners.csv"
 MANY_AGENTS = DOCS / "throughput/many_agents.csv"
 SHOWN = {
@@ -75,6 +76,24 @@ def impact(figure: Figure) -> None:
     axes.legend()
 
 
+def step_control(figure: Figure) -> None:
+    """Draw the error against the substeps taken, with a fixed and with a controlled step."""
+    panels = figure.subplots(2, 2)
+    for axes, scene in zip(panels.flat, ("slide", "impact", "jam", "cycle"), strict=True):
+        for step, color, marker in (("fixed", OURS, "o"), ("controlled", OURS_TOO, "s")):
+            found = rows(STEP_CONTROL, scene=scene, step=step)
+            substeps, errors = (
+                [float(row[column]) for row in found] for column in ("substeps", "error_cm")
+            )
+            axes.plot(substeps, errors, marker + "-", color=color, label=f"{step} step")
+        axes.set(xscale="log", yscale="log", title=scene)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("error [cm]")
+    for axes in panels[1]:
+        axes.set_xlabel("substeps")
+    panels[0, 0].legend()
+
+
 def learners(figure: Figure) -> None:
     """Draw the samples per second of each interface over the batch that it steps."""
     columns = ("median of the batch", "least of the batch", "most of the batch")
@@ -113,6 +132,7 @@ def many_agents(figure: Figure) -> None:
 PLOTS = {
     "speed_vs_error/engines.png": Plot([ENGINES], engines, (7.2, 4.4)),
     "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
+    "speed_vs_error/step_control.png": Plot([STEP_CONTROL], step_control, (7.2, 5.6)),
     "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
     "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
 }
