@@ -1,5 +1,6 @@
 """Times of tracks: seconds from whatever a column holds, and frames."""
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
 _DAY_S = 86_400.0
+_STOPWATCH = re.compile(r"^\s*(\d+:\d+\.\d*)\s*$")
 
 
 def times_of(table: Table, layout: TrackLayout) -> Floats:
@@ -53,9 +55,13 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
     for convert, options in (
         (pandas.to_timedelta, {}),
         (pandas.to_datetime, {"utc": True, "format": "ISO8601"}),
+        (pandas.to_datetime, {"utc": True, "format": "%d.%m.%Y %H:%M:%S"}),
+        (pandas.to_datetime, {"utc": True, "format": "%d.%m.%Y %H:%M:%S.%f"}),
     ):
-        # Loggers write 12:34:56,789.
-        points = found.astype(str).str.replace(",", ".")
+        # Loggers write 12:34:56,789, and stopwatches 34:56.7.
+        points = (
+            found.astype(str).str.replace(",", ".").str.replace(_STOPWATCH, r"00:\1", regex=True)
+        )
         values = convert(points, errors="coerce", **options)
         if values[texts.index].notna().all():
             if convert is pandas.to_datetime:
@@ -63,7 +69,7 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
             return _past_midnight(values.dt.total_seconds().to_numpy(np.float64))
     raise ParameterError(
         f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is no number, no "
-        "time 12:34:56.7 and no date 2026-01-31 12:34:56.7"
+        "time 12:34:56.7 and no date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
     )
 
 
@@ -84,8 +90,12 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
         return
     is_whole = bool((stamps == np.rint(stamps)).all())
     # Steps of 12 may be seconds if the name says so, and 0, 1, 2 are frames whatever it says.
-    name, unit = plain(layout.frame)
-    says_s = PER_S.get(unit or name) == 1.0 and steps.min() > 1.0
+    unit = unit_of(layout.frame)
+    says_s = PER_S.get(unit) == 1.0 and steps.min() > 1.0
+    if layout.fps is None and PER_S.get(unit, 1.0) != 1.0:
+        raise ParameterError(
+            f"fps is missing: column {layout.frame!r} counts {unit} (fps = {PER_S[unit]:.6g})"
+        )
     if layout.fps is None and is_whole and not says_s:
         raise ParameterError(
             f"fps is missing: column {layout.frame!r} holds whole numbers (fps = 1 if it counts s)"
@@ -95,6 +105,12 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
             f"{np.median(steps):.4g}, which are no frames: leave fps out if it holds times in s"
         )
+
+
+def unit_of(name: str) -> str:
+    """Return the unit in the name of a column of times, perhaps its last word: time_min."""
+    words, unit = plain(name)
+    return unit or words.rpartition("_")[2]
 
 
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:

@@ -99,6 +99,12 @@ def _said(dataset: Any, layout: TrackLayout, points: list[str]) -> TrackLayout:
             f"the dataset has no headings: its key points are {listed(points) or 'one'}; name those"
             " of tail and head in heading, or heading = None takes the direction of motion"
         )
+    if not known and "x" not in given:
+        raise ParameterError(
+            f"the key points of the dataset are {listed(points)}, and which is the center is not "
+            "known: name its columns in x and y, such as x = ("
+            f"'{points[0]}_x', '{points[-1]}_x')"
+        )
     unit = str(dataset["position"].attrs.get("space_unit", "pixels"))
     if unit in CM:
         form["cm_per_unit"] = CM[unit]

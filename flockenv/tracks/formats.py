@@ -53,7 +53,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "frame": (
         *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp", "position_t"),
         *("rosbagtimestamp", "*time", "*stamp", "step", "image", "frames", "frame", "frame_*"),
-        *("*_frame", "framenumber", "sample", "index"),
+        *("time_*", "*_frame", "framenumber", "sample", "index"),
     ),
     "id": (
         *("track_id", "track", *(f"{thing}{end}" for thing in _THINGS for end in ("", "s", "_*"))),
@@ -130,7 +130,8 @@ def quaternion(names: Iterable[str]) -> list[str] | None:
 def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
     """Return the fields x, y and heading for key points, given what their columns begin with.
 
-    The center is a point in the middle, or the middle of head and tail, or the first point.
+    The center is a point in the middle, or the middle of head and tail, or the only point. Of
+    several others any may be it: there are no fields then.
     """
 
     def part(kind: str) -> str | None:
@@ -138,7 +139,9 @@ def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
 
     head, tail, middle = part("head"), part("tail"), part("middle")
     ends = [tail, head] if head and tail else []
-    used = [middle] if middle else ends or [*stems.values()][:1]
+    used = [middle] if middle else ends or [*stems.values()]
+    if used is not ends and len(used) > 1:
+        return {}
     form: dict[str, Any] = {axis: [f"{stem}{axis}" for stem in used] for axis in "xy"}
     if len(used) == 1:
         form = {axis: columns[0] for axis, columns in form.items()}
@@ -162,8 +165,11 @@ def _fields_of(one: Format, names: list[str], there: Set[str]) -> dict[str, Any]
     form |= {"id": ""} if "{id}" in x else {}
     if "part" in first.groupdict():
         same = [each for each in pairs if each.groupdict().get("id", "") == boat]
-        form |= key_points({each["part"]: _as_written(each)[:-1] for each in same})
         form.pop("confidence", None)
+        found_points = key_points({each["part"]: _as_written(each)[:-1] for each in same})
+        if not found_points:
+            return {name: form[name] for name in form if name not in ("x", "y")}
+        form |= found_points
         used = [form["x"]] if isinstance(form["x"], str) else form["x"]
         stems = {each[:-1] for each in (*used, *form.get("heading", [])[::2])}
         for word in ("likelihood", "score", "confidence"):
@@ -193,6 +199,8 @@ def recognized(names: list[str]) -> dict[str, Any]:
     for one in FORMATS:
         known = _fields_of(one, names, there)
         # Any pair of columns may be a key point's.
+        if known and "id" in form and _are_corners(known, names):
+            continue
         if known and not (has_place and "{" in one.columns["x"] and _is_loose(known)):
             form |= known
             break
@@ -201,6 +209,14 @@ def recognized(names: list[str]) -> dict[str, Any]:
     if "quaternion" in form:
         form["heading"] = ""
     return {name: "" if value is None else value for name, value in form.items()}
+
+
+def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:
+    """Return whether x1, y1, x2 and y2 may be a box around each named boat, and not two boats."""
+    x = known.get("x", "")
+    if "{id}" not in x:
+        return False
+    return {each["id"] for each in _matches(x.replace("{id}", "{n}"), names)} == {"1", "2"}
 
 
 def _is_loose(known: Mapping[str, Any]) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
-from flockenv.tracks.clock import PER_S
+from flockenv.tracks.clock import PER_S, unit_of
 from flockenv.tracks.dataset import CM
 from flockenv.tracks.formats import MOT, plain, recognized
 from flockenv.tracks.layout import TrackLayout, description_of
@@ -164,7 +164,7 @@ def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -
 
 
 def _guess_time(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:
-    name, unit = plain(form["frame"])
+    name, unit = plain(form["frame"])[0], unit_of(form["frame"])
     try:
         counts = rows.numbers(form["frame"], layout)
     except ParameterError:  # Dates and clock times.

@@ -1,5 +1,6 @@
 """Rows of tracks in cm and rad, and why some of them count for nothing."""
 
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from flockenv.tracks.clock import times_of
 from flockenv.tracks.formats import quaternion
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import HEADING_ZERO, TURN, UNIT, in_water
-from flockenv.tracks.table import Floats, Table, listed
+from flockenv.tracks.table import NONE, Floats, Table, listed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +29,7 @@ def rows_of(table: Table, layout: TrackLayout) -> "pd.DataFrame":
     Times are in s from the least; places are in cm from the pool's center, y up; headings in rad.
     `why` says why a row is left out, and is "" where it is not.
     """
-    table = long_table(table, layout) if layout.is_wide else table
+    given, table = table, long_table(table, layout) if layout.is_wide else table
     up = -1.0 if layout.y_down else 1.0
     x, y, is_lost = _point(table, layout, layout.columns["x"], layout.columns["y"])
     if layout.box is not None:
@@ -40,6 +41,7 @@ def rows_of(table: Table, layout: TrackLayout) -> "pd.DataFrame":
         x=(x - layout.center[0]) * layout.scale,
         y=(y - layout.center[1]) * layout.scale * up,
     )
+    _check_no_part(given, layout)
     heading, is_strange = _headings(table, layout)
     sure = [table.numbers(name, layout) for name in layout.columns["confidence"]]
     is_sure = [each >= (layout.least_confidence or 0.0) for each in sure]
@@ -63,12 +65,28 @@ def names_nobody(table: Table, layout: TrackLayout) -> bool:
     if layout.id is None or layout.is_wide:
         return False
     ids = table.column(layout.id)
-    return bool((ids.isna() | (ids.astype(str).str.strip() == "")).all())
+    return bool((ids.isna() | ids.astype(str).str.strip().str.lower().isin(NONE)).all())
 
 
 def long_table(table: Table, layout: TrackLayout) -> Table:
     """Return one row per frame and boat of a table in which boats stand beside each other."""
     pandas = require("pandas", "plot")
+    fields = [name for columns in layout.columns.values() for name in columns]
+    names = _names_beside(table, layout)
+    rows, many = table.rows, len(names)
+    columns: dict[str, Any] = {
+        layout.frame: np.tile(table.column(layout.frame), many),
+        "{id}": np.repeat(names, len(rows)),
+    }
+    for field in dict.fromkeys(fields):
+        boats = [table.name_of(field.replace("{id}", name)) for name in names]
+        columns[field] = rows[boats].to_numpy().T.ravel()
+    index = pandas.Index(np.tile(rows.index, many), name=rows.index.name)
+    return Table(pandas.DataFrame(columns, index))
+
+
+def _names_beside(table: Table, layout: TrackLayout) -> list[str]:
+    """Return the names of boats that stand beside each other."""
     fields = [name for columns in layout.columns.values() for name in columns]
     first, _, last = (part.casefold() for part in fields[0].partition("{id}"))
     bare = [name.strip() for name in table.names]
@@ -85,16 +103,7 @@ def long_table(table: Table, layout: TrackLayout) -> Table:
             f"no columns look like {' and '.join(map(repr, fields))}; there are "
             f"{listed(table.names)}"
         )
-    rows, many = table.rows, len(names)
-    columns: dict[str, Any] = {
-        layout.frame: np.tile(table.column(layout.frame), many),
-        "{id}": np.repeat(names, len(rows)),
-    }
-    for field in dict.fromkeys(fields):
-        boats = [table.name_of(field.replace("{id}", name)) for name in names]
-        columns[field] = rows[boats].to_numpy().T.ravel()
-    index = pandas.Index(np.tile(rows.index, many), name=rows.index.name)
-    return Table(pandas.DataFrame(columns, index))
+    return names
 
 
 def _names(table: Table, layout: TrackLayout) -> "pd.Series[Any]":
@@ -139,7 +148,6 @@ def _headings(table: Table, layout: TrackLayout) -> tuple[Floats, Any]:
         return np.zeros(len(table)), strange
     else:
         heading = table.numbers(columns[0], layout)
-        _check_no_part(table, layout, columns[0], heading)
         if layout.wrapped:
             strange = np.abs(heading) > FULL_TURN[unit]
             _check_turn(heading, strange, layout)
@@ -165,16 +173,44 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
     return np.where(off > 0.1, np.nan, heading)
 
 
-def _check_no_part(table: Table, layout: TrackLayout, name: str, heading: Floats) -> None:
-    """Refuse a part of a quaternion in place of a heading."""
-    if (np.abs(heading[np.isfinite(heading)]) > 1.0).any():
+def _check_no_part(table: Table, layout: TrackLayout) -> None:
+    """Refuse a part of a quaternion, a sine or a cosine in place of a heading.
+
+    Whatever columns are called: the squares of parts that stand beside each other add up to 1.
+    """
+    columns = layout.columns["heading"]
+    if len(columns) != 1:
         return
-    same = [each for each in table.names if len(each) == len(name)]
-    four = quaternion(same) or []
-    if name.strip().casefold() in (each.strip().casefold() for each in four):
-        raise ParameterError(
-            f"heading = {name!r} is a part of a quaternion: quaternion = {four} instead"
-        )
+    boat = _names_beside(table, layout)[0] if layout.is_wide else ""
+    names: list[Any] = [*table.rows]
+    place = names.index(table.name_of(columns[0].replace("{id}", boat)))
+    beside = {name: _part(table, name, layout) for name in names[max(0, place - 3) : place + 4]}
+    parts = {name: part for name, part in beside.items() if part is not None}
+    own = parts.pop(names[place], None)
+    if own is None or not np.std(own) > 0.0:
+        return
+    for others in (*combinations(parts, 3), *combinations(parts, 1)):
+        total = own + np.sum([parts[name] for name in others], axis=0)
+        if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(own):
+            together = [*map(str, (names[place], *others))]
+            four = quaternion(together)
+            raise ParameterError(
+                f"heading = {columns[0]!r} is a part of a quaternion: quaternion = {four} instead"
+                if four and not layout.is_wide
+                else f"heading = {columns[0]!r} is a part of a turn: the squares of "
+                f"{listed(together)} add up to 1. Name the four columns of a quaternion, or make "
+                "angles of a sine and a cosine"
+            )
+
+
+def _part(table: Table, name: Any, layout: TrackLayout) -> Floats | None:
+    """Return the squares of what may be parts of turns, 0 where there are none."""
+    try:
+        values = table.numbers(name, layout)
+    except ParameterError:  # Of remarks, and of names that are there twice.
+        return None
+    values = np.nan_to_num(values)
+    return values**2 if len(values) and np.abs(values).max() <= 1.01 else None
 
 
 def direction(x: Floats, y: Floats) -> Floats:

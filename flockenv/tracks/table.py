@@ -28,7 +28,7 @@ _TEXTS, _PARQUET = (".csv", ".tsv", ".txt"), (".parquet", ".pq")
 SUFFIXES = (*_TEXTS, *(f"{each}.gz" for each in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
-_NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
+NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
 """What stands for no number, in small letters."""
 
 
@@ -167,7 +167,7 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
     names += [f"unnamed {place}" for place in range(len(names), max(map(len, rows)))]
     unique, twice = _unique(names)
     texts = {name for name in unique if layout.id and _key(name) == _key(layout.id)}
-    none = [*_NONE, *(word.upper() for word in _NONE), "NaN", "None", *layout.missing]
+    none = [*NONE, *(word.upper() for word in NONE), "NaN", "None", *layout.missing]
     table: pd.DataFrame = pandas.read_csv(
         io.StringIO(text),
         sep=r"\s+" if separator == " " else separator,
@@ -298,7 +298,7 @@ def _other_mark(names: list[str]) -> str:
 
 def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
     texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
-    none = texts.str.lower().isin(_NONE | {each.strip().lower() for each in layout.missing})
+    none = texts.str.lower().isin(NONE | {each.strip().lower() for each in layout.missing})
     point = texts.str.replace(layout.decimal, ".")
     values = pandas.to_numeric(point.mask(none), errors="coerce")
     strange = values.isna() & ~none

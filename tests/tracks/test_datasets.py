@@ -64,6 +64,11 @@ def renamed(dataset, dimension, names):
             {},
             "2 keypoints of the dataset are called 'nose'",
         ),
+        (
+            lambda: renamed(movement(), "keypoints", ["left", "right"]),
+            {"heading": None},
+            "which is the center is not known: name its columns in x and y, such as x = ('left_x'",
+        ),
         (movement, {"cm_per_unit": None}, "in pixels: cm_per_unit, the length of one, is missing"),
         (
             lambda: movement().assign(

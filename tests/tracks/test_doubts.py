@@ -1,6 +1,7 @@
 """Law: what may be wrong is refused or said: no table gives a wrong number without a word."""
 
 import gzip
+import re
 import tracemalloc
 
 import numpy as np
@@ -12,7 +13,18 @@ from flockenv.tracks import TrackLayout, guess_layout, read_tracks
 from flockenv.tracks import table as tables
 
 from .conftest import LAYOUT, but, read_and_counted
-from .test_honest_tables import CORPUS, METERS, ORDERS, PLACE, PLAIN, quaternions, ros, rows
+from .test_honest_tables import (
+    CORPUS,
+    METERS,
+    ORDERS,
+    PLACE,
+    PLAIN,
+    PROGRAMS,
+    motive,
+    quaternions,
+    ros,
+    rows,
+)
 
 SMALL = TrackLayout(**PLAIN)
 
@@ -74,6 +86,60 @@ def test_a_part_of_a_quaternion_is_no_heading(axis):
         read_tracks(quaternions(), layout)
     words = f"heading = 'q{axis}' is a part of a quaternion: quaternion = ['qx', 'qy', 'qz', 'qw']"
     assert words in str(raised.value)
+
+
+ANY_NAMES = [("q1", "q2", "q3", "q0"), ("quat_i", "quat_j", "quat_k", "quat_real"), tuple("abcd")]
+
+
+@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("names", ANY_NAMES)
+def test_a_part_of_a_quaternion_is_no_heading_whatever_it_is_called(names, part):
+    table = quaternions().rename(columns=dict(zip(("qx", "qy", "qz", "qw"), names, strict=True)))
+    layout = TrackLayout(**METERS, fps=10.0, heading=names[part])
+    with pytest.raises(flockenv.ParameterError, match="is a part of a turn: the squares of"):
+        read_tracks(table.round(3).assign(remark="good"), layout)
+
+
+@pytest.mark.parametrize("axis", "XYZW")
+def test_a_part_of_a_quaternion_beside_others_is_no_heading(axis, tmp_path):
+    fields = {n: v for n, v in PROGRAMS["OptiTrack Motive"].layout.items() if n != "quaternion"}
+    (tmp_path / "a.csv").write_text(motive())
+    layout = TrackLayout(**fields, heading=f"{{id}}.Rotation_{axis}")
+    with pytest.raises(flockenv.ParameterError, match="is a part of a turn: the squares of robot1"):
+        read_tracks(tmp_path / "a.csv", layout)
+
+
+@pytest.mark.parametrize("part", ["sine", "cosine"])
+def test_a_sine_is_no_heading(part):
+    table = rows()
+    angle = np.radians(table["angle"])
+    table = table.assign(sine=np.sin(angle), cosine=np.cos(angle))
+    layout = TrackLayout(**PLACE, fps=10.0, heading=part)
+    with pytest.raises(flockenv.ParameterError, match="make angles of a sine and a cosine"):
+        read_tracks(table, layout)
+
+
+def test_small_headings_beside_a_column_of_ones_are_headings():
+    """Its square adds up to about 1 with that of a heading that hardly changes."""
+    angle = 0.05 * np.sin(np.arange(200))
+    table = pd.DataFrame({"frame": np.arange(200), "id": 1, "x": np.linspace(-90, 90, 200)})
+    table = table.assign(y=5 * np.sin(np.arange(200) / 9), heading=angle, sure=1.0, other=0.0)
+    assert len(read_tracks(table, TrackLayout(pool=(100.0, 0.0), fps=10.0))) == 200
+
+
+@pytest.mark.parametrize(
+    ("name", "per_s"),
+    [("time_ms", 1e3), ("Time [ms]", 1e3), ("time_min", 1 / 60), ("t (h)", 1 / 3600), ("us", 1e6)],
+)
+def test_a_unit_in_the_name_of_times_is_not_passed_over(name, per_s):
+    """Times of slow animals that are no whole numbers would pass as s."""
+    table = rows().rename(columns={"frame": name})
+    table[name] = table[name] / 10.0 * per_s + 0.25
+    layout = TrackLayout(**PLACE, heading="angle", heading_unit="deg", frame=name)
+    with pytest.raises(flockenv.ParameterError, match=re.escape(f"(fps = {per_s:.6g})")):
+        read_tracks(table, layout)
+    _, report = read_and_counted(table, but(layout, fps=per_s))
+    assert report.duration_s == pytest.approx(15.0)
 
 
 def test_quaternions_of_any_sign_are_one_turn():

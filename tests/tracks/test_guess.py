@@ -43,6 +43,7 @@ def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encodin
     ("names", "expected"),
     [
         ("time [ms];Robot;x (mm);y (mm);yaw [rad]", {"fps": 1000.0, "cm_per_unit": 0.1}),
+        ("time_min;Robot;x (mm);y (mm);yaw [rad]", {"fps": 1 / 60, "frame": "time_min"}),
         ("time_s;robot_no;x_m;y_m;heading_deg", {"cm_per_unit": 100.0, "heading_unit": "deg"}),
         ("Timestamp;Tag ID;X;Y;Orientation", {"id": "Tag ID", "heading": "Orientation"}),
         ("step;fish;pos_x;pos_y;theta", {"frame": "step", "id": "fish", "x": "pos_x"}),
@@ -64,6 +65,28 @@ def test_what_is_not_found_is_to_be_filled_in(tmp_path):
         read_tracks(tmp_path / "odd.csv")
     with pytest.raises(flockenv.ParameterError, match="there already"):
         guess_layout(tmp_path / "odd.csv")
+
+
+@pytest.mark.parametrize(
+    ("names", "x"),
+    [
+        ("frame,id,nose_x,nose_y,ear_x,ear_y", None),
+        ("frame_idx,track,A.x,A.y,B.x,B.y", None),
+        ("frame,cat.A_x,cat.A_y,cat.B_x,cat.B_y", None),
+        ("frame,id,x1,y1,x2,y2", None),
+        ("frame,id,nose_x,nose_y", "nose_x"),
+        ("frame,id,nose_x,nose_y,tail_x,tail_y", ("tail_x", "nose_x")),
+        ("frame,x1,y1,x2,y2", "x{id}"),
+    ],
+)
+def test_a_center_is_guessed_only_if_it_is_known(tmp_path, names, x):
+    """And not taken to be the first of several points, or a corner of a box to be a boat."""
+    rows = [",".join([str(k), *["1.5"] * names.count(",")]) for k in range(20)]
+    (tmp_path / "lab.csv").write_text("\n".join([names, *rows]))
+    checks = guess_layout(tmp_path / "lab.csv")
+    assert any(line.startswith('x = ""  # fill in') for line in checks) == (x is None)
+    if x is not None:
+        assert read_layout(tmp_path / "lab.toml").x == x
 
 
 def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):

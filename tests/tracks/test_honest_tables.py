@@ -305,6 +305,11 @@ PROGRAMS: dict[str, Honest] = {
     "SLEAP": Honest(
         sleap, {**PLACE, "fps": HZ, "frame": "frame_idx", "id": "track", **SLEAP_COLUMNS}
     ),
+    "SLEAP of one animal, by NumPy": Honest(
+        lambda: sleap(named=False).assign(track="nan"),
+        {**PLACE, "fps": HZ, "frame": "frame_idx", "id": "track", **SLEAP_COLUMNS},
+        boats=(1,),
+    ),
     "SLEAP of one animal": Honest(
         lambda: sleap(named=False),
         {**PLACE, "fps": HZ, "frame": "frame_idx", "id": "track", **SLEAP_COLUMNS},
@@ -548,6 +553,14 @@ CLOCKS: dict[str, tuple[Callable[[Any], Any], dict[str, Any]]] = {
     ),
     "dates with commas": (
         lambda s: (START + pd.to_timedelta(s, "s")).dt.strftime("%Y-%m-%d %H:%M:%S,%f"),
+        {"fps": None},
+    ),
+    "German dates": (
+        lambda s: (START + pd.to_timedelta(s, "s")).dt.strftime("%d.%m.%Y %H:%M:%S,%f"),
+        {"fps": None},
+    ),
+    "a stopwatch": (
+        lambda s: (pd.Timestamp(0) + pd.to_timedelta(s + 50.0, "s")).dt.strftime("%M:%S.%f"),
         {"fps": None},
     ),
     "stamps of each boat": (None, {"fps": None}),
