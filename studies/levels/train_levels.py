@@ -116,7 +116,7 @@ def branches(level: str, hours: float, seed: int) -> Trained:
     )
     while not training.has_ended:
         training.advance()
-    seeds = POLICY_SEEDS["paired branches"]
+    seeds = POLICY_SEEDS["branches"]
     done = training.progress.flock_hours
     return training.policy, done, seeds.seeds(seeds.of_a_run, seed)
 
