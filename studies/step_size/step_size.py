@@ -1,0 +1,127 @@
+"""Where the step changes nothing: order and leaders with three physics against dt = 0.005 s.
+
+Written before the runs. 1800 seeds, each with the physics of trainings, the default one, that for
+publications, and the reference: 20 and 27 boats in `wide` and 27 in `narrow`, without leaders and
+with three that steer by each law, near the noise at which order is lost, for 8 minutes. A quantity
+is the mean over the analysis window after the first tenth of a run: Ψ_o and C_v / v0² without
+leaders, the signed order with them. Its error is the mean difference from the reference with the
+same seed, which has the same start and other noise.
+
+A physics is *inside* if the whole 95 % interval of the error lies within ±0.01: two one-sided tests
+at 2.5 % each. It has a *bias*, of the sign of the mean, if the interval reaches beyond ±0.01 and
+does not hold 0. Everything else is *undecided*, with the number of its seeds.
+"""
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+import pandas as pd
+
+from studies.claim import Claims, Interval, judging, mean
+from studies.study import COLORS, Options, Row, Study, main, picture, simulated
+
+FIRST = 20_000  # Seeds that no other study of this folder has.
+SEEDS = 1800
+BOUND = 0.01
+REFERENCE = "reference"
+#: dt_s and tolerance_cm.
+PHYSICS = {
+    REFERENCE: (0.005, 1e-6),
+    "training": (0.1, 1e-4),
+    "default": (0.02, 1e-4),
+    "publication": (0.01, 1e-6),
+}
+#: Pool, number of boats, and bw_s.
+FLOCKS = (("wide", 20, 0.31), ("wide", 27, 0.31), ("narrow", 27, 0.45))
+NOBODY = "no leaders"
+LAWS = ("paper's law", "damped law", "tuned law")
+QUANTITIES = {"psi_o": "Ψ_o", "c_v": "C_v / v0²", "signed_order": "signed order"}
+
+
+def design() -> list[Row]:
+    """Return the runs, all of a seed one after another."""
+    return [
+        {"pool": pool, "n_boats": n_boats, "bw_s": bw_s, "leaders": leaders, "physics": physics}
+        | {"dt_s": dt_s, "tolerance_cm": tolerance_cm, "minutes": 8.0, "seed": seed}
+        for seed in range(FIRST, FIRST + SEEDS)
+        for (pool, n_boats, bw_s), leaders in itertools.product(FLOCKS, (NOBODY, *LAWS))
+        for physics, (dt_s, tolerance_cm) in PHYSICS.items()
+    ]
+
+
+def measure(row: Row) -> Row:
+    """Return the quantities of a run."""
+    is_led = row["leaders"] != NOBODY
+    policy = row["leaders"] if is_led else None
+    run = simulated(row | {"n_leaders": 3 * is_led}, sample_hz=10.0, policy=policy)
+    order = run.analyzed().order
+    found = (order.psi_o, order.c_v / run.parameters.speed_cm_s**2, order.rotation())
+    return {name: each.mean() for name, each in zip(QUANTITIES, found, strict=True)}
+
+
+STUDY = Study("step_size/step_size", design, measure)
+
+
+def answer(error: Interval) -> str:
+    """Return what the rule says of an error."""
+    _, low, high = error
+    if low >= -BOUND and high <= BOUND:
+        return "inside"
+    return "undecided" if low <= 0.0 <= high or np.isnan(low) else "bias"
+
+
+def errors(table: pd.DataFrame) -> Iterator[tuple[str, str, str, Interval]]:
+    """Return each quantity's name, flock and physics, and its error."""
+    cells = table.groupby(["pool", "n_boats", "leaders"], sort=False)
+    for (pool, n_boats, leaders), runs in cells:
+        for name in ("psi_o", "c_v") if leaders == NOBODY else ("signed_order",):
+            found = runs.pivot(index="seed", columns="physics", values=name)
+            for physics in [each for each in PHYSICS if each in found and each != REFERENCE]:
+                error = mean((found[physics] - found[REFERENCE]).dropna())
+                yield name, f"{n_boats:g} boats in {pool}, {leaders}", physics, error
+
+
+def judge(table: pd.DataFrame) -> Claims:
+    """Judge every error, and print what the rule says of it."""
+    claims = Claims("beyond the paper", "", ours=True)
+    for name, flock, physics, error in errors(table):
+        dt_s, _ = PHYSICS[physics]
+        claims.reading = f"{flock}, physics {physics}"
+        quantity = f"{QUANTITIES[name]} at dt = {dt_s:g} s minus that at 0.005 s"
+        claims.add("The step changes nothing", quantity, error, least=-BOUND, most=BOUND)
+        value, low, high = error
+        print(
+            f"{answer(error):9}  {QUANTITIES[name]}, {claims.reading}: "
+            f"{value:+.4f} ({low:+.4f} to {high:+.4f}), {error.runs} seeds"
+        )
+    return claims
+
+
+def draw(options: Options, table: pd.DataFrame) -> None:
+    """Draw every error with its interval, and the bound."""
+    found = list(errors(table))
+    lines = list(dict.fromkeys((name, flock) for name, flock, *_ in found))
+    compared = [physics for physics in PHYSICS if physics != REFERENCE]
+    with picture(options, "step_size", height_cm=15.0) as figure:
+        axes = figure.subplots()
+        axes.axvspan(-BOUND, BOUND, color="0.9")
+        axes.axvline(0.0, color="0.5", linewidth=0.6)
+        for color, place, physics in zip(COLORS, (-0.25, 0.0, 0.25), compared, strict=False):
+            own = {(name, flock): error for name, flock, each, error in found if each == physics}
+            value, low, high = np.array(list(own.values())).T
+            bars = np.nan_to_num([value - low, high - value])
+            heights = [lines.index(line) + place for line in own]
+            axes.errorbar(value, heights, xerr=bars, fmt="o", color=color, label=physics)
+        names = [f"{QUANTITIES[name]}, {flock}" for name, flock in lines]
+        axes.set_yticks(range(len(lines)), names)
+        axes.invert_yaxis()
+        axes.set_xlabel("difference from dt = 0.005 s")
+        axes.legend(loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
+
+
+script = judging("step", STUDY, judge, draw)
+
+
+if __name__ == "__main__":
+    main(script)

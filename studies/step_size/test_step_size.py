@@ -1,0 +1,45 @@
+"""Law: an error is inside only if its whole interval is, and a bias only if it shows."""
+
+import pandas as pd
+import pytest
+
+import flockenv
+from studies.claim import Interval
+from studies.step_size import step_size
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "answer"),
+    [
+        (-0.009, 0.008, "inside"),
+        (0.002, 0.009, "inside"),
+        (-0.011, 0.005, "undecided"),
+        (0.002, 0.012, "bias"),
+        (-0.09, -0.02, "bias"),
+    ],
+)
+def test_an_interval_is_answered_by_the_rule(low: float, high: float, answer: str) -> None:
+    assert step_size.answer(Interval(((low + high) / 2, low, high), 24)) == answer
+
+
+def test_an_error_is_a_difference_within_a_seed() -> None:
+    """Seeds that lack one of the two runs do not count."""
+    rows = [
+        {"pool": "wide", "n_boats": 27, "leaders": step_size.NOBODY, "physics": physics}
+        | {"seed": seed, "psi_o": 0.1 * seed + shift, "c_v": 0.0, "signed_order": 0.0}
+        for physics, shift, last in (("reference", 0.0, 6), ("training", 0.03, 4))
+        for seed in range(last)
+    ]
+    found = {
+        (name, physics): error for name, _, physics, error in step_size.errors(pd.DataFrame(rows))
+    }
+    assert set(found) == {("psi_o", "training"), ("c_v", "training")}
+    assert found["psi_o", "training"] == pytest.approx((0.03, 0.03, 0.03))
+    assert found["psi_o", "training"].runs == 4
+
+
+@pytest.mark.parametrize("physics", ["training", "publication"])
+def test_the_physics_are_those_of_the_environments(physics: str) -> None:
+    env = flockenv.LeadersEnv(physics=physics)
+    parameters = env.parameters
+    assert (parameters.dt_s, parameters.tolerance_cm) == step_size.PHYSICS[physics]
