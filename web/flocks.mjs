@@ -185,7 +185,7 @@ export class Flocks {
     const policy = fields.leaders ?? this.laws.atEverySubstep;
     const steering = policy.includes(",") ? "each its own" : this.laws.words(policy);
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
-    return this.described(answer, { name, seed, policy, version: this.version });
+    return this.described(answer, { name, seed, law: policy, version: this.version });
   }
 
   /** What runs and panels know of a flock, from the simulator's answer. */

@@ -5,6 +5,7 @@ import json
 import math
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -19,6 +20,8 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries
 from flockenv.parameters import OBSTACLES
+from flockenv.policies import policy
+from flockenv.policies.names import LAWS
 from flockenv.recording import PHASES, Recording
 from flockenv.replay.packing import Packer
 from flockenv.replay.quantities import decisive_minute, series_of, shown_quantities
@@ -149,7 +152,7 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
         "moment": {"time_s": time_s, "words": words},
     }
     style, script = _core.STYLE_SHEET + _read("shared/page.css"), joined(map(_read, _SCRIPTS))
-    policy = (
+    security = (
         "default-src 'none'",
         f"style-src {digest(style)}",
         f"script-src {digest(script)}",
@@ -159,7 +162,7 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
     )
     parts = {
         "title": html.escape(" and ".join(recordings)),
-        "policy": "; ".join(policy),
+        "policy": "; ".join(security),
         "style": style,
         "script": script,
         "data": as_script_content(json.dumps(data, separators=(",", ":"), allow_nan=False)),
@@ -181,7 +184,7 @@ def _run(
     described = {
         "name": name,
         "seed": str(recording.seed),
-        "policy": recording.policy,
+        "law": _law(recording),
         "version": recording.version,
         "parameters": {key: str(value) for key, value in parameters.to_dict().items()},
         "boats": parameters.n_boats,
@@ -205,6 +208,16 @@ def _run(
     if parameters.n_leaders > 0 and target is None:  # They head against each other.
         described["targets"] = list(parameters.target)
     return described
+
+
+def _law(recording: Recording) -> str | None:
+    """Return which law led, by the name that has a color; None for other policies."""
+    pool = recording.parameters.pool
+    for name in LAWS:
+        with suppress(ParameterError):  # Some laws are made for some pools.
+            if policy(name, pool).name == recording.policy:
+                return name
+    return None
 
 
 def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) -> str:

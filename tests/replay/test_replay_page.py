@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.policies.names import LAWS
 from flockenv.replay import MOST_BYTES, page, write_replay
 
 PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=3, bw_s=0.3)
@@ -55,6 +56,20 @@ def test_words_cannot_leave_their_place(tmp_path):
     assert text.count("</script>") == 2
     assert "<b>" not in text
     assert text.count("class Player") == 1
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_page_names_the_law_that_led(tmp_path, law):
+    path = tmp_path / "run.html"
+    write_replay(path, {"run": flockenv.simulate(PARAMETERS, 7, 1.0, policy=law)})
+    assert f'"law":{json.dumps(law)},' in path.read_text("utf-8")
+
+
+def test_a_page_names_no_law_of_others(tmp_path):
+    path, own = tmp_path / "run.html", flockenv.policies.DampedLaw(gain=1.0)
+    narrow = PARAMETERS.replace(pool=(80.0, 30.0))  # For which nothing was tuned.
+    write_replay(path, {"run": flockenv.simulate(narrow, 7, 1.0, policy=own)})
+    assert '"law":null,' in path.read_text("utf-8")
 
 
 def test_a_recording_is_named_after_its_file(tmp_path):

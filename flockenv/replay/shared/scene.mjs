@@ -13,8 +13,9 @@ const OTHERS = ["run-1", "run-2"];
 export function giveColors(runs) {
   const taken = new Map();
   for (const run of runs) {
-    const steering = (run.leaders > 0 && run.policy ? run.policy : "").replace("'s", "").replaceAll(" ", "-");
-    const own = LAWS.filter((law) => !steering.includes(",") && `${steering}-`.startsWith(`${law}-`));
+    // At every substep or at every decision, it is the same law.
+    const name = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
+    const own = LAWS.filter((law) => law === name.replace("'s", "").replaceAll(" ", "-"));
     run.color = [...own, ...OTHERS].find((each) => (taken.get(each) ?? run.name) === run.name);
     taken.set(run.color, run.name);
   }
