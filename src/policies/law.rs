@@ -6,7 +6,7 @@ use crate::draw::palette::{DAMPED_LAW, LEARNED, PAPER_LAW, Rgb, TUNED_LAW};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
-/// How leaders steer by themselves. One more law is a variant, a line of [`Law::NAMED`] and a rudder in [`Law::rudder`].
+/// How leaders steer by themselves. One more law is a variant, a line of [`Law::NAMED`] and a rudder in `Law::rudder`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// The paper's law, eq. (10), at every substep, from the flock itself.
