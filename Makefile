@@ -160,6 +160,7 @@ pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hou
 
 floors pictures environment-pages: build ## print the floors of ARCHITECTURE.md; draw pages' plots whose data changed; print the environments' pages
 	$(BIN)/python -m docs.scripts.$(subst -,_,$@)
+	$(if $(filter pictures,$@),$(BIN)/python -m docs.scripts.dark)
 
 audit: $(STAMPS)/test ## licenses, sources and known vulnerabilities of what this depends on
 	$(UV) --quiet pip-audit

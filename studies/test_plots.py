@@ -4,9 +4,11 @@ import importlib
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
+from docs.scripts import dark
 from studies import make
 
 STUDIES = Path(__file__).parent
@@ -15,6 +17,7 @@ PLOTS = {
     for name in make.scripts()
     if name.endswith("/draw")
 }
+DARK = dict(dark.plots())
 EVERY = [(folder, name) for folder, plots in PLOTS.items() for name in plots]
 
 
@@ -43,8 +46,23 @@ def test_every_picture_is_on_a_page():
     root = STUDIES.parent
     pages = [root / "README.md", *(root / "docs").glob("*.md"), *STUDIES.rglob("*.md")]
     text = "".join(page.read_text(encoding="utf-8") for page in pages)
-    pictures = STUDIES.glob("*/pictures/*.png")
+    pictures = [path for path in STUDIES.glob("*/pictures/*.png") if path not in DARK.values()]
     assert [path.name for path in pictures if f"pictures/{path.name}" not in text] == []
+
+
+@pytest.mark.parametrize("light", DARK, ids=lambda path: path.stem)
+def test_the_readmes_plots_on_dark_ground_are_those_on_light(light):
+    with Image.open(DARK[light]) as picture:
+        assert (np.asarray(picture) == dark.darkened(light)).all(), "`make pictures` draws it"
+        ground = np.asarray(picture)[0, 0]
+    assert ground.max() < 40
+
+
+def test_every_plot_of_the_readme_has_one_on_dark_ground():
+    readme = (STUDIES.parent / "README.md").read_text(encoding="utf-8")
+    every = {STUDIES.parent / name for name in re.findall(r"studies/[\w/-]+\.png", readme)}
+    assert every == {*DARK, *DARK.values()}
+    assert set(STUDIES.glob("*/pictures/*-dark.png")) == {*DARK.values()}
 
 
 README_PX = 830
