@@ -13,10 +13,9 @@ import pandas as pd
 
 from flockenv.comparison import score_policies
 from flockenv.comparison.levels import FLOCKS, LEVELS, NO_STEERING, REFERENCE
-from flockenv.policies.names import LEARNED, PAPERS_LAW
 from studies.study import resumed, run, write_table
 
-LAWS = (REFERENCE, PAPERS_LAW, NO_STEERING)
+LEARNED, LAWS = "learned", (REFERENCE, "paper's law", NO_STEERING)
 
 
 def main(arguments: list[str] | None = None) -> None:
