@@ -19,6 +19,7 @@ from torchrl.data import Binary, Bounded, Categorical, Composite, Unbounded
 from torchrl.envs import EnvBase
 
 from flockenv import _core
+from flockenv._io.arguments import as_int
 from flockenv.envs.base import OwnFlocks
 from flockenv.envs.batch import LeaderBatch, at_least_one
 from flockenv.envs.observation import state_entries
@@ -150,6 +151,15 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     def set_next_episodes(self, **options: Any) -> None:
         """Set ``bw_s`` or ``target`` for the next episodes, as `LeadersVectorEnv` does."""
         self._batch.set_upcoming(range(self.num_flocks), options)
+
+    def set_seed(self, seed: int | None = None, static_seed: bool = False) -> int | None:
+        """Seed the flocks at the next reset: flock i with ``seed + i``; return TorchRL's next seed.
+
+        A ParameterError refuses what is no seed.
+        """
+        given = None if seed is None else as_int(seed, "seed")
+        following: int | None = super().set_seed(given, static_seed)
+        return following
 
     def _set_seed(self, seed: int | None) -> None:
         flocks = self.num_flocks

@@ -72,8 +72,10 @@ def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
         if name in arrays:
             raise ValueError(f"it holds {name!r} twice")
         # The whole entry, whose checksum is compared; NumPy alone may stop before its end.
-        data = io.BytesIO(archive.read(entry))
-        arrays[name] = np.lib.format.read_array(data, allow_pickle=False)
+        with archive.open(entry) as stream:
+            # As many bytes as it says that there are: without a number all would be unpacked.
+            data = stream.read(entry.file_size)
+        arrays[name] = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
         if arrays[name].dtype.kind not in "biufU":
             raise ValueError(f"{name} must not hold {arrays[name].dtype}")
     return arrays

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from flockenv._io.arguments import number
+from flockenv._io.arguments import as_int, number
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
@@ -73,6 +73,7 @@ class RunSpec:
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
             )
         refuse_unknown((self.keep,), KEEP, "part of a run to keep")
+        object.__setattr__(self, "seed", as_int(self.seed, "seed"))
         check_seed(self.seed)
         for name, most in (("duration_s", 1e9), ("sample_hz", 1e6)):
             value = float(number(getattr(self, name), name))

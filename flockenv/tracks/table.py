@@ -178,7 +178,8 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
         index_col=False,
         dtype=dict.fromkeys(texts, str),
         keep_default_na=False,
-        na_values={name: none for name in unique if name not in texts},
+        # By name it is slow for thousands of columns.
+        na_values={name: none for name in unique if name not in texts} if texts else none,
         skipinitialspace=True,
         skip_blank_lines=False,
         low_memory=False,

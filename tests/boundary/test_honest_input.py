@@ -13,6 +13,7 @@ import pytest
 
 import flockenv
 from flockenv import FlockParameters
+from flockenv.runs.spec import RunSpec
 
 OPTIONS = {"n_boats": 6, "n_leaders": 2, "episode_s": 0.5}
 
@@ -229,6 +230,23 @@ def run(seed=1, duration_s=1.0, **options):
     return lambda: flockenv.simulate(few, seed, duration_s, **options)
 
 
+def torchrl_seed(seed):
+    def seeded():
+        pytest.importorskip("torchrl")
+        flockenv.torchrl.LeadersEnv(2, **OPTIONS).set_seed(seed)
+
+    return seeded
+
+
+def run_spec(seed):
+    def made():
+        spec = RunSpec(parameters=FlockParameters(), seed=seed, duration_s=1)
+        # The same run has the same name however its seed was written.
+        assert spec.key == RunSpec(parameters=FlockParameters(), seed=int(seed), duration_s=1).key
+
+    return made
+
+
 def ramp(times):
     return [(time_s, {"bw_s": 0.1 + 0.1 * place}) for place, time_s in enumerate(times)]
 
@@ -359,6 +377,14 @@ VALUES = {
         )
     },
     **{f"simulate(seed={seed!r})": run(seed=seed) for seed in [3.0, np.int64(3), np.float64(3)]},
+    **{
+        f"torchrl.LeadersEnv.set_seed({seed!r})": torchrl_seed(seed)
+        for seed in [3.0, np.float32(3), np.array(3.0), np.uint64(2**64 - 2), None]
+    },
+    **{
+        f"RunSpec(seed={seed!r})": run_spec(seed)
+        for seed in [3.0, np.int64(3), np.float64(3), np.array(3), np.uint64(2**64 - 1)]
+    },
     **{
         f"simulate(duration_s={duration!r})": run(duration_s=duration)
         for duration in [1, np.float32(1), np.int64(1), np.array(1.0)]

@@ -228,6 +228,23 @@ def test_zeros_that_would_fill_the_memory_are_refused_unread(tmp_path):
         tracemalloc.stop()
 
 
+def test_a_file_that_says_less_than_it_holds_fills_no_memory(tmp_path):
+    """Its directory, which anybody may write, counts 100 bytes of 40 MB of zeros."""
+    path = tmp_path / "a.npz"
+    np.savez_compressed(path, seed=np.zeros(5_000_000))
+    data = bytearray(path.read_bytes())
+    size = data.rindex(b"PK\x01\x02") + 24
+    data[size : size + 4] = (100).to_bytes(4, "little")
+    path.write_bytes(data)
+    tracemalloc.start()
+    try:
+        with pytest.raises(ParameterError, match="no whole, unharmed"):
+            Recording.load(path)
+        assert tracemalloc.get_traced_memory()[1] < 10 << 20
+    finally:
+        tracemalloc.stop()
+
+
 def test_what_is_written_is_read_however_little_it_takes(tmp_path, monkeypatch):
     """Flocks at rest compress like zeros: they are stored plain, and read again."""
     monkeypatch.setattr(array_file, "_FREE_BYTES", 1000)
