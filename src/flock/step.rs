@@ -62,7 +62,7 @@ impl Flock {
         steering: Steering,
     ) -> Result<f64> {
         let mut finer = self.with_finer_step()?;
-        let last = crate::clock::ticks(finer.parameters.dt_s); finer.advance_to(keep_going, end.saturating_sub(last).max(finer.time), steering)?;
+        finer.advance_to(keep_going, end, steering)?;
         self.advance_to(keep_going, end, steering)?;
         let error = rms_distance(
             self.poses(),
