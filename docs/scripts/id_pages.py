@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import asdict, fields
 from functools import partial
 from pathlib import Path
+from string import Template
 from typing import Any
 
 import gymnasium
@@ -30,12 +31,13 @@ from flockenv.policies import policy
 
 LEADERS, EASY = "flockenv/Leaders-v0", "flockenv/Order-easy-v0"
 GOOD_POLICIES = {"wide": "learned"}
-"""What steers in a film, by the pool; elsewhere the damped law does."""
+"""The policy in a film, by the pool; elsewhere it is the damped law."""
 BEFORE_S, FRAMES, STEP_S, SEED = 10.0, 100, 0.8, 10
 """A film starts so long before a quarter of the episode is over, when targets may change. With this
 seed the flocks follow."""
 
 SCORES = STUDIES / "suite" / "results" / "v2.csv"
+PAGE = Template(Path(__file__).with_name("id_page.template").read_text(encoding="utf-8"))
 MEANS = STUDIES / "leaders" / "results" / "means.csv"
 
 
@@ -61,54 +63,55 @@ def registered() -> str:
 
 
 def site(text: str) -> str:
-    """Return what a repository's viewer does not show, and the site does."""
+    """Return a text that the site shows, and a repository's viewer does not."""
     return f"<!-- site\n{text}\n-->"
 
 
 def page(env_id: str) -> str:
-    """Return the page of an id."""
+    """Return the page of an id, whose sentences are in id_page.template."""
     declared, name = ENVIRONMENTS[env_id], page_name(env_id)
     env = gymnasium.make(env_id)
     alt = f"A flock in {env_id}. Its leaders have a ring, and steer by the {good_policy(env_id)}."
-    film_words = (
-        f"In the film the policy `{good_policy(env_id)}` steers the leaders{_told(env_id)} "
-        f"(seed {SEED}, a flock that follows), at ten times real time."
+    steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
+    return PAGE.substitute(
+        title=env_id.removeprefix("flockenv/"),
+        env_id=env_id,
+        purpose=declared.purpose,
+        history="\n".join(f"- {change}" for change in declared.history),
+        film=shown(name, alt, "../"),
+        policy=good_policy(env_id),
+        told=_told(env_id),
+        seed=SEED,
+        step_s=f"{step_s:g}",
+        steps=steps,
+        episode_s=f"{steps * step_s:g}",
+        arguments=_arguments(env_id),
+        reached=_reached(env_id),
+        **_spaces(env_id, env),
+        **_reward(env_id),
     )
-    parts = [
-        f"# {env_id.removeprefix('flockenv/')}",
-        site(f"```{{raw}} html\n{shown(name, alt, '../')}\n```\n\n{film_words}"),
-        declared.purpose,
-        "```python\nimport gymnasium\n\n"
-        f'env = gymnasium.make("flockenv:{env_id}")\n'
-        "observation, info = env.reset(seed=7)\n```",
-        f'`gymnasium.make_vec("flockenv:{env_id}", num_envs=64)` makes many flocks at once. After '
-        f'`import flockenv`, `pettingzoo.make("parallel", "{env_id}")` makes each leader an agent. '
-        "[Other interfaces](index.md#interfaces) have the same task.",
-        *_spaces(env_id, env),
-        *_course(env_id, env),
-        "## Arguments",
-        _arguments(env_id),
-    ]
-    if found := reached(env_id):
-        _, words = found
-        picture = (
-            f'<img class="plot" src="../loops/{name}.png" alt="Signed order by policy" width="540">'
-        )
-        parts += ["## What policies reach", site(f"```{{raw}} html\n{picture}\n```"), words]
-    history = "\n".join(f"- {each}" for each in declared.history)
-    return "\n\n".join([*parts, "## Versions", history]) + "\n"
 
 
-def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> list[str]:
-    """Return what an action and an observation consist of."""
+def _reached(env_id: str) -> str:
+    """Return the section on what policies reach; none without data."""
+    found = reached(env_id)
+    if found is None:
+        return ""
+    source = f"../loops/{page_name(env_id)}.png"
+    picture = f'<img class="plot" src="{source}" alt="Signed order by policy" width="540">'
+    picture = site(f"```{{raw}} html\n{picture}\n```")
+    return f"## What policies reach\n\n{picture}\n\n{found[1]}\n\n"
+
+
+def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
+    """Return the spaces of actions and observations, with a table of each."""
     leaders = env.unwrapped.num_leaders
     body = [[str(k), f"rudder of leader {k}", "-1", "1"] for k in range(leaders)]
-    every_s = 1.0 / env.metadata["render_fps"]
     entries = observation_entries(_settings(env_id, by_block=True)["observation"])
-    places: dict[tuple[str, str], list[int]] = {}
-    for place, each in enumerate(entries):
-        places.setdefault((each.block, each.name), []).append(place)
-    first = {key: entries[own[0]] for key, own in places.items()}
+    indices: dict[tuple[str, str], list[int]] = {}
+    for index, entry in enumerate(entries):
+        indices.setdefault((entry.block, entry.name), []).append(index)
+    first = {key: entries[own[0]] for key, own in indices.items()}
     rows_of = [
         [
             _indices(own),
@@ -117,54 +120,33 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> list[str]:
             f"[{first[block, name].low:g}, {first[block, name].high:g}]",
             plain_cell(first[block, name].meaning),
         ]
-        for (block, name), own in places.items()
+        for (block, name), own in indices.items()
     ]
-    each_of = f"{leaders} times: leader 0 first. " if leaders > 1 else ""
-    return [
-        "## Actions",
-        f"`{env.action_space}`. A rudder is held for {every_s:g} s. A positive one turns a boat "
-        "that moves forward counter-clockwise, and works in reverse while the boat backs up. Other "
-        "actions, such as headings, are [options](tables.md#options).",
-        markdown(["index", "meaning", "low", "high"], body),
-        "## Observations",
-        f"`{env.observation_space.shape}`, float32. {each_of}The frame is the leader's own place "
-        "in the pool, outward and clockwise. Entries of `neighbors` have an index for each of the "
-        "nearest boats. A number with a unit is divided by its [scale](tables.md#observation) and "
-        "clipped to its range.",
-        markdown(["index", "name", "unit", "range", "meaning"], rows_of),
-    ]
+    return {
+        "action_space": str(env.action_space),
+        "actions": markdown(["index", "meaning", "low", "high"], body),
+        "observation_shape": str(env.observation_space.shape),
+        "times": f"{leaders} times: leader 0 first. " if leaders > 1 else "",
+        "entries": markdown(["index", "name", "unit", "range", "meaning"], rows_of),
+    }
 
 
-def _indices(places: list[int]) -> str:
+def _indices(indices: list[int]) -> str:
     return (
-        ", ".join(map(str, places))
-        if len(places) < 4
-        else f"{places[0]}, {places[1]}, … {places[-1]}"
+        ", ".join(map(str, indices))
+        if len(indices) < 4
+        else f"{indices[0]}, {indices[1]}, … {indices[-1]}"
     )
 
 
-def _course(env_id: str, env: gymnasium.Env[Any, Any]) -> list[str]:
-    """Return what is rewarded, and how an episode starts and ends."""
+def _reward(env_id: str) -> dict[str, str]:
+    """Return the reward's formula and its terms."""
     weights = _settings(env_id, by_block=True)["reward"]
     formula = " + ".join(
         name if weight == 1.0 else f"{weight:g}·{name}" for name, weight in weights.items()
     )
     terms = "\n".join(f"- `{name}`: {plain_cell(TERMS[name])}" for name in weights)
-    steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
-    return [
-        "## Reward",
-        f"`reward = {formula}`, the mean over a step and over the leaders.",
-        terms,
-        "ψ_o is the length of the normal boats' mean heading in the frame of each one's place, "
-        "and φ_o its angle, clockwise from outward; φ_target is π/2 for a clockwise target and "
-        "-π/2 for the other ([the model](../model.md)).",
-        "## Start",
-        "Boats lie at rest at random places with random headings, and their motors begin to drive "
-        "forward. The seed fixes places, noise, target and backward duration.",
-        "## End",
-        f"After {steps} steps, {steps * step_s:g} s, the episode is truncated. It never "
-        "terminates. The last info has its means as `episode_summary`.",
-    ]
+    return {"formula": formula, "terms": terms}
 
 
 USUAL = ("n_boats", "n_leaders", "pool", "bw_s", "target", "episode_s", "control_hz", "reward")
@@ -190,8 +172,7 @@ def _arguments(env_id: str) -> str:
             [[name, here, meaning] for name, here, _, meaning in body],
             ["argument", "here", "meaning"],
         )
-    more = "These and [every other](tables.md) can be given to `gymnasium.make`."
-    return f"{markdown(header, body)}\n\n{more}"
+    return markdown(header, body)
 
 
 def _first(text: str) -> str:
@@ -200,7 +181,7 @@ def _first(text: str) -> str:
 
 
 def plain_cell(text: str) -> str:
-    """Return a text in which no character means something to a table in Markdown."""
+    """Return a text with the characters escaped that tables in Markdown interpret."""
     return text.replace("|", r"\|").replace("*", r"\*")
 
 
@@ -268,14 +249,14 @@ def film(env_id: str) -> Iterator[Image.Image]:
     env.close()
 
 
-_TOLD = [place for place, each in enumerate(observation_entries()) if each.block == "target"]
+_TOLD = [index for index, each in enumerate(observation_entries()) if each.block == "target"]
 
 
 # --- what policies reach --------------------------------------------------------------------------
 
 
 def reached(env_id: str) -> tuple[Plot, str] | None:
-    """Return the plot of committed data of an id, and what stands below it; None without data."""
+    """Return the plot of an id's committed data, and the words below it; None without data."""
     task = next((name for name, each in TASK_IDS.items() if each == env_id), None)
     if task is not None:
         return _suite(task)
