@@ -89,7 +89,7 @@ def episode(env: flockenv.LeadersVectorEnv, seeds: list[int], steer: Any) -> tup
 
 
 def linear(weights: np.ndarray, leaders: int) -> Any:
-    """Return what maps observations (flocks, leaders * size) to actions, for weights of each flock.
+    """Return a linear map of observations (flocks, leaders * size) to actions, one for each flock.
 
     `weights` has shape (flocks, size + 1): the last number is the bias.
     """

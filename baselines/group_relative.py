@@ -38,7 +38,7 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 
 @dataclass(frozen=True)
 class Settings:
-    """What the training depends on."""
+    """Settings of the training."""
 
     pool: str = "wide"
     #: Groups, flocks of a group, and how many s they branch.

@@ -39,7 +39,7 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 
 @dataclass(frozen=True)
 class Settings:
-    """What the search depends on."""
+    """Settings of the search."""
 
     pool: str = "wide"
     #: Pairs of flocks, and how many s they stay paired.

@@ -68,9 +68,9 @@ def layers(inputs: int, hidden: int, last_gain: float) -> torch.nn.Sequential:
         torch.nn.Tanh(),
         torch.nn.Linear(hidden, 1),
     )
-    for place, gain in ((0, 2**0.5), (2, 2**0.5), (4, last_gain)):
-        torch.nn.init.orthogonal_(network[place].weight, gain)
-        torch.nn.init.zeros_(network[place].bias)
+    for index, gain in ((0, 2**0.5), (2, 2**0.5), (4, last_gain)):
+        torch.nn.init.orthogonal_(network[index].weight, gain)
+        torch.nn.init.zeros_(network[index].bias)
     return network
 
 

@@ -23,7 +23,7 @@ from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
 @dataclass(frozen=True)
 class Settings:
-    """How much to train and to test."""
+    """Amounts of training and testing."""
 
     seed: int = 0
     flock_hours: int = 500
@@ -50,7 +50,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Learner:
-    """How the leaders learn: options of PPO."""
+    """Options of PPO."""
 
     n_steps: int = 240
     batch_size: int = 11_520

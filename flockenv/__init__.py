@@ -73,7 +73,7 @@ _MADE = {
     "run": "flockenv.simulate",
     "load": "flockenv.Recording.load, or flockenv.policies.load",
 }
-"""What names of other packages are here."""
+"""Names of other packages, and their counterparts here."""
 
 
 def _prints_help_alone() -> bool:
@@ -104,10 +104,10 @@ def __getattr__(name: str) -> Any:
 
 
 def _hint(name: str) -> str:
-    """Return what an unknown name may have meant."""
+    """Return a suggestion for an unknown name."""
     from flockenv.errors import nearest
 
-    # hasattr of a dunder name, say, needs no words.
+    # hasattr of a dunder name, for example, needs no suggestion.
     near = None if name.startswith("_") else _MADE.get(name) or nearest(name, __all__)
     return f": did you mean {near}?" if near else ""
 

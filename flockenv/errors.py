@@ -1,4 +1,4 @@
-"""What can go wrong: the exceptions that users meet, and parts of their messages."""
+"""Exceptions that users meet, and parts of their messages."""
 
 import difflib
 from collections.abc import Iterable, Mapping
@@ -46,7 +46,7 @@ def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 
 def hint(name: object, known: Iterable[str]) -> str:
-    """Return what an unknown name may have meant, or all names that there are."""
+    """Return a suggestion for an unknown name, or all known names."""
     known = list(known)
     near = nearest(name, known)
     return f"did you mean {near!r}?" if near else f"there are {', '.join(known)}"
@@ -64,7 +64,7 @@ class HintsAtNames:
     """An object whose error for an attribute that it does not have names the one that is meant."""
 
     __slots__ = ()
-    #: What other words stand for, as an error says it.
+    #: Meanings of other words, as an error says them.
     _meanings: ClassVar[Mapping[str, str]] = {}
 
     # Type checkers would take any name for an attribute.

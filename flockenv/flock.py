@@ -94,7 +94,7 @@ class ContactSeries(_Columns):
     along_cm: NDArray[np.float32]
 
     @classmethod
-    def of_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
+    def from_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
         """Return the series with these of its columns, by name; others are left out."""
         return cls(*(columns[each.name] for each in fields(cls)))
 
@@ -320,7 +320,7 @@ class Flock(HintsAtNames):
         *,
         allow_overlap: bool = False,
     ) -> None:
-        """Put the boats somewhere else.
+        """Set poses, velocities and time.
 
         Parameters
         ----------

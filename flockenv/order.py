@@ -27,18 +27,18 @@ STATES = np.array(_core.COLLECTIVE_STATES)
 class Quantity:
     """An entry of the table of quantities."""
 
-    #: In recordings and tables; and what it is in a few words.
+    #: Name in recordings and tables; and a few words for labels.
     name: str
     label: str
     symbol: str
     #: Empty for none.
     unit: str
-    #: What it is, with its sign; and where it is defined.
+    #: Its meaning, with its sign; and the paper's definition.
     meaning: str
     source: str
     #: Least and greatest value, if there are such.
     range: tuple[float, float] | None
-    #: Fewer boats leave it undefined (NaN).
+    #: Least number of boats for which it is defined; NaN for fewer.
     least_boats: int
     #: Whether its mean over a run is shown; the mean of an angle is not.
     is_averaged: bool

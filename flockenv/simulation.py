@@ -129,7 +129,7 @@ def simulate(
         raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
     if progress is not None:
         check_function(progress, "progress")
-    leaders = Leaders.of(policy, parameters)
+    leaders = Leaders.from_policies(policy, parameters)
     start = _state_of(start)
     changes = _changes(parameters, schedule, seed)
     for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
@@ -157,7 +157,7 @@ def _origin(
     noise_seed: int | None,
     control_hz: float | None,
 ) -> dict[str, object]:
-    """Return what sets a run apart from another of its parameters, seed and policy."""
+    """Return the fields that set a run apart from another of its parameters, seed and policy."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
         "control_hz": None if control_hz is None else float(control_hz),
@@ -182,20 +182,20 @@ def _recorded(
 
 
 def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, Any]) -> Recording:
-    """Return the recording of what the core has recorded, with where it comes from."""
+    """Return the recording of the core's columns, with its origin."""
     series = columns.pop("contacts", None)
     read = {
         "phase": PHASES[columns["phase"]],
         "order": OrderSeries(**columns["order"]),
         "statistics": StepStatistics(**columns["statistics"]),
-        "contacts": None if series is None else ContactSeries.of_columns(series),
+        "contacts": None if series is None else ContactSeries.from_columns(series),
     }
     digest = _schedule_digest(origin["parameters"], changes, columns["time_s"])
     return Recording(**columns | read, **origin, version=_core.__version__, schedule_sha256=digest)
 
 
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
-    """Return what the core is told of who steers, and how often per second."""
+    """Return the steering of a run and its rate, as the core takes them."""
     if leaders.law is not None:
         # The core steers by a law alone, and holds its leans.
         own = leaders.seats[0].policy.control_hz

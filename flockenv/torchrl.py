@@ -33,7 +33,7 @@ GROUP = "leaders"
 """Name of the group that all leaders of a flock are in."""
 
 STATES = ("boats", "set", "features", "none")
-"""What the entry ``state`` may hold."""
+"""Contents of the entry ``state``."""
 
 
 class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):

@@ -32,7 +32,7 @@ export class Core {
     return this.exports.memory.buffer.byteLength;
   }
 
-  /** What there is: fields, quantities … */
+  /** The core's declarations: fields, quantities … */
   describe() {
     this.exports.describe();
     return this.#said();
@@ -79,15 +79,15 @@ export class Core {
     this.#done(this.exports.look(flock, boat));
   }
 
-  /** The quantity in this place of the table, of boats with an order at an angle and of a target of this sign. */
-  derived(place, order, angle, sign) {
-    return this.exports.derived(place, order, angle, sign);
+  /** The quantity at this index of the table, of boats with an order at an angle and of a target of this sign. */
+  derived(index, order, angle, sign) {
+    return this.exports.derived(index, order, angle, sign);
   }
 
   /** The columns since the last call, by name. */
   take(flock) {
-    const taken = COLUMNS.map((name, place) => {
-      const [start, length] = [this.exports.column(flock, place), this.exports.column_length(flock, place)];
+    const taken = COLUMNS.map((name, index) => {
+      const [start, length] = [this.exports.column(flock, index), this.exports.column_length(flock, index)];
       return [name, new Float64Array(this.exports.memory.buffer, length > 0 ? start : 0, length).slice()];
     });
     this.exports.take(flock);
@@ -96,8 +96,8 @@ export class Core {
 
   #ask(request, call) {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
-    const place = this.exports.input(bytes.length);
-    new Uint8Array(this.exports.memory.buffer, place, bytes.length).set(bytes);
+    const start = this.exports.input(bytes.length);
+    new Uint8Array(this.exports.memory.buffer, start, bytes.length).set(bytes);
     this.#done(call());
     return this.#said();
   }

@@ -9,7 +9,7 @@ import { differences, LATEST, requestsOf, textOf, withChange } from "./request.m
 const SAMPLING = 10;
 /** Seconds after the start that a map leaves out: boats start at random and at rest. */
 const SETTLING = 30;
-/** How many changes on the way a link holds. */
+/** Most changes of a schedule in a link. */
 const MOST_CHANGES = 200;
 /** The number of no boat. */
 export const NO_BOAT = 1e6;
@@ -55,20 +55,20 @@ export function changed(base, values, laws, name, value) {
 function distinguished(described, copies) {
   const parts = described.map(({ name }) => name.split(", "));
   const isPair = parts.length > copies;
-  const place = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
-  return described.map((each, k) => ({ ...each, name: isPair ? parts[k][place] ?? each.name : each.name }));
+  const index = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
+  return described.map((each, k) => ({ ...each, name: isPair ? parts[k][index] ?? each.name : each.name }));
 }
 
 export class Flocks {
   runs = [];
-  /** What was last asked for, and what the runs are. */
+  /** The last request, and the request that the runs answer. */
   asked = null;
   shown = null;
-  /** What the flocks started as, from when on their means count, and what changed on the way. */
+  /** The flocks' start, the time from which their means count, and their changes since. */
   past = { first: null, start: 0, changes: [] };
   /** The first flock's parameters, as links have them. */
   values = {};
-  /** What a map of order shows together. */
+  /** The flocks that a map of order shows together. */
   signature = "";
   isRecorded = false;
 
@@ -86,12 +86,12 @@ export class Flocks {
     return this.areYours ? this.runs.slice(0, this.shown.copies) : this.runs;
   }
 
-  /** Where the second kind of flock starts. */
+  /** Index of the first flock of the second kind. */
   get besides() {
     return this.isRecorded ? 1 : this.shown.copies;
   }
 
-  /** What a link needs for the flocks at a time; more changes than it holds are left out. */
+  /** The part of a link for the flocks at a time; changes beyond its limit are left out. */
   linked(time = 0) {
     const { first, start, changes } = this.past;
     const isWhole = changes.length <= MOST_CHANGES && changes.every((each) => each.time <= LATEST);
@@ -109,24 +109,24 @@ export class Flocks {
     return this.shown.flock.leaders ?? this.laws.atEverySubstep;
   }
 
-  /** Has the simulator open or change the flocks; returns whether they continue from where they were. */
+  /** Lets the simulator open or change the flocks; returns whether they continue from their present state. */
   async become(wanted, kind) {
-    // What is changed meanwhile is changed of this.
+    // Changes made meanwhile start from this.
     this.asked = wanted;
     const requests = requestsOf(wanted, this.kinds);
     const { continues, values, taken } = await this.simulator.ask(kind, { requests }).catch((error) => {
       this.asked = this.shown;
       throw error;
     });
-    const described = distinguished(values.map((each, place) => this.#describe(each, wanted, place, requests[place].seed)), wanted.copies);
-    const isSame = continues && described.every(({ boats }, place) => this.runs[place]?.boats === boats);
+    const described = distinguished(values.map((each, index) => this.#describe(each, wanted, index, requests[index].seed)), wanted.copies);
+    const isSame = continues && described.every(({ boats }, index) => this.runs[index]?.boats === boats);
     const before = this.shown;
     this.shown = wanted;
     this.values = described[0].parameters;
     this.signature = JSON.stringify(Object.entries(this.values).filter(([name]) => !NOT_ON_MAP.has(name)));
     this.isRecorded = false;
     if (isSame) {
-      this.runs.forEach((run, place) => { run.describe(described[place]); });
+      this.runs.forEach((run, index) => { run.describe(described[index]); });
     } else {
       this.runs = described.map((each) => new GrowingRun(each, this.series));
     }
@@ -149,8 +149,8 @@ export class Flocks {
   }
 
   append(taken, onCycle = () => {}) {
-    taken.forEach((each, place) => {
-      this.runs[place].append(each, place === 0 && this.runs[0].end > SETTLING ? (order) => onCycle(this.runs[0].bw_s, order) : undefined);
+    taken.forEach((each, index) => {
+      this.runs[index].append(each, index === 0 && this.runs[0].end > SETTLING ? (order) => onCycle(this.runs[0].bw_s, order) : undefined);
     });
   }
 
@@ -179,8 +179,8 @@ export class Flocks {
     this.isRecorded = true;
   }
 
-  #describe(answer, wanted, place, seed = "0") {
-    const fields = place < wanted.copies ? wanted.flock : { ...wanted.flock, ...wanted.beside };
+  #describe(answer, wanted, index, seed = "0") {
+    const fields = index < wanted.copies ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = answer.parameters.n_leaders;
     const policy = fields.leaders ?? this.laws.atEverySubstep;
     const steering = policy.includes(",") ? "each its own" : this.laws.words(policy);
@@ -188,7 +188,7 @@ export class Flocks {
     return this.described(answer, { name, seed, law: policy, version: this.version });
   }
 
-  /** What runs and panels know of a flock, from the simulator's answer. */
+  /** A flock for runs and panels, from the simulator's answer. */
   described({ parameters, lengths }, named) {
     const { n_leaders: leaders, target } = parameters;
     const targets = [target].flat();
@@ -201,7 +201,7 @@ export class Flocks {
     };
   }
 
-  /** What the controls show. */
+  /** Values of the controls. */
   get controlled() {
     const { flock, beside } = this.shown;
     const target = this.values.target.includes(",") ? "opposed" : this.values.target;

@@ -1,4 +1,4 @@
-// What a link asks for: flocks from their start, what changed of them on the way, and the moment that is seen.
+// Following of a link: flocks from their start, their changes, and the moment that is seen.
 
 import { changedFlock, linkTo } from "./request.mjs";
 

@@ -2,7 +2,7 @@
 
 import { fixed } from "../flockenv/replay/shared/words.mjs";
 
-/** How long a round is, in s. */
+/** Length of a round in s. */
 export const ROUND_SECONDS = 300;
 
 const signed = (value) => fixed(value, 2, true);

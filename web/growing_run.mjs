@@ -3,11 +3,11 @@
 import { Run } from "../flockenv/replay/shared/run.mjs";
 import { CONTACT } from "./core.mjs";
 
-/** How many leaders a flock of the page has at most. */
+/** Most leaders of a flock on the page. */
 export const MOST_LEADERS = 8;
 /** Ten minutes, at ten samples per second. */
 const KEPT_SAMPLES = 6000;
-/** What the poses and velocities of a run take at most, in numbers. */
+/** Most numbers in the poses and velocities of a run. */
 const KEPT_NUMBERS = 4_000_000;
 /** Contacts are kept of so many samples. */
 const CONTACT_SAMPLES = 40;
@@ -161,8 +161,8 @@ function columnsOf(raw, series) {
     // Clockwise from the outward direction, as the simulator's local frame has it.
     at: (sample, boat) => Math.atan2(raw.pose.at(sample, 3 * boat + 1), raw.pose.at(sample, 3 * boat)) - raw.pose.at(sample, 3 * boat + 2),
   });
-  series.forEach((name, place) => {
-    columns.set(name, view(raw.series, () => place));
+  series.forEach((name, index) => {
+    columns.set(name, view(raw.series, () => index));
   });
   return columns;
 }

@@ -1,8 +1,8 @@
 // The heading that a visitor asks of the leaders: a thumb, and the arrow keys wherever the focus is.
 
-/** What takes arrow keys for itself: text, and a list of keys that is open. */
+/** Elements that use arrow keys themselves: text, and an open list of keys. */
 const KEEPS_ARROWS = "textarea, input[type='text'], input[type='number'], [contenteditable], dialog[open]";
-/** What a key turns to: degrees, clockwise. */
+/** Direction of each key: degrees, clockwise. */
 const TURNS = { ArrowLeft: -15, ArrowRight: 15 };
 
 export class Helm {

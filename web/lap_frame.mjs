@@ -6,10 +6,10 @@ export function drawLapFrame(scene, boat) {
   const [x, y, heading] = scene.poses[boat];
   const [outward, length] = [Math.atan2(y, x), 5 * run.lengths.hull_radius_cm * scene.scale];
   const [left, top] = scene.place(boat);
-  const inside = (place, origin, size, margin) => Math.min(Math.max(place, margin - origin), size - margin - origin);
+  const inside = (position, origin, size, margin) => Math.min(Math.max(position, margin - origin), size - margin - origin);
   const write = (words, x, y) => {
-    const place = [inside(x, left, scene.canvas.clientWidth, 32), inside(y, top, scene.canvas.clientHeight, 9)];
-    label(context, palette, words, ...place);
+    const position = [inside(x, left, scene.canvas.clientWidth, 32), inside(y, top, scene.canvas.clientHeight, 9)];
+    label(context, palette, words, ...position);
   };
   context.save();
   context.translate(left, top);

@@ -1,4 +1,4 @@
-// How leaders may steer: by the laws that the simulator lists, or by the visitor's hand.
+// Steering of leaders: by the laws that the simulator lists, or by the visitor's hand.
 
 /** The visitor, where links and requests have a law's name. */
 export const YOU = "you";
@@ -11,10 +11,10 @@ export class Laws {
     this.ofEach = names.slice(1);
   }
 
-  /** What all leaders together may steer by: of laws that have the same words the first, and the visitor. */
+  /** Choices for all leaders together: of laws with the same words the first, and the visitor. */
   get ofAll() {
-    const alike = [this.atEverySubstep, ...this.ofEach].filter((name, place, names) =>
-      names.findIndex((each) => this.words(each) === this.words(name)) === place);
+    const alike = [this.atEverySubstep, ...this.ofEach].filter((name, index, names) =>
+      names.findIndex((each) => this.words(each) === this.words(name)) === index);
     return [...alike, YOU];
   }
 

@@ -1,8 +1,8 @@
-// What the page opens with, and its lessons: a link each, a sentence before and one after, with links of their own.
+// The page's start and its lessons: a link each, a sentence before and one after, with links of their own.
 
 import { element } from "../flockenv/replay/shared/words.mjs";
 
-/** What the page opens with unless its link says otherwise: a flock that circles. */
+/** The start of the page without a link: a flock that circles. */
 export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=6&start=180&speed=4";
 const OPENING_WORDS = {
   before: "These boats only bump into each other, and yet they circle together. How long they back up in each cycle decides it: try the slider.",

@@ -1,11 +1,11 @@
-// What the page's buttons, keys, files and links do.
+// Actions of the page's buttons, keys, files and links.
 
 import { colors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
 import { linkOf } from "./follow.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
 
-/** Has a page do what a visitor asks for. */
+/** Connects a page to the visitor's buttons, keys, files and links. */
 export function listen(page) {
   buttons(page);
   keys(page);
@@ -100,7 +100,7 @@ async function copy(page, button) {
   }
 }
 
-/** Has the browser keep the recording. */
+/** Saves the recording through the browser. */
 function save(page) {
   const [run] = page.runs;
   const recorded = page.quantities.filter(({ kind }) => kind === "recorded").map(({ key }) => key);

@@ -17,7 +17,7 @@ import { quantitiesOf, View } from "./view.mjs";
 const LONG = 500;
 
 export class LivePage {
-  /** What the link holds besides the flocks. */
+  /** The parts of the link besides the flocks. */
   other = { speed: "8" };
   /** Names and values that wait for the change before. */
   wanted = [];
@@ -88,7 +88,7 @@ export class LivePage {
     }
   }
 
-  /** What a link says besides the flocks. */
+  /** The parts of a link besides the flocks. */
   #showOther({ start: _, now: __, flocks: ___, paused, ...other }) {
     this.other = { speed: "8", ...other };
     this.isHeld = paused === "1";
@@ -158,7 +158,7 @@ export class LivePage {
     }
   }
 
-  /** Has the simulator open or change the flocks, and shows them. */
+  /** Lets the simulator open or change the flocks, and shows them. */
   async #become(wanted, kind) {
     this.#shows(kind, await this.flocks.become(wanted, kind));
   }

@@ -6,7 +6,7 @@ const PART = 4096;
 /** The bytes of a file of arrays: `{name: {shape, descr, bytes}}`, uncompressed. */
 export function writeNpz(arrays) {
   const [parts, directory] = [[], []];
-  let place = 0;
+  let offset = 0;
   const names = Object.keys(arrays);
   for (const name of names) {
     const entry = npyOf(arrays[name]);
@@ -21,10 +21,10 @@ export function writeNpz(arrays) {
     about.setUint16(22, path.length, true);
     const local = [Uint8Array.of(80, 75, 3, 4), new Uint8Array(about.buffer), path];
     const rest = new DataView(new ArrayBuffer(14));
-    rest.setUint32(10, place, true);
+    rest.setUint32(10, offset, true);
     directory.push(Uint8Array.of(80, 75, 1, 2, 20, 0), new Uint8Array(about.buffer), new Uint8Array(rest.buffer), path);
     parts.push(...local, entry);
-    place += 30 + path.length + entry.length;
+    offset += 30 + path.length + entry.length;
   }
   const size = directory.reduce((sum, part) => sum + part.length, 0);
   const end = new DataView(new ArrayBuffer(22));
@@ -32,16 +32,16 @@ export function writeNpz(arrays) {
   end.setUint16(8, names.length, true);
   end.setUint16(10, names.length, true);
   end.setUint32(12, size, true);
-  end.setUint32(16, place, true);
+  end.setUint32(16, offset, true);
   return joined([...parts, ...directory, new Uint8Array(end.buffer)]);
 }
 
 function joined(parts) {
   const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let place = 0;
+  let offset = 0;
   for (const part of parts) {
-    bytes.set(part, place);
-    place += part.length;
+    bytes.set(part, offset);
+    offset += part.length;
   }
   return bytes;
 }
@@ -101,30 +101,30 @@ function* entries(view) {
     throw new Error("it is no .npz file");
   }
   const [count, size, first] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true)];
-  let place = first;
+  let offset = first;
   for (let left = count; left > 0; left -= 1) {
-    const entry = directoryEntry(view, place);
+    const entry = directoryEntry(view, offset);
     yield entry;
-    place = entry.next;
+    offset = entry.next;
   }
-  if (place !== end || first + size !== end) {
+  if (offset !== end || first + size !== end) {
     throw new Error("Bad magic number for central directory");
   }
 }
 
-/** What its directory says of a file, if the file's own header says so too. */
-function directoryEntry(view, place) {
-  if (view.getUint32(place, true) !== 0x02014b50) {
+/** The directory's entry of a file, if the file's own header agrees. */
+function directoryEntry(view, offset) {
+  if (view.getUint32(offset, true) !== 0x02014b50) {
     throw new Error("Bad magic number for central directory");
   }
-  const [version, flags, method] = [6, 8, 10].map((at) => view.getUint16(place + at, true));
-  const [sum, packed, size, local] = [16, 20, 24, 42].map((at) => view.getUint32(place + at, true));
-  const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(place + at, true));
+  const [version, flags, method] = [6, 8, 10].map((at) => view.getUint16(offset + at, true));
+  const [sum, packed, size, local] = [16, 20, 24, 42].map((at) => view.getUint32(offset + at, true));
+  const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(offset + at, true));
   const nameAt = (at, long) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, long));
-  const name = nameAt(place + 46, length);
+  const name = nameAt(offset + 46, length);
   // Of the bits only "lengths follow" and "names are UTF-8" are known.
   const isKnown = [0, 8].includes(method) && version <= 63 && (flags & ~0x808) === 0 && packed !== 0xffffffff;
-  if (!isKnown || view.getUint16(place + 34, true) !== 0) {
+  if (!isKnown || view.getUint16(offset + 34, true) !== 0) {
     throw new Error(`${name} is packed in an unknown way`);
   }
   const own = view.getUint16(local + 26, true);
@@ -135,7 +135,7 @@ function directoryEntry(view, place) {
     throw new Error(`File name in directory '${name}' and header '${nameAt(local + 30, own)}' differ.`);
   }
   const start = local + 30 + own + view.getUint16(local + 28, true);
-  return { name, start, packed, size, method, sum, next: place + 46 + length + extra + comment };
+  return { name, start, packed, size, method, sum, next: offset + 46 + length + extra + comment };
 }
 
 async function inflated(bytes, most) {

@@ -68,6 +68,19 @@ export class OrderMap {
       context.stroke();
     }
     this.#cells(context, palette, across / CELLS[0], up / CELLS[1]);
+    this.#scales(context, palette, across, x, y, height);
+    if (this.dot) {
+      context.beginPath();
+      context.arc(x(this.dot[0]), y(this.dot[1]), 5, 0, 2 * Math.PI);
+      context.fillStyle = palette.leader;
+      context.fill();
+      context.strokeStyle = palette.outline;
+      context.lineWidth = 1.5;
+      context.stroke();
+    }
+  }
+
+  #scales(context, palette, across, x, y, height) {
     context.fillStyle = palette.faint;
     context.font = `11px ${getComputedStyle(document.body).fontFamily}`;
     context.textAlign = "center";
@@ -78,15 +91,6 @@ export class OrderMap {
     context.textAlign = "right";
     for (const order of [0, 0.5, 1]) {
       context.fillText(plain(order), EDGE_OF_MAP.left - 5, y(order) + 4);
-    }
-    if (this.dot) {
-      context.beginPath();
-      context.arc(x(this.dot[0]), y(this.dot[1]), 5, 0, 2 * Math.PI);
-      context.fillStyle = palette.leader;
-      context.fill();
-      context.strokeStyle = palette.outline;
-      context.lineWidth = 1.5;
-      context.stroke();
     }
   }
 

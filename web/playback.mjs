@@ -8,7 +8,7 @@ import { Game, scoreOf } from "./game.mjs";
 /** How long the simulator may compute for one frame, in ms, and after how long it is called slow; its first answer takes longer. */
 const [FRAME_WORK, SLOW, SLOW_AT_FIRST] = [12, 1000, 8000];
 
-/** Where the system asks for less motion. */
+/** Whether the system asks for less motion. */
 export const PAUSED = "Paused, since your system asks for less motion: the button or the space bar plays.";
 
 export class Playback {
@@ -103,7 +103,7 @@ export class Playback {
     return waiting > (this.costs.simulating > 0 ? SLOW : SLOW_AT_FIRST);
   }
 
-  /** Has the simulator take some more samples, unless it is at work already. */
+  /** Asks the simulator for some more samples, unless it is at work. */
   async #advance(samples) {
     const { flocks, hand, simulator, view } = this.#page;
     if (this.#isSlow(simulator)) {

@@ -1,10 +1,10 @@
-// What a recording's arrays must be: what flockenv.Recording.load refuses is refused here, in the same sentences
+// Checks of a recording's arrays: the same files are refused as by flockenv.Recording.load, in the same sentences
 // (flockenv/recording/checks.py and stored.py; tests/web/test_damaged_recordings.py compares the two).
 
 const TIMES = ["time_s", "phase", "in_analysis_window"];
 const TEXTS = ["format", "version", "parameters", "policy"];
 const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
-/** What a flock's poses and velocities are within. */
+/** Bounds of a flock's poses and velocities. */
 const WITHIN_REACH = [-1e9, 1e9];
 const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
 /** NumPy's names of kinds of numbers; those of texts are what files have. */
@@ -141,8 +141,15 @@ function checkStored(arrays, format) {
   return hasContacts;
 }
 
+function checkRudder(rudder, shape) {
+  checkArray("rudder", rudder, shape, DOUBLES);
+  if (rudder.values.some((command) => Math.abs(command) > 1)) {
+    refuse("rudder must be within [-1, 1]");
+  }
+}
+
 /**
- * What `read` makes of the recording's parameters as TOML, if the arrays are those of a recording. `format` is what
+ * Returns the result of `read` for the recording's parameters as TOML, if the arrays are those of a recording. `format` is what
  * it must say that it is; `phases` are the names of phases, and `quantities` and `statistics` those that there are.
  */
 export async function checkedArrays(arrays, { format, phases, quantities, statistics }, read) {
@@ -176,10 +183,7 @@ export async function checkedArrays(arrays, { format, phases, quantities, statis
   }
   checkOwn(arrays, samples, quantities);
   if (arrays.rudder) {
-    checkArray("rudder", arrays.rudder, [...times, leaders], DOUBLES);
-    if (arrays.rudder.values.some((each) => Math.abs(each) > 1)) {
-      refuse("rudder must be within [-1, 1]");
-    }
+    checkRudder(arrays.rudder, [...times, leaders]);
   }
   if (hasContacts) {
     checkContacts(Object.fromEntries(CONTACTS.map((name) => [name, arrays[`contacts_${name}`]])), samples, parameters);

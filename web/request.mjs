@@ -1,11 +1,11 @@
-// What the page shows, as its link has it: parameters by name, a seed, how leaders steer, and a second flock beside.
+// The request in the page's link: parameters by name, a seed, the leaders' steering, and a second flock beside.
 
 import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
 
-/** How far a link may go ahead, in s. */
+/** Largest time of a link, in s. */
 export const LATEST = 7200;
 const isTime = (text) => /^\d{1,4}(?:\.\d)?$/.test(text) && Number(text) <= LATEST;
-/** What else than parameters of flocks a link may hold: accepted values, in words and as a test. */
+/** Parts of a link besides parameters: their accepted values, in words and as a test. */
 export const OTHER = {
   speed: ["one of 1, 2, 4, 8, 16, 32, 64 and max", (text) => SPEEDS.includes(text)],
   boat: ["the number of a boat", (text) => /^\d{1,3}$/.test(text)],
@@ -18,7 +18,7 @@ export const OTHER = {
   lesson: ["a word", (text) => /^[a-z-]{1,20}$/.test(text)],
 };
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
-/** What this page shows at most, of fields that may be larger elsewhere. */
+/** Largest values of fields on this page, which may be larger elsewhere. */
 const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
 /** Fields of a request that are no parameters. */
 const STRINGS = ["preset", "seed", "leaders"];
@@ -69,7 +69,7 @@ export function withChange(changes, time, fields) {
   return [...before, { time, fields: { ...same?.fields, ...fields } }, ...changes.filter((each) => each.time > time)];
 }
 
-/** What is other in a flock than before, as changes have it. */
+/** The differences between two flocks, in the form of changes. */
 export function differences(before, after) {
   const names = new Set([...Object.keys(before), ...Object.keys(after)]);
   return Object.fromEntries([...names].filter((name) => before[name] !== after[name]).map((name) => [name, after[name] ?? ""]));
@@ -95,7 +95,7 @@ export function linkTo({ flock, beside, changes = [], other }) {
 
 /** A field's value as JSON, from the text that links have: lists with commas, rows that semicolons end. */
 export function valueFrom(kind, text) {
-  // What is no number stays text, for the simulator to refuse.
+  // Anything but a number stays text, which the simulator refuses.
   const number = (each) => (each.trim() !== "" && Number.isFinite(Number(each)) ? Number(each) : each.trim());
   const list = (each, read) => each.split(",").filter((item) => item.trim() !== "").map(read);
   if (kind === "rows") {

@@ -7,7 +7,7 @@ import { checkedArrays } from "./recording.mjs";
 import { tomlOf, valuesOfToml } from "./request.mjs";
 import { commandLine, isSchedule, pythonText } from "./texts.mjs";
 
-/** How long the commands that show the same flock run at least, in s. */
+/** Least duration of the commands that show the same flock, in s. */
 const SECONDS = 480;
 
 /**
@@ -19,15 +19,15 @@ export function recordingOf(run, { format, version, policy, recorded, statistics
   const first = run.sampleAt(run.changedAt);
   const { raw, length } = run;
   const [samples, boats, leaders] = [length - first, run.boats, run.leaders];
-  const phases = Array.from(raw.phase.from(first), (place) => run.phases[place]);
+  const phases = Array.from(raw.phase.from(first), (index) => run.phases[index]);
   const series = Object.fromEntries(recorded.map((name) => {
     const values = Float64Array.from({ length: samples }, (_, k) => run.value(name, first + k));
     return [`order_${name}`, array.reals(values, [samples])];
   }));
   // A recording that is played may not know them.
-  const known = statistics.every((_, place) => Number.isFinite(run.statistics[place])) ? statistics : [];
-  const counted = Object.fromEntries(known.map(({ name, kind }, place) => {
-    const value = run.statistics[place];
+  const known = statistics.every((_, index) => Number.isFinite(run.statistics[index])) ? statistics : [];
+  const counted = Object.fromEntries(known.map(({ name, kind }, index) => {
+    const value = run.statistics[index];
     return [`statistics_${name}`, kind === "count" ? array.whole(value) : array.reals([value], [])];
   }));
   return writeNpz({
@@ -48,7 +48,7 @@ export function recordingOf(run, { format, version, policy, recorded, statistics
   });
 }
 
-/** Has the browser keep bytes as a file. */
+/** Saves bytes as a file through the browser. */
 export function download(bytes, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([bytes]));

@@ -1,6 +1,6 @@
 // The simulator as the page sees it: questions and answers, and a new thread where the old one does not answer.
 
-/** How long a question may take, in ms, before the thread is taken for lost. */
+/** Time in ms after which the thread of an unanswered question counts as lost. */
 const PATIENCE = 15_000;
 
 /** Something that the simulator does not do, in words; `field` names the parameter that is to blame, if one is. */

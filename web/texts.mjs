@@ -43,7 +43,7 @@ function listed(value) {
 /** The same in Python, for one flock or several. `kinds`: what kind of value each field has. */
 export function pythonText(flocks, seconds, kinds, changes = []) {
   const names = ["recording", "beside"];
-  const texts = flocks.map((flock, place) => simulation(flock, seconds, kinds, changes, names[place] ?? `recording_${place + 1}`));
+  const texts = flocks.map((flock, index) => simulation(flock, seconds, kinds, changes, names[index] ?? `recording_${index + 1}`));
   return ["import flockenv", ...texts, ""].join("\n");
 }
 

@@ -1,4 +1,4 @@
-// What is seen: pictures, the means under them, charts, the map, and what a leader observes.
+// The page's view: pictures, the means under them, charts, the map, and a leader's observation.
 
 import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
@@ -16,9 +16,9 @@ const CHARTS = ["psi_o", "rotation", "signed_order"];
 const REACH = 60;
 /** How long trails are, in s, and in all boats together: they take most of the time in which many boats are drawn. */
 const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
-/** How often, in ms, words and numbers that nobody reads faster are written. */
+/** Time in ms between two updates of words and numbers, which nobody reads faster. */
 const WORDS_EVERY = 250;
-/** How often, in ms, what the flocks do is said to those who do not see it. */
+/** Time in ms between two sentences for those who do not see the flocks. */
 const TELL_EVERY = 5000;
 /** Force, in cm/s², that a bar as long as a hull is wide stands for. */
 const FORCE = 20;
@@ -36,15 +36,15 @@ export class View {
   /** The boat whose numbers stay, and the one under the pointer. */
   pinned = null;
   hovered = null;
-  /** What the pinned leader observes. */
+  /** The pinned leader's observation. */
   observed = null;
-  /** What there is to say of the rounds of a game. */
+  /** Words about the rounds of a game. */
   rounds = "";
   #flocks;
   #quantities;
   #entries;
   #charts;
-  /** Where means are written: under each picture, and of a game under all of them. */
+  /** Elements for means: under each picture, and of a game under all of them. */
   #scores = [];
   #worded = -Infinity;
   #told = -Infinity;
@@ -81,7 +81,7 @@ export class View {
     document.body.classList.toggle("many", seen.length > 1 && !isPair);
     document.body.classList.toggle("recorded", isRecorded);
     giveColors(runs);
-    this.panels = seen.map((run, place) => new Panel(run, place, isPair));
+    this.panels = seen.map((run, index) => new Panel(run, index, isPair));
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; redraw(); }, (boat) => pin(boat === this.pinned ? null : boat));
     }
@@ -138,14 +138,14 @@ export class View {
     for (const [chart, key] of this.#charts) {
       byId(key).previousElementSibling.replaceChildren(...legendOf(chart.runs, this.#quantity(key), time));
     }
-    this.#scores.forEach((score, place) => { score.replaceChildren(...this.#score(place, time)); });
+    this.#scores.forEach((score, index) => { score.replaceChildren(...this.#score(index, time)); });
     this.#tellWhatIsDone(time, isPlaying);
     this.#showStatistics();
     this.#showObserved();
   }
 
   /** The mean so far, large; of a pair both, of which a wide window shows that of its own pool, and of a game both. */
-  #score(place, time) {
+  #score(index, time) {
     const { areYours, besides, runs, seen } = this.#flocks;
     const line = (words, value, className = "") => {
       const part = element("span", className);
@@ -162,9 +162,9 @@ export class View {
     const mean = (run) => (run.target === null ? fixed(run.mean("psi_o"), 2) : signed(run.mean("signed_order")));
     const words = (run) => `mean ${this.#quantity(run.target === null ? "psi_o" : "signed_order").words} so far `;
     if (!document.body.classList.contains("pair")) {
-      return [line(words(seen[place]), mean(seen[place]))];
+      return [line(words(seen[index]), mean(seen[index]))];
     }
-    return [line(words(seen[place]), mean(seen[place]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each"))];
+    return [line(words(seen[index]), mean(seen[index]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each"))];
   }
 
   /** What the flocks do, for those who do not see it: the pictures' names, and a sentence that is read now and then. */
@@ -181,13 +181,13 @@ export class View {
     }
   }
 
-  /** What the substeps did until the end of each run. */
+  /** Statistics of the substeps until the end of each run. */
   #showStatistics() {
     const { runs, statistics } = this.#flocks;
     const rows = byId("about-flock").open ? statistics : [];
-    byId("statistics").replaceChildren(...rows.map(({ name }, place) => {
+    byId("statistics").replaceChildren(...rows.map(({ name }, index) => {
       const row = element("tr");
-      const words = ({ statistics: numbers }) => (Number.isFinite(numbers[place]) ? String(Number(numbers[place].toPrecision(3))) : "unknown");
+      const words = ({ statistics: numbers }) => (Number.isFinite(numbers[index]) ? String(Number(numbers[index].toPrecision(3))) : "unknown");
       row.append(element("th", "", name), ...runs.map((run) => element("td", "", words(run))));
       return row;
     }));
@@ -202,10 +202,10 @@ export class View {
       return;
     }
     const table = element("table");
-    this.#entries.forEach(({ block, place: count, name, meaning }, place) => {
+    this.#entries.forEach(({ block, place: count, name, meaning }, index) => {
       const row = element("tr");
       row.append(element("th", "", block === "neighbors" ? `neighbor ${count + 1}: ${name}` : name),
-        element("td", "", fixed(this.observed[place], 2, true)), element("td", "faint", meaning));
+        element("td", "", fixed(this.observed[index], 2, true)), element("td", "faint", meaning));
       table.append(row);
     });
     byId("observation").replaceChildren(table);

@@ -10,7 +10,7 @@ const TURN = 4;
 let core = null;
 let shown = [];
 
-/** What the thread answers, by the kind of question. */
+/** Answers of the thread, by the kind of question. */
 export const ANSWERS = {
   async start({ bytes }) {
     core = await Core.load(bytes);
@@ -26,11 +26,11 @@ export const ANSWERS = {
   derive({ names, recorded, states, samples, sign }) {
     const rows = Array.from({ length: samples }, (_, k) => {
       const known = states ? core.recorded(states[k]) : null;
-      const value = (name, place) => recorded[name]?.[k] ?? known?.[place] ?? NaN;
+      const value = (name, index) => recorded[name]?.[k] ?? known?.[index] ?? NaN;
       const [order, angle] = ["psi_o", "phi_o"].map((name) => value(name, names.indexOf(name)));
-      return names.map((name, place) => {
-        const derived = core.derived(place, order, angle, sign);
-        return Number.isNaN(derived) ? value(name, place) : derived;
+      return names.map((name, index) => {
+        const derived = core.derived(index, order, angle, sign);
+        return Number.isNaN(derived) ? value(name, index) : derived;
       });
     });
     return { series: Float64Array.from(rows.flat()) };

@@ -20,7 +20,7 @@ import flockenv
 from docs.scripts.plots import DOCS
 
 SHOWN = DOCS / "_build" / "shown" / "loops"
-"""Where a page finds them: conf.py copies what is in _build/shown."""
+"""Folder in which a page finds them: conf.py copies _build/shown."""
 
 _KEYS = DOCS / "_build" / "loops"
 HEIGHT = 360

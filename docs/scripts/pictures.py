@@ -136,7 +136,7 @@ PLOTS = {
     "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
     "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
 }
-"""How each is drawn, by its file below docs."""
+"""The plots by their files below docs."""
 
 
 if __name__ == "__main__":

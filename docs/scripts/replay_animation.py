@@ -69,7 +69,7 @@ def frames(page: Path) -> Iterator[Image.Image]:
             "document.adoptedStyleSheets = [style];",
             STYLE,
         )
-        # What the frames amount to.
+        # The frames together.
         Select(driver.find_element("id", "speed")).select_by_value(f"{STEP_S * FPS:g}")
         Select(driver.find_element("id", "trails")).select_by_value("5")
         # The page plays by itself; these frames are taken at times of their own.

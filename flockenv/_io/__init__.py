@@ -1,1 +1,1 @@
-"""Files, optional packages and Ctrl-C: what has nothing to do with boats."""
+"""Files, optional packages and Ctrl-C: everything that has nothing to do with boats."""

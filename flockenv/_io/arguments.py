@@ -1,4 +1,4 @@
-"""Arguments that hold several values, also such as can be gone through only once."""
+"""Arguments that hold several values, also iterators."""
 
 import operator
 from collections.abc import Iterable, Iterator, Mapping, MappingView, Set
@@ -39,25 +39,25 @@ def _each(values: Any, name: str) -> Any:
 
 
 def by_name(values: Any, name: str) -> dict[Any, Any]:
-    """Return a copy of a dictionary; a TypeError refuses what is none."""
+    """Return a copy of a dictionary; a TypeError refuses anything else."""
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a dictionary, not {short_repr(values)}")
     return dict(values)
 
 
 def check_function(value: Any, name: str) -> None:
-    """Refuse, before hours of work, what is to be called and cannot be."""
+    """Refuse a value that cannot be called, before hours of work."""
     if not callable(value):
         raise TypeError(f"{name} must be a function, not {short_repr(value)}")
 
 
 def materialized(values: Any) -> Any:
-    """Return what an iterator or a view of a dictionary holds, and everything else as it is."""
+    """Return the items of an iterator or of a dictionary's view, and any other value unchanged."""
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
 
 
 def listed(value: Any) -> Any:
-    """Return what an array holds, as a list or a number, and all else as `materialized` does.
+    """Return an array as a list or a number, and any other value as `materialized` does.
 
     Arrays of other libraries are arrays too. What is masked, a table and what is larger than any
     option stay as they are, for the refusal that names them.
@@ -113,7 +113,7 @@ def real_numbers(values: Any, name: str) -> Any:
 
 
 def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return an array of real numbers, a copy; what is masked, or None, is not there: NaN."""
+    """Return a copy as an array of real numbers, with NaN for masked values and None."""
     _check_no_table(values, name)
     try:
         found: Any = np.ma.asarray(values)
@@ -133,7 +133,7 @@ def series(values: Any, name: str) -> NDArray[np.float64]:
 
 
 def number(value: Any, name: str) -> Any:
-    """Return a real number as it is; a TypeError refuses what is none, bools among them."""
+    """Return a real number unchanged; a TypeError refuses anything else, bools among them."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a number, not {short_repr(value)}")
     return value
@@ -147,7 +147,7 @@ def as_bool(value: Any, name: str) -> bool:
 
 
 def as_bytes(value: Any, name: str) -> bytes:
-    """Return bytes as they are; a TypeError refuses what is none."""
+    """Return bytes unchanged; a TypeError refuses anything else."""
     if not isinstance(value, bytes):
         raise TypeError(f"{name} must be bytes, not {short_repr(value)}")
     return value

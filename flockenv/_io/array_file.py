@@ -18,7 +18,7 @@ _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
 def most_held(size: int) -> int:
-    """Return how many bytes a file of so many may hold together.
+    """Return the most bytes that the entries of a file may hold together, for its size.
 
     Numbers of runs take a tenth at best if they are compressed, and zeros a thousandth.
     """

@@ -24,7 +24,7 @@ except ImportError:  # Windows, where a file that is open can be neither renamed
 
 _NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
 
-# A name is here before there is a file of that name, so that no moment is left out.
+# A name is registered before its file exists, so that no file is missed.
 _temporary: set[Path] = set()
 
 

@@ -12,7 +12,7 @@ _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 def is_special(path: str | os.PathLike[str]) -> bool:
-    """Return whether a path that is there is a device, a pipe or a socket."""
+    """Return whether an existing path is a device, a pipe or a socket."""
     try:
         return _is_special(os.stat(path).st_mode)
     except ValueError as error:
@@ -32,7 +32,7 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
     words = f"{os.fspath(path)} is no file but a device, a pipe or a socket"
     if is_special(path):
         raise ParameterError(words)
-    # A pipe that has come in between is not waited for.
+    # Does not wait for a pipe that was created meanwhile.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)
     try:

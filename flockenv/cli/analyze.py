@@ -97,15 +97,15 @@ def _drawn(recording: Recording) -> Any:
 
 def _draw_frame(recording: Recording, axes: Any) -> None:
     """Draw the boats of the first frame, with their names, to be compared with the video."""
-    parameters, there = recording.parameters, ~np.isnan(recording.pose[..., 0])
-    first = int(there.any(axis=1).argmax())
-    boats = np.flatnonzero(there[first])
+    parameters, present = recording.parameters, ~np.isnan(recording.pose[..., 0])
+    first = int(present.any(axis=1).argmax())
+    boats = np.flatnonzero(present[first])
     x, y, heading = recording.pose[first, boats].T
     length = 2.0 * (1.0 + parameters.boat_shape) * parameters.boat_radius_cm
     ahead = length * np.cos(heading), length * np.sin(heading)
     colors = np.where(boats < parameters.n_leaders, PALETTE["leader"], PALETTE["normal"])
-    places = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
-    axes.quiver(x, y, *ahead, color=colors, width=0.008, **places)
+    style = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
+    axes.quiver(x, y, *ahead, color=colors, width=0.008, **style)
     names = recording.ids if recording.ids is not None else np.arange(parameters.n_boats)
     for boat, at in zip(boats, zip(x, y, strict=True), strict=True):
         axes.annotate(str(names[boat]), at, (5, 5), textcoords="offset points", fontsize=8)

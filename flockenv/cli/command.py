@@ -70,10 +70,10 @@ def _refuse_repeated(order: Sequence[Any], given: Set[str]) -> None:
 
 
 def _answer(words: Sequence[str], unknown: str, known: list[str]) -> str:
-    """Return what an unknown option of a line may have meant."""
-    place = [word.partition("=")[0] for word in words].index(unknown)
-    given, equals, value = words[place].partition("=")
-    rest = list(words[place + 1 :])
+    """Return a suggestion for an unknown option of a line."""
+    index = [word.partition("=")[0] for word in words].index(unknown)
+    given, equals, value = words[index].partition("=")
+    rest = list(words[index + 1 :])
     if not equals and rest and not rest[0].startswith("--"):
         value = rest.pop(0)
     refused = f"flockenv {words[0]} has no option {given}"
@@ -91,5 +91,5 @@ def _answer(words: Sequence[str], unknown: str, known: list[str]) -> str:
     else:
         option = "--env" if found not in _FIELDS and "--env" in known else "--set"
         typed = [option, f"{found}={value or 'VALUE'}"]
-    line = shlex.join(["flockenv", *words[:place], *typed, *rest])
+    line = shlex.join(["flockenv", *words[:index], *typed, *rest])
     return f"{refused}: type `{line}`"

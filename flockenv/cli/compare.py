@@ -29,7 +29,7 @@ from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 from flockenv.policies.registry import FILES, policy
 
 REFERENCES = (LEARNED, TUNED_LAW, PAPERS_LAW)
-"""What policies are compared with, unless `--only` is given."""
+"""Policies that others are compared with, unless `--only` is given."""
 
 Given = str | Mapping[str, str]
 """A policy as it is typed, or one for each leader."""
@@ -153,7 +153,7 @@ def compare(options: CompareOptions) -> None:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is compared, checked before anything runs."""
+    """A comparison, checked before anything runs."""
 
     cases: list[Case]
     #: For each case its policies by name, the user's first.
@@ -165,7 +165,7 @@ class Plan:
 
     @classmethod
     def parse(cls, options: CompareOptions) -> Self:
-        """Return what options ask for; a ParameterError names one that is not accepted."""
+        """Return the plan of checked options; a ParameterError names one that is not accepted."""
         for name in ("entry", "trial_flocks"):
             if getattr(options, name) is not None:
                 words = f"is not accepted without --suite {LEVELS_SUITE}"
@@ -188,7 +188,7 @@ class Plan:
 
 
 def _seconds(plan: Plan) -> float:
-    """Return what cases take here, extrapolated from a minute of a few flocks for each policy."""
+    """Return the seconds that cases take here, from a minute of a few flocks for each policy."""
     total = 0.0
     for name in plan.names:
         own = [case for case in plan.cases if name in plan.policies[case.name]]
@@ -217,8 +217,8 @@ def _compared(options: CompareOptions, plan: Plan) -> ComparisonReport:
     def written(**more: object) -> ComparisonReport:
         runs = require("pandas", "plot").concat(finished, ignore_index=True)
         runs.insert(0, "case", runs.pop("case"))
-        there = [case for case in cases if case.name in set(runs["case"])]
-        result = ComparisonReport(there, plan.names, runs, conditions | more)
+        present = [case for case in cases if case.name in set(runs["case"])]
+        result = ComparisonReport(present, plan.names, runs, conditions | more)
         result.write(options.out)
         return result
 
@@ -378,10 +378,10 @@ def _own_policies(options: CompareOptions) -> dict[str, Given]:
         many = f"{len(names)} --name for {len(given)} --policy"
         raise ParameterError(f"{many}: name all of yours, in order, or none")
     own: dict[str, Given] = {}
-    for place, text in enumerate(given):
+    for index, text in enumerate(given):
         is_each = text.startswith("leader_")
         is_file = text.endswith(FILES) and not is_each
-        name = printable(names[place] if names else Path(text).stem if is_file else text)
+        name = printable(names[index] if names else Path(text).stem if is_file else text)
         if name in own or (name in REFERENCES and text != name):
             if names:
                 raise ParameterError(f"--name {name} is not accepted: another policy has this name")

@@ -1,4 +1,4 @@
-"""Where commands print: results to standard output, progress and errors to standard error."""
+"""The consoles of commands: results on standard output, progress and errors on standard error."""
 
 from rich.console import Console
 

@@ -13,11 +13,11 @@ from flockenv.errors import ParameterError
 Options = TypeVar("Options")
 
 TRUST = "Read .zip files of SB3 models and import module:attribute: this executes their code."
-"""What a command's option ``trust`` does."""
+"""Help of the option ``trust``."""
 
 
 Endings = Callable[[], Iterable[str]]
-"""A function that returns how the name of a file may end."""
+"""A function that returns the accepted endings of a file's name."""
 
 
 def option(
@@ -68,7 +68,7 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
 
 
 def option_of(name: str) -> str:
-    """Return how a field is spelled as an option."""
+    """Return a field's spelling as an option."""
     return f"--{name.replace('_', '-')}"
 
 
@@ -95,7 +95,7 @@ class Overwriting:
 
 @dataclass(frozen=True, kw_only=True)
 class Printing:
-    """How much a command prints."""
+    """Options for the printing of a command."""
 
     as_json: bool = option(False, "Print the results as JSON.", "--json")
     quiet: bool = option(False, "Print no progress and no remarks.", "--quiet", "-q")

@@ -96,7 +96,7 @@ def open_page(page: Path) -> None:
 
 
 def summary_of(recording: Recording) -> dict[str, float | None]:
-    """Return what a sweep's table says of a run; None for what is not defined."""
+    """Return a run's row of a sweep's table; None for undefined values."""
     return {name: None if np.isnan(n) else n for name, n in summary(recording).items()}
 
 

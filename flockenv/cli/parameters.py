@@ -14,7 +14,7 @@ from flockenv.parameters import FlockParameters
 
 @dataclass(frozen=True, kw_only=True)
 class Flocks:
-    """Which parameters a flock has."""
+    """Options for the parameters of a flock."""
 
     #: The fields that have options of their own.
     named: ClassVar[tuple[str, ...]] = ("n_boats",)

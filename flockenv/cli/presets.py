@@ -15,7 +15,7 @@ ABOUT = {
     "paper": "Table 3's boats, with the paper's own scheme and noise taken literally",
     "experiment": "the boats of Table 1, with constants fitted to Section 4",
 }
-"""What each preset is, in a line."""
+"""A line about each preset."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -67,7 +67,7 @@ class ReplayOptions(Printing):
         """Return the recordings' files by the names that they have in pages and pictures."""
         names = self.name or [path.stem for path in self.paths]
         if len(set(names)) < len(names):
-            names = [f"{name} ({place})" for place, name in enumerate(names, 1)]
+            names = [f"{name} ({index})" for index, name in enumerate(names, 1)]
         return {printable(name): path for name, path in zip(names, self.paths, strict=True)}
 
 

@@ -92,7 +92,7 @@ def run(options: RunOptions) -> None:
 
 
 def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
-    """Return what changes on the way, from texts ``TIME:FIELD=VALUE``."""
+    """Return the schedule of texts ``TIME:FIELD=VALUE``."""
     changes = []
     for text in texts:
         time_s, colon, change = text.partition(":")

@@ -101,7 +101,7 @@ def sweep(options: SweepOptions) -> None:
 def _show_shard(
     options: SweepOptions, shard: Shard, runs: int, failures: Mapping[RunSpec, Exception]
 ) -> int:
-    """Print what a shard has come to, and return the number of failed runs."""
+    """Print the result of a shard, and return the number of failed runs."""
     for run, error in failures.items():
         warn(f"the run of seed {run.seed} failed: {error}")
     failed = len(failures)
@@ -156,7 +156,7 @@ def _check_same(path: Path, work: "SweepSpec") -> None:
 
 
 def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) -> None:
-    """Print how many runs there are, how many of them are stored, and what the others take."""
+    """Print the numbers of runs and of stored runs, and the time of the others."""
     work = measure_workload(runs, store)
     if options.as_json:
         print_json(asdict(work))

@@ -77,7 +77,7 @@ def _training(given: dict[str, Any]) -> BranchTraining:
 
 
 def _lines(is_quiet: bool) -> Callable[[Progress], None]:
-    """Return what says how far the training is, every few seconds unless it is quiet."""
+    """Return a function that prints progress every few seconds, unless it is to be quiet."""
     last = 0.0
 
     def report(now: Progress) -> None:

@@ -61,13 +61,13 @@ class Case:
                 self.parameters.replace(target=target),
                 self.leaders,
                 policies if any(self.leaders) else {},
-                self.seeds[place :: len(targets)],
+                self.seeds[index :: len(targets)],
                 self.episode_s,
                 progress,
                 self.environment,
                 lambda rows: finished(rows.assign(case=self.name)),
             )
-            for place, target in enumerate(targets)
+            for index, target in enumerate(targets)
         ]
         runs: pd.DataFrame = require("pandas", "plot").concat(parts, ignore_index=True)
         runs.insert(0, "case", self.name)

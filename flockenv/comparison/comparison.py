@@ -33,7 +33,7 @@ _SAID_BY = {
     **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
     **dict.fromkeys(("num_envs", "reward", "reward_horizon_s"), "the comparison"),
 }
-"""What says options of environments that a comparison does not take."""
+"""Arguments of a comparison, by the options of environments that it does not take."""
 
 
 def nothing_finished(rows: "pd.DataFrame") -> None:
@@ -51,7 +51,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What is compared, checked by `parse` before anything runs."""
+    """A comparison, checked by `parse` before anything runs."""
 
     entries: Sequence[Entry]
 

@@ -1,4 +1,4 @@
-"""Seeded episodes of flocks that policies lead, and what is measured in them (figure 12)."""
+"""Seeded episodes of flocks that policies lead, and their measurements (figure 12)."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
 
 QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
-"""What is compared: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
+"""Compared columns: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
 which the signed order exceeds 0.5; all over the frames in the analysis window after the first
 tenth."""
 
@@ -69,7 +69,7 @@ class Episodes:
         if not isinstance(parameters, FlockParameters):
             raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
         k, options = parameters.n_leaders, by_name(options, "options")
-        leaders = Leaders.of(policy, parameters)
+        leaders = Leaders.from_policies(policy, parameters)
         given = {
             "target": parameters.target,
             **options,
@@ -97,7 +97,7 @@ class Episodes:
             progress(count / batch.decisions_hz)
             end_if_interrupted()
         summaries = [batch.core.finished(flock) or {} for flock in range(count)]
-        # A summary does not have what is unknown.
+        # A summary lacks unknown values.
         return {
             name: np.array([each.get(name, np.nan) for each in summaries])
             for name in (*QUANTITIES, *ORDERING_TIMES, *STEP_STATISTICS)
@@ -164,7 +164,7 @@ def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
 
 
 def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:
-    """Return seeds, one for each episode, or refuse what is no sequence of whole numbers."""
+    """Return seeds, one for each episode; anything but a sequence of whole numbers is refused."""
     found = items(seeds, "seeds")
     return found if isinstance(found, range) else tuple(as_int(seed, "seed") for seed in found)
 

@@ -50,8 +50,8 @@ def leader_curve(
         panels = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
         for axes, case in zip(panels, cases, strict=True):
             own = means[means["case"] == case]
-            for place, (policy, color) in enumerate(policy_colors(policies).items()):
-                shift = 0.1 * (place - (len(policies) - 1) / 2)
+            for index, (policy, color) in enumerate(policy_colors(policies).items()):
+                shift = 0.1 * (index - (len(policies) - 1) / 2)
                 shown = [policy, NO_LEADERS]
                 if runs is not None:
                     dots = runs[(runs["case"] == case) & runs["policy"].isin(shown)]

@@ -57,8 +57,8 @@ class Level:
     observation: Mapping[str, object]
 
     @classmethod
-    def of(cls, name: str, env_id: str) -> "Level":
-        """Return the level that an environment is."""
+    def from_id(cls, name: str, env_id: str) -> "Level":
+        """Return the level of an environment."""
         options = ENVIRONMENTS[env_id].options
         parsed = EnvOptions.parse(options)
         environment = {name: parsed.settings[name] for name in ("target", "control_hz")}
@@ -96,7 +96,9 @@ class Level:
         return none, law
 
 
-LEVELS: Mapping[str, Level] = {name: Level.of(name, env_id) for name, env_id in LEVEL_IDS.items()}
+LEVELS: Mapping[str, Level] = {
+    name: Level.from_id(name, env_id) for name, env_id in LEVEL_IDS.items()
+}
 """The levels by name."""
 
 

@@ -42,7 +42,7 @@ _SEEDS = release_seeds("v0.1.0", EPISODES)
 
 
 def _task(name: str, env_id: str) -> Case:
-    """Return the task that an environment is."""
+    """Return the task of an environment."""
     options = dict(ENVIRONMENTS[env_id].options)
     parameters = FlockParameters.from_dict(options.pop("params"))
     targets: tuple[object, ...] = ()

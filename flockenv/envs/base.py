@@ -1,4 +1,4 @@
-"""What environments have in common: all of them, those of many flocks, and those of one."""
+"""Base classes of the environments: of all, of those of many flocks, and of those of one."""
 
 import copy
 from typing import Any, ClassVar, Self
@@ -42,7 +42,7 @@ class Resumable(OwnFlocks):
         self._batch.core.restore(as_bytes(state, "state"))
 
     def set_next_episodes(self, **options: Any) -> None:
-        """Set ``bw_s`` or ``target`` for all episodes that are to come, until they are set again.
+        """Set ``bw_s`` or ``target`` of all future episodes, until they are set again.
 
         Values are as for `reset`: a range (low, high) of bw_s is drawn from. A ParameterError
         refuses other names, and values that are not accepted. In a vector environment they hold for
@@ -86,7 +86,7 @@ class ManyFlocks(Resumable):
 
 
 class SpecOfEpisodes:
-    """What an environment of Gymnasium's is registered as."""
+    """The spec under which Gymnasium knows an environment."""
 
     _batch: LeaderBatch
     _spec: EnvSpec | None = None

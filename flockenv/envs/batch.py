@@ -1,4 +1,4 @@
-"""What the environment classes share: one batch of flocks in the core, and its infos."""
+"""The batch of flocks in the core that all environment classes share, and its infos."""
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
@@ -64,7 +64,7 @@ class LeaderBatch:
         self.core.reset(asked)
 
     def set_upcoming(self, flocks: Sequence[int], options: Mapping[str, Any]) -> None:
-        """Let a target or a bw_s hold for all episodes of flocks that are to come."""
+        """Set the target or the bw_s of all future episodes of flocks."""
         refuse_unknown(options, UPCOMING_OPTIONS, "option of the next episodes")
         values = {name: listed(value) for name, value in options.items()}
         for name, value in values.items():

@@ -1,11 +1,11 @@
-"""The ids of the environments: what each is for, and its options."""
+"""The ids of the environments: purpose and options of each."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 
 class Environment(NamedTuple):
-    """What an id stands for; its page is made of this."""
+    """The declaration of an id, of which its page is made."""
 
     #: A few sentences in Markdown.
     purpose: str

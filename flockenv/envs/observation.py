@@ -1,4 +1,4 @@
-"""What leaders observe: tables, and a flock observed without an environment."""
+"""Observations of leaders: their tables, and those of a flock without an environment."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -53,7 +53,7 @@ def observe(
     mirror_to_target: bool = False,
     rudder: ArrayLike | None = None,
 ) -> NDArray[np.float32]:
-    """Return what the leaders of a flock observe now.
+    """Return the present observations of a flock's leaders.
 
     Parameters
     ----------

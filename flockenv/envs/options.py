@@ -114,7 +114,7 @@ class EnvOptions:
             if name in settings:
                 settings[name] = _plain(settings[name])
         target = settings.get("target")
-        # What is no direction is refused with the settings, where it could be expected.
+        # Anything but a direction is refused with the settings.
         each = target if isinstance(target, list | tuple) else (target,)
         if each and all(one in ("cw", "ccw") for one in each):
             given["target"] = target
@@ -139,7 +139,7 @@ def _taken_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
 
 
 def _instead(name: str, counts: str | None) -> str:
-    """Return what an unknown option may have meant."""
+    """Return a suggestion for an unknown option."""
     if name in ("max_cycles", "max_steps", "max_episode_steps", "horizon", "time_limit"):
         return "an episode lasts 'episode_s' seconds, with 'control_hz' steps in each"
     if name not in ("num_envs", "num_flocks", "n_envs", "num_workers"):

@@ -1,4 +1,4 @@
-"""What the environments' `render` goes through."""
+"""The render modes behind the environments' `render`."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class RenderMode:
 
     @property
     def is_live(self) -> bool:
-        """Whether every step is to be shown."""
+        """Whether every step is shown."""
         return self.mode == "human" and not self._closed
 
     def frame(self, flock: Flock) -> NDArray[np.uint8]:
@@ -76,7 +76,7 @@ class RenderMode:
         """Do what `render` of an environment with one flock does."""
         if self.mode == "rgb_array":
             return self.frame(flock)
-        # What a step has shown already takes no time again.
+        # A step that was shown already takes no time again.
         if self._window is None or flock.time_s != self._shown_s:
             self.show(flock)
         return None

@@ -1,4 +1,4 @@
-"""Options of a reset: which there are, what is refused, and what each flock gets of them."""
+"""Options of a reset: their names, their refusals, and the values for each flock."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -10,10 +10,10 @@ from flockenv._io.arguments import as_bytes, materialized
 from flockenv.envs.options import ARGUMENTS, NAMES
 from flockenv.errors import ParameterError
 
-#: What ``reset(options=...)`` understands, besides ``reset_mask`` in the vector environment.
+#: Options of ``reset(options=...)``, besides ``reset_mask`` in the vector environment.
 RESET_OPTIONS = ("target", "bw_s", "state", "snapshot", "noise_seed")
 
-#: What may hold for all episodes that are to come.
+#: Options that can be set for all future episodes.
 UPCOMING_OPTIONS = ("bw_s", "target")
 
 _KEYS_OF_STATE = ("pose", "velocity", "time_s", "allow_overlap")
@@ -43,7 +43,7 @@ class Spellings:
             self._names["_".join(_parts(name))] = name
 
     def meant(self, name: object) -> str | None:
-        """Return the name that another one is a spelling of, None if it may be anything else."""
+        """Return the name of which another one is a spelling; None if it may be anything else."""
         parts = _parts(name)
         known = self._names.get("_".join(parts)) or self._names.get("".join(parts))
         return known or self._bare.get("".join(_parts_without_unit(name)))
@@ -64,7 +64,7 @@ def reset_requests(
     is_each: bool = True,
     takes: tuple[str, ...] = RESET_OPTIONS,
 ) -> list[dict[str, Any]]:
-    """Return what each flock's reset is asked for.
+    """Return the request for each flock's reset.
 
     Other keys are for somebody's wrapper: Gymnasium hands one dictionary through all of them. What
     would do nothing but looks as if it did is a ParameterError: other spellings of the options,

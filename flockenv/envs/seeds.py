@@ -56,7 +56,7 @@ def drawn_seed(random: np.random.Generator) -> int:
 
 
 def seed_of(seed: Any) -> int:
-    """Return the seed of one flock as an int; errors name what is none."""
+    """Return the seed of one flock as an int; errors name other values."""
     return seeds_from(seed, 1)[0]
 
 

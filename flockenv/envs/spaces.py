@@ -1,4 +1,4 @@
-"""What Gymnasium knows of an environment: its spaces."""
+"""The spaces of the environments."""
 
 import math
 from collections.abc import Iterable, Mapping

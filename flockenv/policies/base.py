@@ -1,4 +1,4 @@
-"""What a policy is, and what those share that steer each leader by its own observation."""
+"""The type of policies, and the base of those that steer each leader by its own observation."""
 
 import copy
 import math
@@ -68,7 +68,7 @@ _LONGEST_NAME = 200
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Policy:
-    """How leaders steer: one checked type, whatever it was made of by `flockenv.policies.policy`.
+    """A policy: one checked type, whatever `flockenv.policies.policy` made it of.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Policy:
     def from_source(
         cls, source: LeaderPolicy, *, leaders: int = 1, law: _core.Law | None = None
     ) -> Self:
-        """Return the policy that an object with ``predict`` is, by what its attributes say.
+        """Return the policy of an object with ``predict``, by its attributes.
 
         A TypeError or a ParameterError names an attribute that is none of an option's values.
         """
@@ -130,7 +130,7 @@ class Policy:
 
     @property
     def decisions_hz(self) -> float:
-        """How often per second it decides: with each control step, if it has no period."""
+        """Decisions per second: one per control step, if it has no period."""
         if self.decision_period_s is not None:
             return 1.0 / self.decision_period_s
         return CONTROL_HZ if self.control_hz is None else self.control_hz
@@ -224,7 +224,7 @@ def observed(observation: ArrayLike) -> NDArray[np.float32]:
 
 
 def leaders_observed(observation: NDArray[Any], size: int) -> int:
-    """Return how many leaders' observations, each of a size, the last axis holds."""
+    """Return the number of leaders whose observations, each of a size, the last axis holds."""
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(

@@ -61,7 +61,7 @@ class LawPolicy(RowPolicy):
         return dict(self.law.gains)
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Set an attribute; an AttributeError refuses what the core's law was made of."""
+        """Set an attribute; an AttributeError refuses those that the core's law was made of."""
         if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)

@@ -1,4 +1,4 @@
-"""`Leaders`: who steers the leaders of a flock, one policy for all of them or several."""
+"""`Leaders`: the policies of a flock's leaders, one for all of them or several."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -43,7 +43,9 @@ class Leaders:
     is_each: bool = False
 
     @classmethod
-    def of(cls, given: Steering | Mapping[str, Steering], flock: FlockParameters) -> Self:
+    def from_policies(
+        cls, given: Steering | Mapping[str, Steering], flock: FlockParameters
+    ) -> Self:
         """Return who steers a flock's leaders, given as a policy or as one for each leader.
 
         Raises what `policy` raises; a ParameterError refuses policies that have nobody to steer or

@@ -151,7 +151,7 @@ class ModelPolicy:
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
     ) -> tuple[object, object]:
-        """Return what the model does, each item being what it observes at once."""
+        """Return the model's actions for observations, one item per leader or per flock."""
         normalizes = normalizing(self.model)
         if normalizes is not None:
             items = normalizes.normalize_obs(items)
@@ -211,7 +211,7 @@ def _mode_of(torch: Any) -> Any:
 
 
 def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - torch's names
-    """Return what torch's linear layer does, by the core."""
+    """Return the output of torch's linear layer, computed by the core."""
     rows = input.reshape(-1, input.shape[-1])
     added = weight.new_zeros(len(weight)) if bias is None else bias
     arrays = (each.detach().float().cpu().numpy() for each in (rows, weight.T, added))

@@ -6,9 +6,9 @@ from typing import Any
 from flockenv import _core
 
 LAWS: Mapping[str, Mapping[str, Any]] = {each["name"]: each for each in _core.LAWS}
-"""What is declared of each law, by name: ``doc``, ``color`` (or None) and ``is_of_pool``."""
+"""The declaration of each law, by name: ``doc``, ``color`` (or None) and ``is_of_pool``."""
 
-# By name and not by place: a law may be declared anywhere among them.
+# By name and not by index: a law may be declared anywhere among them.
 _CONSTANTS = {name.upper().replace("'", "").replace(" ", "_"): name for name in LAWS}
 
 EVERY_SUBSTEP = _CONSTANTS.pop("PAPERS_LAW_AT_EVERY_SUBSTEP")

@@ -51,7 +51,7 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
     "gelu": _gelu,
     "identity": lambda values: values,
 }
-"""What may follow a layer; "identity" is nothing."""
+"""Activations after a layer; "identity" is none."""
 
 Norm = tuple[ArrayLike, ArrayLike, float]
 """A layer's normalization, as torch's ``LayerNorm``: scale, shift, and what is added to the
@@ -203,7 +203,7 @@ class NetworkPolicy(RowPolicy):
 
     @property
     def activations(self) -> list[str]:
-        """What follows each layer."""
+        """The activation after each layer."""
         return [layer.activation for layer in self._layers]
 
     @property
@@ -228,10 +228,10 @@ class NetworkPolicy(RowPolicy):
         header = {name: getattr(self, name) for name in _OPTIONS}
         header |= {"activations": self.activations, "norms": norms}
         arrays: dict[str, NDArray[Any]] = {}
-        for place, layer in enumerate(self._layers):
-            arrays |= {f"weight_{place}": layer.weight, f"bias_{place}": layer.bias}
+        for index, layer in enumerate(self._layers):
+            arrays |= {f"weight_{index}": layer.weight, f"bias_{index}": layer.bias}
             if layer.norm is not None:
-                arrays |= {f"scale_{place}": layer.norm[0], f"shift_{place}": layer.norm[1]}
+                arrays |= {f"scale_{index}": layer.norm[0], f"shift_{index}": layer.norm[1]}
         return header, arrays
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -273,22 +273,22 @@ class NetworkPolicy(RowPolicy):
                     f"{OBSERVATION_VERSION}: train it again"
                 )
             activations, epsilons = header["activations"], header["norms"]
-            places = range(len(items(activations, "activations")))
-            has_norm = [place for place in places if epsilons[place] is not None]
-            names = [f"{kind}_{place}" for place in places for kind in ("weight", "bias")]
-            names += [f"{kind}_{place}" for place in has_norm for kind in ("scale", "shift")]
+            indices = range(len(items(activations, "activations")))
+            has_norm = [index for index in indices if epsilons[index] is not None]
+            names = [f"{kind}_{index}" for index in indices for kind in ("weight", "bias")]
+            names += [f"{kind}_{index}" for index in has_norm for kind in ("scale", "shift")]
             refuse_unknown(arrays, names, "array of a network")
             norms = [
-                (arrays[f"scale_{place}"], arrays[f"shift_{place}"], epsilons[place])
-                if place in has_norm
+                (arrays[f"scale_{index}"], arrays[f"shift_{index}"], epsilons[index])
+                if index in has_norm
                 else None
-                for place in places
+                for index in indices
             ]
             # An option that is younger than the file has its default.
             options = {name: header[name] for name in _OPTIONS if name in header}
             return cls(
-                [arrays[f"weight_{place}"] for place in places],
-                [arrays[f"bias_{place}"] for place in places],
+                [arrays[f"weight_{index}"] for index in indices],
+                [arrays[f"bias_{index}"] for index in indices],
                 activations,
                 norms=norms,
                 provenance=header["made"],
@@ -334,18 +334,18 @@ def _checked_layers(
             f"{count} layers"
         )
     layers, inputs = [], size
-    for place, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix, vector = (_singles(one, f"layer {place}") for one in (weight, bias))
-        wanted = 1 if place == count - 1 else vector.size
+    for index, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
+        matrix, vector = (_singles(one, f"layer {index}") for one in (weight, bias))
+        wanted = 1 if index == count - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             raise ParameterError(
-                f"layer {place} has weights {matrix.shape} and biases {vector.shape}, but needs "
+                f"layer {index} has weights {matrix.shape} and biases {vector.shape}, but needs "
                 f"({inputs}, {wanted}) and ({wanted},)"
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
-            raise ParameterError(f"layer {place} holds numbers that are not finite")
-        norm = _checked_norm(each[place], wanted, f"the norm of layer {place}")
-        layers.append(_Layer(matrix, vector, norm, named[place]))
+            raise ParameterError(f"layer {index} holds numbers that are not finite")
+        norm = _checked_norm(each[index], wanted, f"the norm of layer {index}")
+        layers.append(_Layer(matrix, vector, norm, named[index]))
         inputs = wanted
     return layers
 

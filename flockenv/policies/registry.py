@@ -1,4 +1,4 @@
-"""Policies by name, by file, and of everything else that a policy may be given as."""
+"""Policies by name, by file, and of every other form in which one may be given."""
 
 import importlib
 import os
@@ -24,10 +24,10 @@ from flockenv.policies.names import (
 from flockenv.policies.network import NetworkPolicy
 
 Steering = Policy | LeaderPolicy | str | os.PathLike[str] | Callable[[], object] | None
-"""What a policy may be given as, wherever one is taken; see `policy`."""
+"""Forms in which a policy may be given; see `policy`."""
 
 FILES = (".json", ".npz", ".zip")
-"""How the files of policies end: laws, networks, and models of stable-baselines3."""
+"""Endings of policies' files: laws, networks, and models of stable-baselines3."""
 
 POOL_POLICIES: Mapping[str, Callable[[Pool | None], LeaderPolicy]] = {
     TUNED_LAW: lambda pool: DampedLaw.tuned(_named(pool)),
@@ -61,7 +61,7 @@ def _named(pool: Pool | None) -> str:
 
 
 def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) -> Policy:
-    """Return the policy that something is: the one way in, wherever a policy is taken.
+    """Return the policy for a name, a file or an object: the one door for all policies.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) ->
 
 
 def _source(given: Steering, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
-    """Return the object with ``predict`` that something is or names."""
+    """Return the object with ``predict`` that a value is or names."""
     made: object = given
     if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(FILES)):
         return load(given, trust=trust)
@@ -141,7 +141,7 @@ def _no_name(name: str) -> ParameterError:
 
 
 def _attribute(name: str, trust: bool) -> object:
-    """Return what ``"module:attribute"`` names, also of a module in the working directory."""
+    """Return the object ``"module:attribute"``, also of a module in the working directory."""
     if not _ATTRIBUTE.fullmatch(name):
         raise _no_name(name)
     if not trust:

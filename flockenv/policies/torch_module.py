@@ -155,7 +155,7 @@ def _tensors(found: Any) -> Iterator[Any]:
 
 
 def _computed(torch: Any, layer: ModuleLayer, values: Any) -> Any:
-    """Return what torch computes of a layer."""
+    """Return the output that torch computes of a layer."""
     functions = torch.nn.functional
     values = functions.linear(values, *map(torch.tensor, (layer.weight.T.copy(), layer.bias)))
     if layer.norm is not None:

@@ -1,4 +1,4 @@
-"""`WrappedPolicy`: a model together with the wrapper that made what it observes."""
+"""`WrappedPolicy`: a model together with the wrapper that made its observations."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -93,7 +93,7 @@ class WrappedPolicy(ModelPolicy):
         self._check_normalizing(made)
 
     def _check_normalizing(self, made: Any) -> None:
-        """Refuse wrappers that do not make what the model saw normalized."""
+        """Refuse wrappers that do not normalize as the model's training did."""
         statistics = [each.obs_rms for each in _layers(made) if hasattr(each, "obs_rms")]
         if any(each.count < 1.0 for each in statistics):
             raise ParameterError(
@@ -167,26 +167,26 @@ def _layers(wrapped: Any) -> list[Any]:
 
 
 class _Run:
-    """What wrappers remember of a run, and what the model does."""
+    """A run: the wrappers' memory, and the model's decisions."""
 
     def __init__(self, policy: WrappedPolicy, items: NDArray[np.float32]) -> None:
         self.is_each = policy._is_each
         count = len(items) if self.is_each else 1
-        self.wrapped = [policy._made(items[place:]) for place in range(count)]
+        self.wrapped = [policy._made(items[index:]) for index in range(count)]
         self.state: object = None
         self.actions: Any = None
 
     def observed(self, items: NDArray[np.float32]) -> object:
-        """Return what the wrappers make of observations."""
-        for place, each in enumerate(self.wrapped):
-            each.unwrapped.given = items[place] if self.is_each else items
+        """Return observations as the wrappers change them."""
+        for index, each in enumerate(self.wrapped):
+            each.unwrapped.given = items[index] if self.is_each else items
         starts = self.actions is None
         if not self.is_each:
             (venv,) = self.wrapped
             return venv.reset() if starts else venv.step(self.actions)[0]
         seen = [
-            each.reset()[0] if starts else each.step(self.actions[place])[0]
-            for place, each in enumerate(self.wrapped)
+            each.reset()[0] if starts else each.step(self.actions[index])[0]
+            for index, each in enumerate(self.wrapped)
         ]
         return np.stack([np.asarray(each) for each in seen])
 

@@ -28,14 +28,14 @@ MOTION = {
 """The columns of poses and velocities in tables, with their units."""
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
 REACH = (-1e9, 1e9)
-"""What a flock's poses and velocities are within."""
+"""Bounds of a flock's poses and velocities."""
 ORIGIN: dict[str, np.dtype[Any]] = {
     "noise_seed": np.dtype(np.uint64),
     "control_hz": np.dtype(np.float64),
     "start_sha256": np.dtype(np.str_),
     "schedule_sha256": np.dtype(np.str_),
 }
-"""What sets a run apart from another of its parameters, seed and policy; each may be None."""
+"""Fields that set a run apart from another of its parameters, seed and policy; each may be None."""
 CONTACTS = tuple(each.name for each in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
@@ -100,7 +100,7 @@ def check_order(
 
 
 def check_seed(seed: Any, name: str = "seed") -> None:
-    """Refuse what is no seed of a flock."""
+    """Refuse anything but a seed of a flock."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
         raise ParameterError(
             f"{name} = {short_repr(seed)} is not accepted: an int from 0 to 2^64 - 1"
@@ -125,7 +125,7 @@ def check_origin(origin: Mapping[str, Any]) -> None:
 
 
 def check_share(after: Any) -> None:
-    """Refuse what is no share of a run."""
+    """Refuse anything but a share of a run."""
     if not 0.0 <= number(after, "after") <= 1.0:
         raise ParameterError(f"after = {short_repr(after)} is not accepted: a share, 0 to 1")
 
@@ -152,7 +152,7 @@ def check_names(quantities: Any, of: str) -> None:
 
 
 def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
-    """Return functions of a user's own by name, before there is anything for them to look at."""
+    """Return a user's functions by name, checked before the run that they are for."""
     check_names(functions, "functions")
     for name, function in functions.items():
         if not callable(function):
@@ -164,7 +164,7 @@ def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
 
 
 def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDArray[np.float64]:
-    """Return what a user's function says of a recording, as a number for each sample."""
+    """Return the values of a user's function of a recording, a number for each sample."""
     try:
         values = function(recording)
     except Exception as error:  # It is the user's.
@@ -174,7 +174,7 @@ def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDA
     found = real_numbers(values, f"quantity {name!r}")
     with np.errstate(over="ignore"):
         doubles = np.ma.asarray(found.astype(np.float64))
-    # What is masked is not there.
+    # Masked values are missing.
     series = np.ma.filled(doubles, np.nan).copy()
     if (np.isinf(series) & np.isfinite(np.ma.filled(found, 0))).any():
         raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")

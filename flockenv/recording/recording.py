@@ -197,9 +197,9 @@ class Recording(HintsAtNames):
         `state_at` raises.
         """
         state = self.state_at(time_s)
-        there = self._there(self._sample_at(time_s))
-        leaders = int(there[: self.parameters.n_leaders].sum())
-        parameters = self.parameters.replace(n_boats=int(there.sum()), n_leaders=leaders)
+        present = self._there(self._sample_at(time_s))
+        leaders = int(present[: self.parameters.n_leaders].sum())
+        parameters = self.parameters.replace(n_boats=int(present.sum()), n_leaders=leaders)
         return Flock.from_state(parameters, self.seed, state)
 
     def state_at(self, time_s: float) -> dict[str, Any]:
@@ -218,12 +218,12 @@ class Recording(HintsAtNames):
             For a time outside the recording, and a recording without samples or poses.
         """
         sample = self._sample_at(time_s)
-        there = self._there(sample)
-        if not there.any():
+        present = self._there(sample)
+        if not present.any():
             raise ParameterError(f"no boat is there at {short_repr(time_s)} s")
         return {
-            "pose": self.pose[sample, there].astype(np.float64),
-            "velocity": np.nan_to_num(self.velocity[sample, there].astype(np.float64)),
+            "pose": self.pose[sample, present].astype(np.float64),
+            "velocity": np.nan_to_num(self.velocity[sample, present].astype(np.float64)),
             "time_s": float(self.time_s[sample]),
             # Single precision leaves overlaps of a rounding, and so do cameras.
             "allow_overlap": True,
@@ -240,8 +240,8 @@ class Recording(HintsAtNames):
         return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
 
     def _there(self, sample: int) -> NDArray[np.bool_]:
-        there: NDArray[np.bool_] = np.isfinite(self.pose[sample, :, 0])
-        return there
+        present: NDArray[np.bool_] = np.isfinite(self.pose[sample, :, 0])
+        return present
 
     def to_dataframe(self, *, boats: bool = False) -> "pandas.DataFrame":
         """Return the recording as a table of pandas (extra ``plot``).

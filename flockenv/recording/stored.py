@@ -25,7 +25,7 @@ OPTIONAL = ("rudder", "ids")
 """Arrays that a recording may lack."""
 
 FORMAT = "flockenv recording 1"
-"""What the file of a recording says that it is."""
+"""The format named in a recording's file."""
 
 _OWN = "quantity_"
 _STEPS = "statistics_"

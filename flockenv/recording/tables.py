@@ -28,8 +28,8 @@ def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
     if recording.ids is not None:
         columns["id"] = np.tile(recording.ids, len(recording))
     columns |= {name: values.ravel() for name, values in _motion(recording).items()}
-    there = ~np.isnan(columns["x_cm"])
-    return dataframe({name: values[there] for name, values in columns.items()})
+    present = ~np.isnan(columns["x_cm"])
+    return dataframe({name: values[present] for name, values in columns.items()})
 
 
 def dataset_of(recording: Any) -> "xarray.Dataset":

@@ -74,5 +74,5 @@ def _frame_of_recording(
 
 @lru_cache(maxsize=4)
 def renderer(width: int, height: int) -> FrameRenderer:
-    """Return what draws frames of a size, with its background and letters."""
+    """Return a renderer of frames of a size, with its background and letters."""
     return FrameRenderer(width, height)

@@ -16,10 +16,10 @@ DEMO_PARAMETERS: Final = FlockParameters(n_boats=27, n_leaders=4, pool="wide", b
 """Four leaders among 27 boats, near the critical noise."""
 
 DEMO_MINUTES: Final = 8.0
-"""How long recorded runs are."""
+"""Length of recorded runs."""
 
 DEMO_POLICIES: Final = {PAPERS_LAW: EVERY_SUBSTEP, LEARNED: LEARNED}
-"""How the leaders steer, by the name that a run has on the page."""
+"""The leaders' policies, by the run's name on the page."""
 
 
 def demo_runs(

@@ -20,11 +20,11 @@ export async function unpack(text) {
   const end = 4 + new DataView(bytes.buffer).getUint32(0, true);
   const headers = JSON.parse(new TextDecoder().decode(bytes.subarray(4, end)));
   const columns = new Map();
-  let place = end;
+  let offset = end;
   for (const header of headers) {
     const count = header.length * header.channels;
-    const planes = bytes.subarray(place, place + count * header.planes);
-    place += planes.length;
+    const planes = bytes.subarray(offset, offset + count * header.planes);
+    offset += planes.length;
     columns.set(header.name, new Column(header, unfolded(planes, count, header)));
   }
   return columns;

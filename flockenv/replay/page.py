@@ -45,12 +45,12 @@ _SCRIPTS = (
     "player.mjs",
     "main.mjs",
 )
-# What a page takes without its runs, at most.
+# Largest size of a page without its runs.
 _SCRIPT_BYTES = 100_000
 _THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MOST_RUNS = 2
 _MOST_SAMPLES = 400_000
-# What numbers are rounded to: finer than a page shows them, in cm, rad, cm/s, rad/s, cm/s².
+# Steps of rounding, finer than a page shows: in cm, rad, cm/s, rad/s, cm/s².
 _POSITION, _ANGLE, _SPEED, _TURNING, _FORCE = 0.01, 0.001, 0.05, 0.005, 0.1
 _RUDDER = 0.002
 

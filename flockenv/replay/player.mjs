@@ -15,7 +15,7 @@ const FIRST_SPEED = 8;
 const FAR = 10;
 const MINUTE = 60;
 
-/** What to watch. */
+/** The chart to watch. */
 function watchWords(runs) {
   const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
   if (runs.some(({ target }) => target !== null)) {
@@ -47,7 +47,7 @@ export class Player {
     this.time = this.start;
     this.forceScale = forceScale(runs);
     giveColors(runs);
-    this.panels = runs.map((run, place) => new Panel(run, place, runs.length > 1));
+    this.panels = runs.map((run, index) => new Panel(run, index, runs.length > 1));
     document.body.classList.toggle("pair", runs.length > 1);
     document.getElementById("watch").textContent = watchWords(runs);
     const several = runs.length > 1 ? [runSwitch(runs, () => this.request())] : [];

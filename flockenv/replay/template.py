@@ -12,7 +12,7 @@ def joined(modules: Iterable[str]) -> str:
 
 
 def digest(source: str) -> str:
-    """Return what a content security policy calls a script or a style of this source."""
+    """Return the name of a script or a style of this source in a content security policy."""
     value = base64.b64encode(hashlib.sha256(source.encode()).digest()).decode("ascii")
     return f"'sha256-{value}'"
 

@@ -1,4 +1,4 @@
-"""Many runs as data: what to run, where results are stored, and how many run at once.
+"""Many runs as data: their specs, their store, and the engines that make them.
 
 A `RunSpec` says all that a run depends on; `execute` makes it, and `run_missing` makes those of
 many that a `RunStore` lacks, on an engine of `flockenv.runs.executors`: it resumes where work was

@@ -102,16 +102,16 @@ def finished(
     ends the work, too.
     """
     waiting = itertools.takewhile(lambda _: not interrupted(), enumerate(items))
-    places: dict[Future[Value], int] = {}
+    indices: dict[Future[Value], int] = {}
     with engine(workers) as executor:
         while True:
             at_once = getattr(executor, "at_once", None) or workers or cores()
-            for place, item in itertools.islice(waiting, max(0, at_once - len(places))):
-                places[executor.submit(function, item)] = place
-            if not places:
+            for index, item in itertools.islice(waiting, max(0, at_once - len(indices))):
+                indices[executor.submit(function, item)] = index
+            if not indices:
                 return
-            for future in wait(places, return_when=FIRST_COMPLETED).done:
-                yield places.pop(future), future.result()
+            for future in wait(indices, return_when=FIRST_COMPLETED).done:
+                yield indices.pop(future), future.result()
 
 
 def in_order(
@@ -120,4 +120,4 @@ def in_order(
     """Return the values of a function in the order of the items, computed in threads."""
     values = dict(finished(function, items, workers))
     end_if_interrupted()
-    return [values[place] for place in range(len(items))]
+    return [values[index] for index in range(len(items))]

@@ -46,8 +46,8 @@ _RUNS = 1 << 32
 _FIRST_JUDGMENT = FIRST_TRAINING_SEED - (1 << 16)
 
 
-def _search(use: str, place: int) -> SeedRange:
-    return SeedRange(use, FIRST_TRAINING_SEED + place * (_RUNS << 24), 1 << 24, _RUNS)
+def _search(use: str, index: int) -> SeedRange:
+    return SeedRange(use, FIRST_TRAINING_SEED + index * (_RUNS << 24), 1 << 24, _RUNS)
 
 
 POLICY_SEEDS: Mapping[str, SeedRange] = {

@@ -1,4 +1,4 @@
-"""Runs as data: what to run, a picklable spec, and what is stored of it."""
+"""Runs as data: picklable specs, and the parts of a run that are stored."""
 
 import hashlib
 import json
@@ -28,7 +28,7 @@ def _check_policy(name: str, pool: Pool) -> None:
 
 
 KEEP = ("window", "order", "poses")
-"""What can be stored of a run: order parameters of the samples in the analysis window after the
+"""Stored parts of a run: order parameters of the samples in the analysis window after the
 first tenth; of all samples; or these and all poses and velocities."""
 
 
@@ -124,7 +124,7 @@ def execute(spec: RunSpec) -> Recording:
         spec.policy,
         dtype=np.float32,
     )
-    # What a law commands follows from the poses.
+    # A law's commands follow from the poses.
     run = replace(run, duration_s=spec.duration_s, rudder=None)
     if spec.keep == "window":
         run = run.analyzed()

@@ -176,12 +176,12 @@ def run_missing(
     missing.sort(key=lambda spec: -spec.cost)
     failures = {}
     with closing(finished(_attempt, missing, workers, engine)) as outcomes:
-        for place, outcome in outcomes:
+        for index, outcome in outcomes:
             if isinstance(outcome, Recording):
-                store.save(missing[place], outcome)
+                store.save(missing[index], outcome)
             else:
-                failures[missing[place]] = outcome
-            progress(missing[place])
+                failures[missing[index]] = outcome
+            progress(missing[index])
     end_if_interrupted()
     return failures
 

@@ -58,7 +58,7 @@ class Shard:
 
 @dataclass(frozen=True, slots=True)
 class Workload:
-    """How much there is to be done.
+    """Amount of work that remains.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Workload:
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
-    """Return how much there is to be done, measured by a trial run for each policy.
+    """Return the amount of work that remains, measured by a trial run for each policy.
 
     Parameters
     ----------

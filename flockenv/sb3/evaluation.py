@@ -151,7 +151,7 @@ class _AsTrained:
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, **options: Any
     ) -> tuple[Any, Any]:
-        """Return what the model does; `episode_start` has an entry for each flock."""
+        """Return the model's actions; `episode_start` has an entry for each flock."""
         if self._normalizing is not None:
             observation = self._normalizing.normalize_obs(observation)
         if episode_start is not None:
@@ -206,7 +206,7 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
         own_policy.check_action_mode(leaders.action_mode, "in this evaluation")
         said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
         said = {name: value for name, value in said.items() if value is not None}
-        # What a policy does not say it does not depend on.
+        # A policy does not depend on options that it does not name.
         _check_options(model, said, {name: options[name] for name in said})
     spaces = {"observation": (space, flocks.observation_space)}
     spaces["action"] = (getattr(model, "action_space", None), flocks.action_space)
@@ -442,7 +442,7 @@ class FlockEvalCallback(EvalCallback):
         return goes_on and (self.callback is None or self._on_event())
 
     def _is_best(self, order: float, mean_return: float) -> bool:
-        """Return whether a model is the best so far, and take note of it."""
+        """Return whether a model is the best so far, and remember it."""
         if math.isnan(order) and math.isnan(self.best_signed_order):
             is_best = mean_return > self.best_mean_reward
         else:

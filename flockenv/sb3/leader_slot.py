@@ -1,4 +1,4 @@
-"""`LeaderSlot`: what stands for one environment in a `LeaderVecEnv`."""
+"""`LeaderSlot`: the stand-in for one environment in a `LeaderVecEnv`."""
 
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -14,7 +14,7 @@ from flockenv.parameters import FlockParameters
 
 
 class _Flocks(Protocol):
-    """What a slot needs of the environment that it is a part of."""
+    """The members of a `LeaderVecEnv` that its slots use."""
 
     _batch: LeaderBatch
 
@@ -24,7 +24,7 @@ class _Flocks(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class LeaderSlot:
-    """What stands for one environment in a `LeaderVecEnv`: one leader of one flock.
+    """The stand-in for one environment in a `LeaderVecEnv`: one leader of one flock.
 
     ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
     change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the next episodes.

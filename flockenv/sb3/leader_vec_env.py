@@ -110,7 +110,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
         self.flock_feature_space = self._batch.flock_feature_space
-        #: What actions stand for, and decisions per second.
+        #: Meaning of actions, and decisions per second.
         self.action_mode: str = settings["action_mode"]
         self.decisions_hz = fps
         self.slots = self._made_slots(leaders)
@@ -168,7 +168,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         requests = self._requests(self._options)
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
-        # What is refused does not stay for the next reset.
+        # Refused options do not stay for the next reset.
         self._reset_options()
         self._batch.reset(seeds, requests, self._drawn_seed)
         self._reset_seeds()
@@ -197,7 +197,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return drawn_seed(self.np_random)
 
     def _requests(self, options: Any) -> list[dict[str, Any]]:
-        """Return what each flock's reset is asked for, of one dictionary for each slot."""
+        """Return the request for each flock's reset, of one dictionary for each slot."""
         is_each = isinstance(options, Sequence) and len(options) == self.num_envs
         if not is_each or not all(isinstance(each, Mapping) for each in options):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
@@ -213,7 +213,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return [request for request in by_flock if request is not None]
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Take note of actions, shape (slots, 1) rudders or (slots,) numbers of levels."""
+        """Store actions for the step: rudders, shape (slots, 1), or numbers of levels, (slots,)."""
         levels = self._batch.settings["rudder_levels"]
         self._actions = _core.flat_actions(actions, self._actions_shape, levels, "actions")
 
@@ -290,7 +290,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
     def _chosen(self, indices: Any) -> list[int]:
-        """Return the numbers of slots; an error names what is none."""
+        """Return the numbers of slots; an error names other values."""
         chosen = [as_int(each, "indices") for each in items(self._get_indices(indices), "indices")]
         if any(not -self.num_envs <= slot < self.num_envs for slot in chosen):
             raise IndexError(

@@ -36,7 +36,7 @@ _BCA_RESAMPLES = 9999
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """How much one policy exceeds another on the same seeds.
+    """The gain of one policy on another, on the same seeds.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where boats are: relative to each other and to the wall."""
+"""Structure of a flock: where boats are relative to each other and to the wall."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,7 +35,7 @@ def structure_series(
 
 
 def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.int64]]:
-    """Return how many boats each jam holds, an array of ascending numbers for each time.
+    """Return the sizes of the jams, an array of ascending numbers for each time.
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 

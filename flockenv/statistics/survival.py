@@ -45,8 +45,8 @@ class Survival:
         """Return the share of the runs that wait longer than a time in s."""
         if not number(time_s, "time_s") >= 0.0:
             raise ParameterError(f"time_s = {short_repr(time_s)} is not accepted: at least 0 s")
-        place = int(np.searchsorted(self.time_s, time_s, side="right"))
-        return 1.0 if place == 0 else float(self.share[place - 1])
+        index = int(np.searchsorted(self.time_s, time_s, side="right"))
+        return 1.0 if index == 0 else float(self.share[index - 1])
 
 
 def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:

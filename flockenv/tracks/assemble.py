@@ -124,7 +124,7 @@ def _names(ids: Sequence[str] | None, boats: int) -> list[str]:
 def _velocities(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
     """Return the velocities that are given, or differences of the poses."""
     given = None if velocity is None else with_gaps(velocity, "velocity")
-    motion = Motion.of(times, poses).velocity if given is None else given
+    motion = Motion.from_poses(times, poses).velocity if given is None else given
     check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
     return motion
 

@@ -1,4 +1,4 @@
-"""How tracks lie in a table: columns, units, scale; written in TOML beside the table."""
+"""Layouts of tracks in a table: columns, units, scale; written in TOML beside the table."""
 
 import math
 import os
@@ -77,12 +77,12 @@ _KINDS |= {
     for kind, (holds, words) in _KINDS.items()
     if kind != _Heading
 }
-"""What fields of a layout take, by their annotation; of the others FlockParameters says it."""
+"""Kinds of a layout's fields, by their annotation; FlockParameters has those of the others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackLayout:
-    r"""How tracks lie in a table with one row per frame and animal, robot or boat.
+    r"""The layout of tracks in a table with one row per frame and animal, robot or boat.
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
@@ -210,7 +210,7 @@ class TrackLayout:
             )
         except TypeError as error:
             raise ParameterError(str(error)) from error
-        # An iterator has been gone through.
+        # An iterator is used up.
         object.__setattr__(self, "pool", flock.pool)
         object.__setattr__(self, "target", flock.target)
 
@@ -239,7 +239,7 @@ def columns_of(value: _Columns | None) -> tuple[str, ...]:
 
 
 def description_of(path: Path) -> Path:
-    """Return where the description of a table is, if it is no other."""
+    """Return the default path of a table's description."""
     if not path.name:
         raise ParameterError(f"{os.fspath(path)!r} is the name of no table")
     bare = path.with_suffix("") if path.suffix.lower() == ".gz" else path

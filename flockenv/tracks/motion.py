@@ -1,4 +1,4 @@
-"""How tracked boats move: velocities, gaps, and whether motion fits the headings."""
+"""Motion of tracked boats: velocities, gaps, and whether motion fits the headings."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -13,13 +13,13 @@ from flockenv.tracks.layout import TrackLayout
 Floats = NDArray[np.float64]
 
 HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
-"""Where headings count from, in rad counter-clockwise from x."""
+"""Zero of headings, in rad counter-clockwise from x."""
 
 TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
 """A full turn in the units of headings."""
 
 UNIT = {"turn": "turns", "rad": "radians", "deg": "degrees"}
-"""What the units are called."""
+"""Names of the units."""
 
 _AXIS_JUMP = 0.8
 _MOST_BROKEN = 0.5
@@ -44,14 +44,14 @@ class Motion:
     """
 
     stamps: Floats
-    there: NDArray[np.bool_]
+    present: NDArray[np.bool_]
     velocity: Floats
     broken: int
     longest_s: float
 
     @classmethod
-    def of(cls, time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> Self:
-        """Return the differences of poses (t, n, 3), at times of shape (t,) or (t, n)."""
+    def from_poses(cls, time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> Self:
+        """Return the motion of poses (t, n, 3), at times of shape (t,) or (t, n)."""
         stamps = np.ascontiguousarray(np.broadcast_to(np.atleast_2d(time_s.T).T, pose.shape[:2]))
         steps = np.diff(stamps, axis=0)
         # Steps are alike but for gaps: those much longer than nine tenths of them.
@@ -59,20 +59,20 @@ class Motion:
         longest_s = 1.5 * float(usual)
         pose = np.ascontiguousarray(pose)
         rows, broken = _core.track_velocities(stamps, pose, longest_s, fastest_cm_s)
-        there = ~np.isnan(pose[..., 0])
-        return cls(stamps, there, rows.reshape(pose.shape), broken, longest_s)
+        present = ~np.isnan(pose[..., 0])
+        return cls(stamps, present, rows.reshape(pose.shape), broken, longest_s)
 
     def gaps(self) -> Floats:
-        """Return how long each gap is in s: between two poses of a boat that are no neighbors."""
+        """Return the length of each gap in s: between two poses of a boat that are no neighbors."""
         found = [np.zeros(0)]
-        for stamps, there in zip(self.stamps.T, self.there.T, strict=True):
-            frames = np.flatnonzero(there)
+        for stamps, present in zip(self.stamps.T, self.present.T, strict=True):
+            frames = np.flatnonzero(present)
             steps = np.diff(stamps[frames])
             found.append(steps[(np.diff(frames) > 1) | (steps > self.longest_s)])
         return np.concatenate(found)
 
     def empty_frames(self, time_s: Floats) -> int:
-        """Return how many frames nobody is in, of those that a regular clock has."""
+        """Return the number of empty frames, of those that a regular clock has."""
         steps = np.diff(time_s)
         long = steps[steps > self.longest_s]
         return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0
@@ -83,12 +83,14 @@ class Motion:
         return float(np.nansum(ahead) / np.nansum(speed)) if np.nansum(speed) > 0.0 else np.nan
 
     def ahead(self, heading: Floats) -> Floats:
-        """Return how fast boats move along their headings."""
+        """Return the speeds of boats along their headings."""
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
 
     def check(self, pose: Floats, layout: TrackLayout) -> None:
         """Refuse steps most of which are too fast, and axes that are said to be directions."""
-        steps = self.there[1:] & self.there[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
+        steps = (
+            self.present[1:] & self.present[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
+        )
         if self.broken > _MOST_BROKEN * steps.sum():
             raise ParameterError(
                 f"{self.broken} of {steps.sum()} steps are faster than max_speed_cm_s = "
@@ -118,7 +120,9 @@ class Motion:
             if turn >= whole or np.nanmax(np.abs(turned)) > 1.003 * least:
                 continue
             other = _with(pose, pose[..., 2] + turned * (whole / turn - 1.0))
-            if np.ptp(turned[self.there]) > 0.5 * least and self.cosine(other) > self.cosine(pose):
+            if np.ptp(turned[self.present]) > 0.5 * least and self.cosine(other) > self.cosine(
+                pose
+            ):
                 raise ParameterError(
                     f"headings never exceed a full turn in {UNIT[unit]}, and fit the motion better "
                     f"in {UNIT[unit]} than in {UNIT[layout.heading_unit]}: is heading_unit = "
@@ -143,7 +147,7 @@ def bows_of(axis: Floats, motion: Motion) -> Floats:
     """Return axes as headings: continuous, and on the whole towards where a boat moves."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):
-        frames = np.flatnonzero(motion.there[:, boat])
+        frames = np.flatnonzero(motion.present[:, boat])
         steps = np.diff(motion.stamps[frames, boat])
         cuts = np.flatnonzero((np.diff(frames) > 1) | (steps > motion.longest_s)) + 1
         for part in np.split(frames, cuts):
@@ -157,13 +161,13 @@ def unwrapped(heading: Floats) -> Floats:
     """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
     whole = heading.copy()
     for boat in whole.T:
-        there = ~np.isnan(boat)
-        boat[there] = np.unwrap(boat[there])
+        present = ~np.isnan(boat)
+        boat[present] = np.unwrap(boat[present])
     return whole
 
 
-def in_water(pool: Any, places: Floats, margin_cm: float) -> NDArray[np.bool_]:
+def in_water(pool: Any, indices: Floats, margin_cm: float) -> NDArray[np.bool_]:
     """Return whether places are in the water of a pool, or at most so far beyond its walls."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
-    distance = np.hypot(places[..., 0], places[..., 1])
+    distance = np.hypot(indices[..., 0], indices[..., 1])
     return np.asarray((distance <= outer_cm + margin_cm) & (distance >= inner_cm - margin_cm))

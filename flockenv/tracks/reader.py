@@ -1,4 +1,4 @@
-"""Tracks of tables and datasets as recordings, with a report of what was left out."""
+"""Tracks of tables and datasets as recordings, with a report of omitted rows."""
 
 import os
 import re
@@ -103,14 +103,14 @@ def _recording(
 
 def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
     """Return the motion of poses, whose headings become continuous directions of the bows."""
-    motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
+    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if layout.heading is None and layout.quaternion is None:
         pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
         pose[np.isnan(pose[..., 2])] = np.nan
     elif layout.axis:
         pose[..., 2] = bows_of(pose[..., 2], motion)
     pose[..., 2] = unwrapped(pose[..., 2])
-    motion = Motion.of(stamps, pose, layout.max_speed_cm_s)
+    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     motion.check(pose, layout)
     return motion
 
@@ -118,16 +118,16 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
 def _report(
     rows: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
 ) -> TrackReport:
-    """Return what was used of rows, and what was left out."""
-    there = ~np.isnan(pose[..., 0])
+    """Return the report of used and omitted rows."""
+    present = ~np.isnan(pose[..., 0])
     gaps, speed = motion.gaps(), np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
     counts: Any = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
     every = pose.shape[1] * (len(time_s) + motion.empty_frames(time_s))
     return TrackReport(
         frames=len(time_s),
         boats=pose.shape[1],
-        samples=int(there.sum()),
-        missing=every - int(there.sum()),
+        samples=int(present.sum()),
+        missing=every - int(present.sum()),
         duration_s=float(time_s[-1]),
         step_s=float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0,
         median_speed_cm_s=_median(speed),
@@ -135,7 +135,7 @@ def _report(
         gaps=len(gaps),
         longest_gap_s=float(gaps.max(initial=0.0)),
         broken=motion.broken,
-        lone=int((there & np.isnan(speed)).sum()),
+        lone=int((present & np.isnan(speed)).sum()),
         cosine=motion.cosine(pose),
         stuck=_stuck(rows, layout),
         held=_held(rows),

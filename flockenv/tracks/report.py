@@ -1,4 +1,4 @@
-"""What of tracks was used, and what was left out."""
+"""Report of tracks: the used and the omitted parts."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -10,7 +10,7 @@ _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackReport:
-    """What of tracks was used, and what was left out.
+    """Report of tracks: the used and the omitted parts.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class TrackReport:
         return lines
 
     def _doubts(self) -> list[str]:
-        """Return lines about what is unusual, and may be as it should."""
+        """Return lines about unusual values, which may be correct."""
         lines = []
         if self.unsorted:
             lines.append(

@@ -43,7 +43,7 @@ _LARGEST_FILE = 1 << 30
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a training is.
+    """Progress of a training.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class BranchTraining:
 
     @property
     def progress(self) -> Progress:
-        """How far it is."""
+        """Its progress."""
         done, total = self._core.flock_hours
         order = self.curve["signed_order"]
         return Progress(done, total, float(order[-1]) if len(order) else math.nan)

@@ -21,7 +21,7 @@ pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     largest.unwrap_or(0) as f64 / poses.len() as f64
 }
 
-/// How many boats each jam holds, in no particular order. A jam has at least [`JAM_BOATS`], which face outward
+/// Sizes of the jams, in no particular order. A jam has at least [`JAM_BOATS`], which face outward
 /// within [`JAM_ANGLE`] and are joined by gaps below [`IN_TOUCH_CM`].
 pub fn jam_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     let outward = |pose: &&Pose| orientation(pose).abs() <= JAM_ANGLE;

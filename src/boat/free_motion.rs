@@ -57,7 +57,7 @@ impl FreeMotion {
         -self.c1 * angular * angular * angular + (self.c2 * rudder - self.c3 * angular) * along
     }
 
-    /// How fast a small change of the angular velocity decays, in 1/s: the linearization of eq. (9), and 0 where it
+    /// Rate at which a small change of the angular velocity decays, in 1/s: the linearization of eq. (9), and 0 where it
     /// would grow.
     pub(crate) fn turn_damping(&self, angular: f64, along: f64) -> f64 {
         (3.0 * self.c1 * angular * angular + self.c3 * along).max(0.0)

@@ -117,7 +117,7 @@ impl Depenetration {
     }
 }
 
-/// How near hulls must be to be kept from being pushed into each other, in cm.
+/// Distance in cm within which hulls are kept from being pushed into each other.
 fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }

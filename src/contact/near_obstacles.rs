@@ -11,7 +11,7 @@ pub(super) struct NearObstacles {
     /// Where the obstacles of each boat start in `near`.
     starts: Vec<u32>,
     near: Vec<u32>,
-    /// Which build of the neighbor list this one belongs to.
+    /// Number of the neighbor list's build that it belongs to.
     build: u64,
 }
 

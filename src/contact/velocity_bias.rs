@@ -3,7 +3,7 @@
 use crate::geometry::Gap;
 use std::hint::select_unpredictable;
 
-/// How fast gaps may close in one substep: the speculative margin of a gap that is open, the speed at
+/// Largest closing rates of gaps in one substep: the speculative margin of a gap that is open, the speed at
 /// which an overlap closes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct VelocityBias {

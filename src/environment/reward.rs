@@ -326,7 +326,7 @@ fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTe
     terms
 }
 
-/// How jammed the flock is, in [0, 1]: aligned, at the outer wall, and standing.
+/// Degree of jamming in [0, 1]: aligned, at the outer wall, and standing.
 fn jam(order: &OrderParameters, inverse_speed: f64) -> f64 {
     order.psi_o * libm::cos(order.phi_o).max(0.0) * (1.0 - order.psi_v * inverse_speed).max(0.0)
 }

@@ -46,7 +46,7 @@ impl Feature {
     /// Both ends of a hull.
     pub const ENDS: [Self; 2] = [Self::Stern, Self::Bow];
 
-    /// Which end it is: −1 at the stern, +1 at the bow; `None` for what is at no end.
+    /// The end: −1 at the stern, +1 at the bow; `None` for a contact at no end.
     #[inline]
     pub fn side(self) -> Option<f64> {
         match self {

@@ -1,4 +1,4 @@
-//! How a flock moves from one substep to the next.
+//! Motion of a flock from one substep to the next.
 //!
 //! `Integrator` holds the state. A substep draws noise, works out what drives the boats, moves their
 //! velocities without contacts, solves the contacts and moves the poses; the scheme decides where in the

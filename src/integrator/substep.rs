@@ -18,7 +18,7 @@ pub enum Steering<'a> {
 pub(crate) struct Substep<'a> {
     /// When it starts.
     pub start: Ticks,
-    /// How long it lasts.
+    /// Its length.
     pub length: Ticks,
     /// What the motors do.
     pub phase: Phase,

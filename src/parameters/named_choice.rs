@@ -19,7 +19,7 @@ macro_rules! named_choice {
                 Self::ALL.iter().map(|choice| choice.name()).collect()
             }
 
-            /// What it is, for documentation.
+            /// Its meaning, for documentation.
             pub fn doc(self) -> &'static str {
                 match self { $($(#[cfg(feature = $feature)])? Self::$variant => concat!($($doc),+),)+ }.trim_ascii_start()
             }

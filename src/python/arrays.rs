@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyInt;
 
-/// How deep NumPy stacks sequences.
+/// Depth to which NumPy stacks sequences.
 const MOST_AXES: usize = 64;
 
 /// The shape of whatever has one: arrays of any library.

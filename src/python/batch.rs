@@ -18,7 +18,7 @@ use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
-/// What a step returns: observations (rows, size), rewards (rows,), truncated (flocks,).
+/// Arrays of a step: observations (rows, size), rewards (rows,), truncated (flocks,).
 type Step<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f64>>,

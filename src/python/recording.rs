@@ -30,7 +30,7 @@ pub(super) struct Plan<'py> {
     progress: Option<Bound<'py, PyAny>>,
 }
 
-/// What steers: a law, or a function of the signs of the leaders' targets (k,) and their observations (k, size), one for
+/// The steering of a run: a law, or a function of the signs of the leaders' targets (k,) and their observations (k, size), one for
 /// each layout, that returns rudders (k,). It does so at every control step, or without a rate at every substep, which only
 /// the law for it can.
 #[derive(FromPyObject)]

@@ -107,7 +107,7 @@ impl Live {
         }
         self.leaders = leaders;
         self.start_steering();
-        // What was decided at this time was decided before the change.
+        // Decisions of this time were made before the change.
         let now = self.rudders();
         self.rudder = self.leaders.decide(&self.flock, &now, self.yours)?;
         Ok(true)

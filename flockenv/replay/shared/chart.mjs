@@ -20,7 +20,7 @@ export class Chart {
     canvas.addEventListener("lostpointercapture", () => { this.held = null; });
   }
 
-  /** Where the times shown start and end: around the cursor, or all there are. */
+  /** Start and end of the charted times: around the cursor, or all. */
   #choose(time) {
     const [start, end] = span(this.runs);
     [this.from, this.to] = [start, Math.max(end, start + 1e-3)];
@@ -146,7 +146,7 @@ export class Chart {
   }
 }
 
-/** What stands above a chart: the series' words, its value in each run at a time, and `hasMeans` its mean so far. */
+/** The line above a chart: the series' words, its value in each run at a time, and `hasMeans` its mean so far. */
 export function legendOf(runs, quantity, time, hasMeans = false) {
   const parts = runs.map((run) => {
     const part = element("span", "value");

@@ -1,6 +1,6 @@
-// What the links of both pages have in common: sentences for what cannot be followed, and an address that follows.
+// Links of both pages: sentences for parts that cannot be followed, and an address that follows the page.
 
-/** How often, in ms, an address may change: browsers refuse more than some 100 in half a minute. */
+/** Least time between two changes of the address, in ms: browsers refuse more than some 100 in half a minute. */
 const EVERY = 1000;
 const SHOWN = 40;
 

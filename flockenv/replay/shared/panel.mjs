@@ -1,9 +1,9 @@
-// What a run's panel says in words: its legend around the picture, and a card with a boat's numbers.
+// Words of a run's panel: its legend around the picture, and a card with a boat's numbers.
 
 import { Scene } from "./scene.mjs";
 import { element, fixed, wrapped } from "./words.mjs";
 
-/** What the motors do in each phase of their cycle. */
+/** The motors' work in each phase of their cycle. */
 const PHASES = {
   fw: ["forward", "the motors drive the boats forward"],
   nop1: ["off", "the motors are off, and the boats drift forward"],
@@ -11,7 +11,7 @@ const PHASES = {
   nop2: ["off", "the motors are off, and the boats drift backward"],
 };
 
-/** Where a leader heads, in words, if not all head there. */
+/** A leader's target in words, unless all leaders share it. */
 function targetWords(run, boat) {
   return run.targets ? ` ${run.targets[boat] === "cw" ? "↻ cw" : "↺ ccw"}` : "";
 }
@@ -27,7 +27,7 @@ function leaderKey(run) {
   });
 }
 
-/** What the colors of directions stand for. */
+/** Meaning of the colors of directions. */
 export function colorKey() {
   return [["clockwise", "clockwise"], ["counter-clockwise", "counter-clockwise"], ["radial", "neither, as in a jam"]].map(([name, words]) => {
     const part = element("span");
@@ -41,16 +41,16 @@ export function runSwitch(runs, show) {
   const group = element("div", "switch");
   group.setAttribute("role", "group");
   group.setAttribute("aria-label", "The run that is shown");
-  const buttons = runs.map((run, place) => {
+  const buttons = runs.map((run, index) => {
     const button = element("button", "wide");
     button.type = "button";
     button.append(element("span", `swatch ${run.color}`), run.name);
-    button.addEventListener("click", () => { choose(place); show(); });
+    button.addEventListener("click", () => { choose(index); show(); });
     return button;
   });
   const choose = (chosen) => {
     document.body.dataset.shown = String(chosen);
-    buttons.forEach((button, place) => { button.setAttribute("aria-pressed", String(place === chosen)); });
+    buttons.forEach((button, index) => { button.setAttribute("aria-pressed", String(index === chosen)); });
   };
   group.append(...buttons);
   choose(Number(document.body.dataset.shown ?? 0));
@@ -62,10 +62,10 @@ export class Panel {
   /** The boat and the size of the hole for which the card's place was chosen. */
   #placed = "";
 
-  constructor(run, place, several) {
+  constructor(run, index, several) {
     this.run = run;
     this.root = element("article", "run");
-    this.root.dataset.run = String(place);
+    this.root.dataset.run = String(index);
     const title = element("h2");
     const swatch = element("span", `swatch ${run.color}`);
     title.append(...(several ? [swatch] : []), element("span", "name", run.name),

@@ -65,7 +65,7 @@ export class Run {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }
 
-  /** What a boat is drawn as; an opponent leads counter-clockwise where others lead clockwise. */
+  /** The kind of a boat in pictures; an opponent leads counter-clockwise while others lead clockwise. */
   roleOf(boat) {
     if (boat >= this.leaders) {
       return "normal";
@@ -73,7 +73,7 @@ export class Run {
     return this.targets?.[boat] === "ccw" ? "opponent" : "leader";
   }
 
-  /** What a boat is called. */
+  /** A boat's name. */
   nameOf(boat) {
     return this.ids?.[boat] ?? `boat ${boat}`;
   }

@@ -121,12 +121,12 @@ export class Scene {
     return found;
   }
 
-  /** Where a boat is on the canvas. */
+  /** A boat's position on the canvas. */
   place(boat) {
     return this.pixel(this.poses[boat][0], this.poses[boat][1]);
   }
 
-  /** Where a point in cm is on the canvas. */
+  /** The position of a point in cm on the canvas. */
   pixel = (x, y) => {
     return [
       this.middle[0] + (x - this.center[0]) * this.scale,

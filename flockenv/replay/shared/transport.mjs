@@ -27,7 +27,7 @@ export class Transport {
     this.#set(false);
   }
 
-  /** What passed until now does not count. */
+  /** Forgets the time that has passed until now. */
   rest() {
     this.#before = performance.now();
   }

@@ -35,7 +35,7 @@ class TrainingError(FlockError, RuntimeError):
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a training is.
+    """Progress of a training.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ def resume(
 
 
 def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingSettings:
-    """Return what `resume` continues with; see there."""
+    """Return the settings that `resume` continues with; see there."""
     if not (Path(folder) / CHECKPOINT).exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = TrainingSettings.from_file(Path(folder) / SETTINGS)

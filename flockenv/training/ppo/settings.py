@@ -35,7 +35,7 @@ _OBSERVATION: Mapping[str, Any] = {
     "lean_features": True,
 }
 _PHYSICS: Mapping[str, Any] = {"physics": "training"}
-#: What `TrainingSettings` itself gives to PPO.
+#: Arguments that `TrainingSettings` itself gives to PPO.
 _OWN = ("policy", "env", "seed", "_init_setup_model")
 
 

@@ -8,7 +8,7 @@ use std::hint::select_unpredictable;
 /// Relinearization passes after which a substep counts as not solved.
 const MOST_PASSES: u32 = 20;
 
-/// How far to go, with scratch space.
+/// Settings of relinearization, with scratch space.
 #[derive(Debug, Clone)]
 pub(super) struct Relinearization {
     /// Deepest overlap in cm that a substep may leave; infinite: gaps are linearized once.

@@ -9,7 +9,7 @@ use crate::flock::Flock;
 use crate::geometry::LapFrame;
 use crate::parameters::FlockParameters;
 
-/// What the leaders of a flock observe without an environment, one after another, given the rudders as they stand.
+/// Observations of a flock's leaders without an environment, one after another, given the rudders as they stand.
 ///
 /// # Errors
 /// As for [`Observer::new`], and [`crate::FlockError::Parameter`] where the layout has the order of no boat.

@@ -83,7 +83,7 @@ impl IslandSolver {
         order[most..].iter().for_each(|&k| pushes[k] = 0.0);
     }
 
-    /// Has all contacts enter whose gaps close, or the fastest of them, as many as can be independent of each other.
+    /// Lets all contacts enter whose gaps close, or the fastest of them, as many as can be independent of each other.
     /// Those that would have to pull leave again at once; in a large island the others are mostly far apart.
     fn enter_violated(&mut self) {
         let rows = &self.rows.rows;

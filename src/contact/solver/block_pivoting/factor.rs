@@ -27,7 +27,7 @@ struct Node {
     /// Its entries, whole groups of them.
     start: u32,
     end: u32,
-    /// How many entries it holds, without the zeros that fill up its groups.
+    /// Number of its entries, without the zeros that fill up its groups.
     count: u32,
     /// The first row with an entry in this column.
     parent: u32,
