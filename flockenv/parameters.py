@@ -77,7 +77,7 @@ class FlockParameters:
 
     if not TYPE_CHECKING:  # Editors complete the fields, as the dataclass declares them.
 
-        def __init__(self, **values: Any) -> None:
+        def __init__(self, **values: object) -> None:
             self._hold(_changed("simulation", values))
 
     @classmethod
@@ -158,7 +158,7 @@ class FlockParameters:
         targets = self.target if isinstance(self.target, tuple) else (self.target,)
         return targets[0] if self.n_leaders and len(set(targets)) == 1 else None
 
-    def replace(self, **changes: Any) -> Self:
+    def replace(self, **changes: object) -> Self:
         """Return these parameters with some fields changed; see the class for the errors.
 
         A hull of another size scales the radius of gyration along, unless ``gyration_radius_cm`` is
@@ -216,7 +216,7 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
     return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
 
 
-def _stored(value: Any) -> Any:
+def _stored(value: object) -> Any:
     """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
     held = materialized(value)
     return held if held is value else tuple(materialized(each) for each in held)

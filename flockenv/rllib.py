@@ -65,13 +65,13 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         self.value = _network(size, config)
         self.log_std = torch.nn.Parameter(torch.tensor(float(config["first_log_std"])))
 
-    def _forward(self, batch: Mapping[str, Any], **_: Any) -> dict[str, Any]:
+    def _forward(self, batch: Mapping[str, Any], **_: object) -> dict[str, Any]:
         rows = batch[Columns.OBS].unflatten(-1, (self.leaders, -1))
         mean = self.mean(rows).squeeze(-1)
         spread = self.log_std.expand_as(mean)
         return {Columns.ACTION_DIST_INPUTS: torch.cat([mean, spread], dim=-1)}
 
-    def compute_values(self, batch: Mapping[str, Any], embeddings: Any = None) -> torch.Tensor:
+    def compute_values(self, batch: Mapping[str, Any], embeddings: object = None) -> torch.Tensor:
         """Return the value of each observation."""
         values: torch.Tensor = self.value(batch[Columns.OBS]).squeeze(-1)
         return values

@@ -101,7 +101,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         *,
         state: str = "boats",
         device: torch.device | str = "cpu",
-        **options: Any,
+        **options: object,
     ) -> None:
         flocks = at_least_one(num_flocks, "num_flocks")
         refuse_unknown((state,), STATES, "state")
@@ -129,7 +129,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
             size = torch.Size([*shape, *space.shape])
             return Bounded(low.expand(size), high.expand(size), size, device, torch.float32)
 
-        def grouped(**entries: Any) -> Composite:
+        def grouped(**entries: object) -> Composite:
             return Composite({GROUP: Composite(entries, shape=each)}, shape=flocks)
 
         self.observation_spec = grouped(observation=bounded(self.observation_space, *each))
@@ -148,7 +148,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
             shape=flocks,
         )
 
-    def set_next_episodes(self, **options: Any) -> None:
+    def set_next_episodes(self, **options: object) -> None:
         """Set ``bw_s`` or ``target`` for the next episodes, as `LeadersVectorEnv` does."""
         self._batch.set_upcoming(range(self.num_flocks), options)
 
@@ -171,7 +171,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         *,
         options: dict[str, Any] | None = None,
         set_state: bool | None = None,
-        **others: Any,
+        **others: object,
     ) -> TensorDictBase:
         for name in others:
             raise UnknownOptionError(

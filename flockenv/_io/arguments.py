@@ -14,7 +14,7 @@ from flockenv.errors import ParameterError, short_repr
 _MOST_ITEMS = 1_000_000
 
 
-def items(values: Any, name: str) -> Any:
+def items(values: object, name: str) -> Any:
     """Return what a sequence holds: a list, an array, a generator, a `zip`, a view of a dictionary.
 
     A range stays what it is. Texts, dictionaries and sets are a TypeError, and sequences without
@@ -38,25 +38,25 @@ def _each(values: Any, name: str) -> Any:
         raise TypeError(f"{name} must be a sequence, not {short_repr(values)}") from error
 
 
-def by_name(values: Any, name: str) -> dict[Any, Any]:
+def by_name(values: object, name: str) -> dict[Any, Any]:
     """Return a copy of a dictionary; a TypeError refuses anything else."""
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a dictionary, not {short_repr(values)}")
     return dict(values)
 
 
-def check_function(value: Any, name: str) -> None:
+def check_function(value: object, name: str) -> None:
     """Refuse a value that cannot be called, before hours of work."""
     if not callable(value):
         raise TypeError(f"{name} must be a function, not {short_repr(value)}")
 
 
-def materialized(values: Any) -> Any:
+def materialized(values: object) -> Any:
     """Return the items of an iterator or of a dictionary's view, and any other value unchanged."""
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
 
 
-def listed(value: Any) -> Any:
+def listed(value: object) -> Any:
     """Return an array as a list or a number, and any other value as `materialized` does.
 
     Arrays of other libraries are arrays too. What is masked, a table and what is larger than any
@@ -92,7 +92,7 @@ def as_int(value: Any, name: str) -> int:
     raise TypeError(f"{name} must be an integer, not {short_repr(value)} of type {kind}")
 
 
-def _check_no_table(values: Any, name: str) -> None:
+def _check_no_table(values: object, name: str) -> None:
     if hasattr(values, "columns"):  # Their names would be ignored.
         raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
 
@@ -124,7 +124,7 @@ def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return np.array(real_numbers(found, name).astype(np.float64).filled(np.nan))
 
 
-def series(values: Any, name: str) -> NDArray[np.float64]:
+def series(values: object, name: str) -> NDArray[np.float64]:
     """Return a sequence of numbers as an array, shape (n,); others are refused."""
     found = with_gaps(items(values, name), name)
     if found.ndim != 1:
@@ -132,21 +132,21 @@ def series(values: Any, name: str) -> NDArray[np.float64]:
     return found
 
 
-def number(value: Any, name: str) -> Any:
+def number(value: object, name: str) -> Any:
     """Return a real number unchanged; a TypeError refuses anything else, bools among them."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a number, not {short_repr(value)}")
     return value
 
 
-def as_bool(value: Any, name: str) -> bool:
+def as_bool(value: object, name: str) -> bool:
     """Return True or False; a TypeError refuses all else, such as "no", which would be true."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} must be True or False, not {short_repr(value)}")
     return bool(value)
 
 
-def as_bytes(value: Any, name: str) -> bytes:
+def as_bytes(value: object, name: str) -> bytes:
     """Return bytes unchanged; a TypeError refuses anything else."""
     if not isinstance(value, bytes):
         raise TypeError(f"{name} must be bytes, not {short_repr(value)}")

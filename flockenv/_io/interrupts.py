@@ -11,7 +11,6 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from threading import current_thread, main_thread
-from typing import Any
 
 from flockenv._io.atomic_write import remove_temporary_files
 
@@ -59,7 +58,7 @@ def noted_interrupts() -> Iterator[None]:
         _is_noted = False
 
 
-def _note(number: int, frame: Any) -> None:
+def _note(number: int, frame: object) -> None:
     global _is_noted
     if not _is_noted or number == _HANGUP:
         _is_noted = True

@@ -41,7 +41,7 @@ class Resumable(OwnFlocks):
         """Continue from `get_state` of an environment with the same options, bit for bit."""
         self._batch.core.restore(as_bytes(state, "state"))
 
-    def set_next_episodes(self, **options: Any) -> None:
+    def set_next_episodes(self, **options: object) -> None:
         """Set ``bw_s`` or ``target`` of all future episodes, until they are set again.
 
         Values are as for `reset`: a range (low, high) of bw_s is drawn from. A ParameterError
@@ -112,7 +112,9 @@ class SingleEnvironmentBase(Resumable):
     np_random: np.random.Generator
     _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_leaders", "render_mode")
 
-    def _set_up(self, options: dict[str, Any], render_mode: str | None, render_size: Any) -> None:
+    def _set_up(
+        self, options: dict[str, Any], render_mode: str | None, render_size: object
+    ) -> None:
         parsed = EnvOptions.parse(options)
         self.parameters = parsed.parameters
         self.num_leaders = parsed.parameters.n_leaders
@@ -123,7 +125,7 @@ class SingleEnvironmentBase(Resumable):
         self._render_mode = RenderMode(render_mode, render_size, fps)
         self.metadata = {**self.metadata, "render_fps": fps}
 
-    def _reset(self, seed: Any, options: Any) -> int | None:
+    def _reset(self, seed: object, options: object) -> int | None:
         """Start an episode; return the seed that was given, as an int."""
         requests = reset_requests(options, 1, is_each=False)
         given = None if seed is None else seed_of(seed)

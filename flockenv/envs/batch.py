@@ -72,7 +72,7 @@ class LeaderBatch:
         self.core.set_upcoming(list(flocks), values)
 
     def step(
-        self, env: Any, actions: NDArray[np.float64], precision: DTypeLike = np.float64
+        self, env: object, actions: NDArray[np.float64], precision: DTypeLike = np.float64
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
@@ -93,7 +93,7 @@ class LeaderBatch:
         """Return which flocks have an episode under way."""
         return [self.core.is_running(flock) for flock in range(self.num_flocks)]
 
-    def _rewards(self, returned: Any, precision: DTypeLike) -> NDArray[np.float64]:
+    def _rewards(self, returned: object, precision: DTypeLike) -> NDArray[np.float64]:
         rows = len(self._flock_of_row)
         if np.ma.is_masked(returned):
             raise ParameterError(
@@ -151,12 +151,12 @@ def mean_rows(rows: list[list[float]]) -> list[float]:
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
-def is_plain(action: Any, shape: tuple[int, ...]) -> bool:
+def is_plain(action: object, shape: tuple[int, ...]) -> bool:
     """Return whether an action is an array of floats of a shape, which needs no other check."""
     return type(action) is np.ndarray and action.dtype in _FLOATS and action.shape == shape
 
 
-def at_least_one(count: Any, name: str) -> int:
+def at_least_one(count: object, name: str) -> int:
     """Return a count of flocks or leaders as an int, or raise the error that names it."""
     number = as_int(count, name)
     if not 1 <= number <= _MOST:

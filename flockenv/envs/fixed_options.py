@@ -3,7 +3,7 @@
 import sys
 from itertools import takewhile
 from types import FrameType
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from flockenv.envs.options import ARGUMENTS, NAMES
 from flockenv.envs.reset_options import RESET_OPTIONS, UPCOMING_OPTIONS, Spellings
@@ -22,7 +22,7 @@ class FixedOptions:
     #: The call that sets options of an episode.
     _next_episode: ClassVar[str] = "reset(options={...})"
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; an AttributeError says what sets an option instead."""
         if (words := _refusal(name, self._next_episode)) is not None:
             caller = sys._getframe(1)
@@ -59,7 +59,7 @@ def _is_method_of(env: object, frame: FrameType) -> bool:
     )
 
 
-def _is_same(one: Any, other: Any) -> bool:
+def _is_same(one: object, other: object) -> bool:
     return one is other or (type(one) is type(other) and bool(one == other))
 
 

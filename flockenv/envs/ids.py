@@ -15,7 +15,9 @@ class Environment(NamedTuple):
     history: tuple[str, ...] = ("v0: initial version.",)
 
 
-def _suite(purpose: str, n_leaders: int, episode_s: float = 480.0, **options: Any) -> Environment:
+def _suite(
+    purpose: str, n_leaders: int, episode_s: float = 480.0, **options: object
+) -> Environment:
     """Return a task of suite v2, which never changes: another number is another version."""
     # Written out, so that no other default changes a task.
     flock = {"preset": "simulation", "n_boats": 27, "pool": "wide", "bw_s": 0.31, "dt_s": 0.02}
@@ -31,7 +33,7 @@ _TEN_BOATS: Mapping[str, Any] = {
 }
 
 
-def _from_nothing(purpose: str, bw_s: float, episode_s: float, **options: Any) -> Environment:
+def _from_nothing(purpose: str, bw_s: float, episode_s: float, **options: object) -> Environment:
     """Return a level of suite v3, which never changes: leaders learn rudders from nothing."""
     flock = {"preset": "simulation", "bw_s": bw_s, "target": "random", "mirror_to_target": True}
     usual = {"control_hz": 2.5, "reward": {"signed_order": 1.0}, "physics": "training"}

@@ -149,7 +149,7 @@ def _instead(name: str, counts: str | None) -> str:
     return f"the number of flocks is {counts!r} here"
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Return a mapping, or each of a list, as the dictionary that the core reads."""
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]

@@ -67,7 +67,7 @@ class LeadersParallelEnv(
         *,
         render_mode: str | None = None,
         render_size: tuple[int, int] = DEFAULT_SIZE,
-        **options: Any,
+        **options: object,
     ) -> None:
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
@@ -227,14 +227,14 @@ class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
     def np_random(self, generator: np.random.Generator) -> None:
         self._flock.np_random = generator
 
-    def step(self, action: Any) -> None:
+    def step(self, action: object) -> None:
         # Those whose episode is over take none.
         if self._flock.agents:
             self._flock._action(self.agent_selection, action)
         super().step(action)
 
 
-def env(*, render_mode: str | None = None, **options: Any) -> AECEnv[str, Any, Any]:
+def env(*, render_mode: str | None = None, **options: object) -> AECEnv[str, Any, Any]:
     """Return `parallel_env` as PettingZoo's AEC environment, whose agents act in turn.
 
     The flock moves once all of them have acted.

@@ -28,7 +28,7 @@ class RenderMode:
     def __init__(
         self,
         mode: str | None,
-        size: Any,
+        size: object,
         fps: float,
         modes: tuple[str, ...] = RENDER_MODES,
     ) -> None:

@@ -58,7 +58,7 @@ def _parts_without_unit(name: object) -> list[str]:
 
 
 def reset_requests(
-    options: Any,
+    options: object,
     flocks: int,
     *,
     is_each: bool = True,
@@ -97,7 +97,7 @@ def reset_requests(
     return requests
 
 
-def _values(name: str, value: Any, flocks: int, is_each: bool) -> Any:
+def _values(name: str, value: object, flocks: int, is_each: bool) -> Any:
     """Return the value of an option for each flock."""
     held = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)

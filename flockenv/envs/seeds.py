@@ -1,7 +1,6 @@
 """Seeds of the environments: given to a reset, or drawn from the environment's own generator."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import gymnasium.utils.seeding
 import numpy as np
@@ -55,12 +54,12 @@ def drawn_seed(random: np.random.Generator) -> int:
     return int(random.integers(_SEEDS // 2))
 
 
-def seed_of(seed: Any) -> int:
+def seed_of(seed: object) -> int:
     """Return the seed of one flock as an int; errors name other values."""
     return seeds_from(seed, 1)[0]
 
 
-def seeds_from(first: Any, flocks: int) -> list[int]:
+def seeds_from(first: object, flocks: int) -> list[int]:
     """Return the seeds of flocks of which the first has this one, and each other the next."""
     number = as_int(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
@@ -71,7 +70,7 @@ def seeds_from(first: Any, flocks: int) -> list[int]:
     return [number + flock for flock in range(flocks)]
 
 
-def seeds_of_flocks(seed: Any, flocks: int) -> Sequence[int | None]:
+def seeds_of_flocks(seed: object, flocks: int) -> Sequence[int | None]:
     """Return a seed for each flock, of one for the first or of a list with one for each.
 
     None continues with the next episode.

@@ -139,7 +139,7 @@ class LeadersEnv(
         *,
         render_mode: str | None = None,
         render_size: tuple[int, int] = DEFAULT_SIZE,
-        **options: Any,
+        **options: object,
     ) -> None:
         self._set_up(options, render_mode, render_size)
         settings = self._batch.settings
@@ -211,7 +211,7 @@ class LeadersEnv(
         (reward,) = mean_rows(rewards[:, None].tolist())
         return rows.reshape(-1), reward, False, over, info
 
-    def set_wrapper_attr(self, name: str, value: Any, *, force: bool = True) -> bool:
+    def set_wrapper_attr(self, name: str, value: object, *, force: bool = True) -> bool:
         """Set an attribute that there is, for Gymnasium's wrappers; options are refused."""
         self._refuse_from_outside(name)
         return super().set_wrapper_attr(name, value, force=force)

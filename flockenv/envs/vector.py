@@ -86,7 +86,7 @@ class LeadersVectorEnv(
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
         render_size: tuple[int, int] = DEFAULT_SIZE,
-        **options: Any,
+        **options: object,
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
@@ -286,7 +286,7 @@ def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
     raise ParameterError(f"autoreset_mode = {short_repr(mode)} is not accepted: one of {names}")
 
 
-def _checked_mask(mask: Any, num_envs: int) -> NDArray[np.bool_] | None:
+def _checked_mask(mask: object, num_envs: int) -> NDArray[np.bool_] | None:
     if mask is None:
         return None
     if type(mask) is not np.ndarray or mask.dtype != np.bool_:

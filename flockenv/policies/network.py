@@ -138,7 +138,7 @@ class NetworkPolicy(RowPolicy):
     @classmethod
     def from_module(
         cls,
-        module: Any,
+        module: object,
         space: "gymnasium.Space[Any]",
         *,
         squashed: bool = False,

@@ -145,7 +145,7 @@ def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
         )
 
 
-def _tensors(found: Any) -> Iterator[Any]:
+def _tensors(found: object) -> Iterator[Any]:
     """Yield the tensors of an output, such as those of a distribution."""
     if isinstance(found, tuple | list):
         for each in found:

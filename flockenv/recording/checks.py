@@ -42,7 +42,7 @@ CONTACTS = tuple(each.name for each in fields(ContactSeries))
 
 def check_array(
     name: str,
-    array: Any,
+    array: object,
     shape: tuple[int, ...],
     dtypes: tuple[np.dtype[Any], ...],
     *,
@@ -99,7 +99,7 @@ def check_order(
         )
 
 
-def check_seed(seed: Any, name: str = "seed") -> None:
+def check_seed(seed: object, name: str = "seed") -> None:
     """Refuse anything but a seed of a flock."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
         raise ParameterError(
@@ -124,13 +124,13 @@ def check_origin(origin: Mapping[str, Any]) -> None:
             raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {words}")
 
 
-def check_share(after: Any) -> None:
+def check_share(after: object) -> None:
     """Refuse anything but a share of a run."""
     if not 0.0 <= number(after, "after") <= 1.0:
         raise ParameterError(f"after = {short_repr(after)} is not accepted: a share, 0 to 1")
 
 
-def check_ids(ids: Any, boats: int) -> None:
+def check_ids(ids: object, boats: int) -> None:
     """Refuse names that are not as many as boats, or not different."""
     if not isinstance(ids, np.ndarray) or ids.dtype.kind != "U" or ids.shape != (boats,):
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
@@ -138,7 +138,7 @@ def check_ids(ids: Any, boats: int) -> None:
         raise ParameterError("ids must differ from each other")
 
 
-def check_names(quantities: Any, of: str) -> None:
+def check_names(quantities: object, of: str) -> None:
     """Refuse quantities of a user's own that are not by name, or whose names are taken."""
     if not isinstance(quantities, Mapping):
         raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
@@ -163,7 +163,7 @@ def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
     return dict(functions)
 
 
-def own_series(name: str, function: Callable[[Any], Any], recording: Any) -> NDArray[np.float64]:
+def own_series(name: str, function: Callable[[Any], Any], recording: object) -> NDArray[np.float64]:
     """Return the values of a user's function of a recording, a number for each sample."""
     try:
         values = function(recording)

@@ -1,7 +1,6 @@
 """Frames: pictures of a flock, drawn in Rust. They need no screen."""
 
 from functools import lru_cache, singledispatch
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ DEFAULT_SIZE = (600, 600)
 
 @singledispatch
 def frame(
-    flock: Any,
+    flock: object,
     width: int = DEFAULT_SIZE[0],
     height: int = DEFAULT_SIZE[1],
     *,

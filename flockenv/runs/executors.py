@@ -68,7 +68,7 @@ class RayExecutor(Executor):
         return max(2, 2 * int(self._ray.cluster_resources().get("CPU", 0)))
 
     def submit(
-        self, function: Callable[..., Value], /, *arguments: Any, **named: Any
+        self, function: Callable[..., Value], /, *arguments: object, **named: object
     ) -> "Future[Value]":
         """Start a task; whenever its node is lost, it is repeated."""
         future: Future[Value] = self._remote(function).remote(*arguments, **named).future()

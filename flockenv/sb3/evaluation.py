@@ -71,7 +71,7 @@ class PerFlock(VecEnvWrapper):
         means = np.add.reduceat(rewards, self._first) / self._leaders
         return observations, means, dones[self._first], [infos[slot] for slot in self._first]
 
-    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: object = None) -> list[bool]:
         """Return, for each flock, True for `Monitor`: the ``"episode"`` is in the infos."""
         wrapped = issubclass(wrapper_class, Monitor)
         return [wrapped or self.venv.env_is_wrapped(wrapper_class)[0]] * self.num_envs
@@ -120,7 +120,7 @@ class _AsTrained:
     for each leader.
     """
 
-    def __init__(self, model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
+    def __init__(self, model: object, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
         self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
         own, layers = normalizing(self.model), _normalizing_layers(flocks)
@@ -149,7 +149,11 @@ class _AsTrained:
         self._normalizing = None if theirs else own
 
     def predict(
-        self, observation: Any, state: Any = None, episode_start: Any = None, **options: Any
+        self,
+        observation: object,
+        state: object = None,
+        episode_start: object = None,
+        **options: object,
     ) -> tuple[Any, Any]:
         """Return the model's actions; `episode_start` has an entry for each flock."""
         if self._normalizing is not None:
@@ -186,7 +190,7 @@ def _follow(training: VecNormalize, own: VecNormalize) -> None:
     own.clip_obs, own.epsilon = training.clip_obs, training.epsilon
 
 
-def _unwrapped(model: Any) -> Any:
+def _unwrapped(model: object) -> Any:
     """Return the model of a `ModelPolicy`, which normalizes too and turns levels into rudders."""
     # One in a wrapper of its own makes what the model observes.
     return model.model if type(model) is ModelPolicy else model
@@ -218,11 +222,11 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
             )
 
 
-def _says_meaning(space: Any) -> TypeGuard[ObservationSpace]:
+def _says_meaning(space: object) -> TypeGuard[ObservationSpace]:
     return isinstance(space, ObservationSpace)
 
 
-def _check_options(model: Any, said: dict[str, Any], options: dict[str, Any]) -> None:
+def _check_options(model: object, said: dict[str, Any], options: dict[str, Any]) -> None:
     """Refuse flocks with other options than those that a model is made for."""
     if differing := differing_options(said, options):
         raise ParameterError(
@@ -235,7 +239,7 @@ def _check_options(model: Any, said: dict[str, Any], options: dict[str, Any]) ->
 
 
 def evaluate_flocks(
-    model: Any,
+    model: object,
     env: VecEnv,
     n_eval_episodes: int = 64,
     deterministic: bool = True,
@@ -292,7 +296,7 @@ def _per_flock(env: VecEnv) -> VecEnv:
     return env if any(isinstance(each, PerFlock) for each in _layers(env)) else PerFlock(env)
 
 
-def _trained(model: Any, flocks: VecEnv) -> _AsTrained:
+def _trained(model: object, flocks: VecEnv) -> _AsTrained:
     """Return a model as it acts in flocks whose task is that of its training."""
     (leaders,) = (each.leaders for each in _layers(flocks) if isinstance(each, PerFlock))
     _check_task(model, flocks, leaders)

@@ -62,7 +62,7 @@ class LeaderSlot:
         """Parameters of the slot's flock; an episode may have its own target and bw_s."""
         return self._env._batch.parameters(self.flock_index)
 
-    def set_next_episodes(self, **options: Any) -> None:
+    def set_next_episodes(self, **options: object) -> None:
         """Set ``bw_s`` or ``target`` of the flock's next episodes, as `LeaderVecEnv.set_attr`."""
         self._env._batch.set_upcoming([self.flock_index], options)
 

@@ -90,7 +90,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         n_leaders: int | Sequence[int] | None = None,
         render_mode: str | None = None,
         render_size: tuple[int, int] = DEFAULT_SIZE,
-        **options: Any,
+        **options: object,
     ) -> None:
         num_flocks = at_least_one(num_flocks, "num_flocks")
         counts = None if n_leaders is None else _leader_counts(n_leaders)
@@ -176,7 +176,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
         return self._batch.core.observe()
 
-    def set_options(self, options: Any = None) -> None:
+    def set_options(self, options: object = None) -> None:
         """Set the options of the next reset: a dictionary, or one for each slot.
 
         Raises
@@ -283,7 +283,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
-    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+    def get_attr(self, attr_name: str, indices: object = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""
         if not hasattr(self, "slots"):
             raise AttributeError(attr_name)
@@ -298,7 +298,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             )
         return chosen
 
-    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+    def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
         They hold until they are set again, within `learn` too. Values are as for `reset`: a range
@@ -329,13 +329,17 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         self._batch.set_upcoming(flocks, {attr_name: value})
 
     def env_method(
-        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+        self,
+        method_name: str,
+        *method_args: object,
+        indices: object = None,
+        **method_kwargs: object,
     ) -> list[Any]:
         """Call a method of each slot's `LeaderSlot`."""
         methods = self.get_attr(method_name, indices)
         return [method(*method_args, **method_kwargs) for method in methods]
 
-    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: object = None) -> list[bool]:
         """Return False for each slot: there are no wrappers around single slots."""
         return [False for _ in self._chosen(indices)]
 
@@ -371,7 +375,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         """Nothing is held open."""
 
 
-def _equal(one: Any, other: Any) -> bool:
+def _equal(one: object, other: object) -> bool:
     try:
         np.testing.assert_equal(one, other)
     except AssertionError:
@@ -379,7 +383,7 @@ def _equal(one: Any, other: Any) -> bool:
     return True
 
 
-def _leader_counts(n_leaders: Any) -> list[int]:
+def _leader_counts(n_leaders: object) -> list[int]:
     """Leaders of the flocks, to be dealt out in turn."""
     dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
     if not isinstance(dealt, Sequence) or isinstance(dealt, str):

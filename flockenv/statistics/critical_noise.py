@@ -60,7 +60,7 @@ def critical_noise(
     if max(group[:, 1].mean() for group in groups) < LEAST_ROTATION:
         return unknown
 
-    def of_places(*indices: Any, axis: int) -> NDArray[np.float64]:
+    def of_places(*indices: object, axis: int) -> NDArray[np.float64]:
         drawn = [group[np.asarray(at, int)] for group, at in zip(groups, indices, strict=True)]
         psi_o, rotation = (
             np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in drawn)))
