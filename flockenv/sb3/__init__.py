@@ -8,15 +8,12 @@ from flockenv._io.extras import require
 require("stable_baselines3", "train")
 
 # ruff: noqa: E402 - after the check above
-from flockenv.sb3.evaluation import (
-    FlockEvalCallback,
-    FlockEvaluation,
-    PerFlock,
-    evaluate_flocks,
-)
+from flockenv.sb3.evaluation import FlockEvaluation, evaluate_flocks
+from flockenv.sb3.evaluation_callback import FlockEvalCallback
 from flockenv.sb3.leader_slot import LeaderSlot
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.sb3.monitor import FlockMonitor
+from flockenv.sb3.per_flock import PerFlock
 from flockenv.sb3.shared_noise import SharedNoisePolicy, shared_noise
 
 __all__ = [

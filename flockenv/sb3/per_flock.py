@@ -1,0 +1,69 @@
+"""`PerFlock`: a `LeaderVecEnv` whose ends and infos come once per flock, for evaluation."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+
+from flockenv.sb3.leader_vec_env import LeaderVecEnv
+
+
+class PerFlock(VecEnvWrapper):
+    """A `LeaderVecEnv` whose rewards, ends and infos come once per flock; for evaluation only.
+
+    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. A flock's leaders
+    have one episode with one order. Here `num_envs` is the number of flocks, a reward is the mean
+    over a flock's leaders, and an info is that of its first leader, with the ``"episode"``.
+    Observations and actions still have a row per leader, so that the model sees what it was trained
+    on.
+
+    Parameters
+    ----------
+    venv
+        A `LeaderVecEnv`, also inside other wrappers.
+
+    Raises
+    ------
+    TypeError
+        If it wraps none.
+    """
+
+    def __init__(self, venv: VecEnv) -> None:
+        leaders = getattr(venv, "unwrapped", venv)
+        if not isinstance(leaders, LeaderVecEnv):
+            raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
+        super().__init__(venv)
+        self._leaders = np.bincount(leaders.flock_of_slot)
+        self._first = np.cumsum(self._leaders) - self._leaders
+        self.num_envs = leaders.num_flocks
+        self.leaders = leaders
+
+    def reset(self) -> Any:
+        """Start episodes in all flocks; return observations, a row per leader."""
+        return self.venv.reset()
+
+    def step_wait(self) -> tuple[Any, NDArray[Any], NDArray[Any], list[dict[str, Any]]]:
+        """Return observations, a row per leader, and rewards, ends and infos, one per flock."""
+        observations, rewards, dones, infos = self.venv.step_wait()
+        means = np.add.reduceat(rewards, self._first) / self._leaders
+        return observations, means, dones[self._first], [infos[slot] for slot in self._first]
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: object = None) -> list[bool]:
+        """Return, for each flock, True for `Monitor`: the ``"episode"`` is in the infos."""
+        wrapped = issubclass(wrapper_class, Monitor)
+        return [wrapped or self.venv.env_is_wrapped(wrapper_class)[0]] * self.num_envs
+
+
+def per_flock(env: VecEnv) -> VecEnv:
+    """Return an environment that counts flocks."""
+    return env if any(isinstance(each, PerFlock) for each in layers_of(env)) else PerFlock(env)
+
+
+def layers_of(env: VecEnv) -> list[VecEnv]:
+    """Return a vector environment and those within its wrappers."""
+    layers = [env]
+    while isinstance(layers[-1], VecEnvWrapper):
+        layers.append(layers[-1].venv)
+    return layers
