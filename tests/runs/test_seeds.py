@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flockenv import LeadersVectorEnv, ParameterError
-from flockenv.runs.seeds import POLICY_SEEDS, check_evaluation_seeds
+from flockenv.runs.seeds import FIRST_TRAINING_SEED, POLICY_SEEDS, check_evaluation_seeds
 
 REPOSITORY = Path(__file__).parents[2]
 MAKERS = [
@@ -29,8 +29,10 @@ def test_each_use_that_makes_policies_has_one_script():
     for path in MAKERS:
         for use in re.findall(r'POLICY_SEEDS\["([^"]+)"\]', path.read_text()):
             scripts[use].add(path.name)
-    # Those that train policies draw from one range, and judge none of each other's.
-    shared = ("training", "evaluation", "paper")
+    # A training in another task takes its algorithm's own range. Seeds of trainings judge nothing.
+    trained = ("training", "evolution strategy", "branches")
+    assert all(POLICY_SEEDS[use].first >= FIRST_TRAINING_SEED for use in trained)
+    shared = (*trained, "evaluation", "paper")
     assert all(len(found) == 1 for use, found in scripts.items() if use not in shared), scripts
 
 
