@@ -42,7 +42,10 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     if description.exists():
         raise ParameterError(f"{description} is there already: it may be written by hand")
     doubts = Doubts()
-    form = _spelling(path, doubts)
+    try:
+        form = _spelling(path, doubts)
+    except ParameterError as error:
+        raise ParameterError(f"{path} cannot be read as a table: {error}") from error
     table = read_table(path, _layout(form))
     form |= recognized(table.names) if "header" not in doubts else {}
     try:

@@ -157,7 +157,10 @@ def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]
     if separator == " ":
         return [line.split() for line in lines]
     rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
-    return [[cell.strip() for cell in row] for row in rows]
+    try:
+        return [[cell.strip() for cell in row] for row in rows]
+    except csv.Error as error:  # Of cells as long as a page, and of quotes that nothing ends.
+        raise ParameterError(f"line {skip + 1} and those after it are no table: {error}") from error
 
 
 def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:

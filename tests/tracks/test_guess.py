@@ -89,6 +89,15 @@ def test_a_center_is_guessed_only_if_it_is_known(tmp_path, names, x):
         assert read_layout(tmp_path / "lab.toml").x == x
 
 
+@pytest.mark.parametrize("text", ["w" * 300_000 + ",frame\n1,2\n", '"' + "a" * 300_000 + "\n1\n"])
+def test_a_cell_as_long_as_a_book_is_named(tmp_path, text):
+    (tmp_path / "lab.csv").write_text(text)
+    with pytest.raises(
+        flockenv.ParameterError, match=r"lab\.csv cannot be read as a table: line 1"
+    ):
+        guess_layout(tmp_path / "lab.csv")
+
+
 def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):
     table = seen.table.set_axis(LAB, axis=1)
     table.loc[::9, ["X [px]", "Y [px]"]] = -1
