@@ -73,16 +73,21 @@ def page_runs():
 
 @pytest.fixture
 def colors_in() -> Callable[[Path], set[str]]:
-    """Return the references, and the colors of other policies, in the picture of a comparison."""
+    """Return the references, and the colors of other policies, in the picture of a comparison.
+
+    The paper's law has one color at every rate, and one name here.
+    """
 
     def found(path: Path) -> set[str]:
         from matplotlib.colors import to_rgb
         from matplotlib.image import imread
 
         from flockenv.comparison.figure import COLORS, OWN_COLORS
+        from flockenv.policies.names import EVERY_SUBSTEP
 
         pixels = imread(path)[..., :3]
-        named = {**COLORS, **{color: color for color in OWN_COLORS}}
+        named = {name: color for name, color in COLORS.items() if name != EVERY_SUBSTEP}
+        named |= {color: color for color in OWN_COLORS}
         near = {n: abs(pixels - to_rgb(c)).max(axis=-1) < 0.02 for n, c in named.items()}
         return {name for name, pixels in near.items() if pixels.sum() > 500}
 
