@@ -60,10 +60,10 @@ def ends(p: flockenv.FlockParameters) -> np.ndarray:
 def main() -> None:
     """Measure and write."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUT
-    reference = ends(parameters("leapfrog", REFERENCE_S, 2))
+    reference = ends(parameters("leapfrog", REFERENCE_S, 1e-9))
     lines = []
-    for scheme, tolerance_cm in (("leapfrog", math.inf), ("leapfrog", 1e-9), ("moreau", math.inf)):
-        gaps = "linear" if math.isinf(tolerance_cm) else f"{tolerance_cm:g} cm"
+    for scheme, gaps in (("leapfrog", "linear"), ("leapfrog", "1e-9 cm"), ("moreau", "linear")):
+        tolerance_cm = math.inf if gaps == "linear" else float(gaps.removesuffix(" cm"))
         line: dict[str, object] = {"scheme": f"{scheme} / {gaps}"}
         for dt_s in STEPS_S:
             p = parameters(scheme, dt_s, tolerance_cm)

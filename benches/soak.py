@@ -24,7 +24,7 @@ TRANSIENT, SAMPLES = 0.2, 200
 #: Steps between two round trips through bytes, and until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5
 MOST_GROWTH_KIB = 1024.0
-BOUNDS = {"worst_residual_cm_s": 1e-8, "worst_overlap_cm": 0.1}
+BOUNDS = {"worst_residual_cm_s": 1e-8, "worst_overlap_cm": 1e-4}
 
 
 @dataclass

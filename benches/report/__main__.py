@@ -1,8 +1,9 @@
 """Draw the figures and write the short tables of one run: ``python benches/report FOLDER [FILES]``.
 
 FOLDER has the tables of the run. The short ones, which docs/speed_vs_error.md shows, are written
-beside them. FILES is the folder with the peers' versions; after a measurement it is given, and
-``made.toml`` stores the date, the machine and the versions.
+beside them. FILES is the folder with the peers' versions; after a measurement it is given. Then
+``made.toml`` stores the date, the machine and the versions, and ``processors`` gets a table of
+times that is named after the processor.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from machine import provenance, write_provenance
-from measurements import BOX2D, RAPIER, STEP_S, Measurements, ours
+from machine import processor, provenance, write_provenance
+from measurements import BOX2D, BOX2D_TWO, RAPIER, STEP_S, Measurements, ours
 from plots import draw_all
 
 # Columns of the short tables, and what they are called there.
@@ -29,9 +30,11 @@ ENGINES = {
 }
 SIZES = {
     "leapfrog": ours("leapfrog", "linear"),
+    "leapfrog, 1e-4 cm": ours("leapfrog", "1e-4 cm"),
     "leapfrog, 1e-6 cm": ours("leapfrog", "1e-6 cm"),
     "rapier2d-f64": RAPIER,
     "Box2D": BOX2D,
+    "Box2D, two threads": BOX2D_TWO,
 }
 
 
@@ -45,6 +48,7 @@ def main() -> None:
     if arguments.files is not None:
         made = provenance(Path(__file__).parents[1], arguments.files)
         write_provenance(arguments.folder, made)
+        write_processor(m, arguments.folder)
     draw_all(m, arguments.folder)
     for name, make in {
         "engines": engines,
@@ -55,6 +59,15 @@ def main() -> None:
     }.items():
         path = arguments.folder / f"short_{name}.csv"
         make(m).to_csv(path, index=False, float_format=two_digits, lineterminator="\n")
+
+
+def write_processor(m: Measurements, folder: Path) -> None:
+    """Write the times of this processor; those of others stay beside them."""
+    columns = ["scene", "n", "engine", "setting", "dt_s", "us_per_step", "us_q1", "us_q3", "faster"]
+    rows = m.speed[m.speed.n.isin([27, 1000])].dropna(subset=["us_per_step"])
+    path = folder / "processors" / f"{processor()}.csv"
+    path.parent.mkdir(exist_ok=True)
+    rows[columns].to_csv(path, index=False, float_format="%.3g", lineterminator="\n")
 
 
 def two_digits(value: float) -> str:
@@ -122,7 +135,7 @@ def exponents(m: Measurements) -> pd.DataFrame:
 
 
 def _by_step(rows: pd.DataFrame, scheme: str) -> pd.DataFrame:
-    engine, setting = ours(scheme, 2)
+    engine, setting = ours(scheme, "1e-9 cm")
     return rows[(rows.engine == engine) & (rows.setting == setting)].sort_values("dt_s")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import subprocess
 import tomllib
 from datetime import UTC, datetime
@@ -28,13 +29,22 @@ def write_provenance(folder: Path, found: dict[str, str]) -> None:
     (folder / FILE).write_text("".join(lines), encoding="utf-8")
 
 
-def _machine() -> str:
-    model = platform.processor() or platform.machine()
+def processor() -> str:
+    """Return the processor's model as the name of a file."""
+    return re.sub(r"[^a-z0-9]+", "-", _model().lower()).strip("-")
+
+
+def _model() -> str:
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():
         names = [line for line in cpuinfo.read_text().splitlines() if line.startswith("model name")]
-        model = names[0].split(":", 1)[1].strip() if names else model
-    return f"{model}, {os.cpu_count()} cores, {platform.system()} on {platform.machine()}"
+        if names:
+            return names[0].split(":", 1)[1].strip()
+    return platform.processor() or platform.machine()
+
+
+def _machine() -> str:
+    return f"{_model()}, {os.cpu_count()} cores, {platform.system()} on {platform.machine()}"
 
 
 def _versions(benches: Path, files: Path) -> str:

@@ -15,6 +15,7 @@ DEEP_CM = 0.01
 RAPIER = ("rapier2d-f64", "4 iterations / unit 10 cm")
 TIGHT_RAPIER = ("rapier2d-f64", "4 iterations / unit 1 cm")
 BOX2D = ("Box2D (f32)", "4 substeps / unit 10 cm")
+BOX2D_TWO = ("Box2D (f32)", "4 substeps / unit 10 cm / 2 threads")
 OURS = ("flockenv", "leapfrog / block-pivoting / linear")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import matplotlib as mpl
@@ -17,6 +18,7 @@ from flockenv.rendering.palette import OKABE_ITO
 # Name: engine and setting, color, marker, whether filled.
 SERIES = {
     "flockenv leapfrog": (ours("leapfrog", "linear"), OKABE_ITO["blue"], "o", True),
+    "flockenv leapfrog, 1e-4 cm": (ours("leapfrog", "1e-4 cm"), "#7B5FB8", "o", False),
     "flockenv leapfrog, 1e-6 cm": (ours("leapfrog", "1e-6 cm"), OKABE_ITO["sky blue"], "o", False),
     "flockenv leapfrog, 1e-9 cm": (ours("leapfrog", "1e-9 cm"), OKABE_ITO["green"], "o", False),
     "flockenv moreau": (ours("moreau", "linear"), OKABE_ITO["orange"], "s", True),
@@ -34,6 +36,7 @@ def draw_all(m: Measurements, folder: Path) -> None:
     with mpl.rc_context(style):
         for name, draw in [
             ("pareto", _pareto),
+            ("tolerance", _tolerance),
             ("order_of_schemes", _order_of_schemes),
             ("order_parameters", _order_parameters),
             ("growth", _growth),
@@ -81,6 +84,32 @@ def _pareto(m: Measurements) -> plt.Figure:
     return figure
 
 
+def _tolerance(m: Measurements) -> plt.Figure:
+    """Time and errors of the default scheme against the tolerance, a line for each step."""
+    settings = m.settings()
+    ours = settings[(settings.scheme == "leapfrog") & (settings.solver == "block-pivoting")]
+    finite = sorted(cm for cm in ours.tolerance_cm.unique() if math.isfinite(cm))
+    # Gaps that are linearized once have no tolerance: they stand right of the largest.
+    once_cm = 100 * finite[-1]
+    figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.9), layout="constrained")
+    panels = [
+        ("jam_us_per_step", "µs per step of the jam"),
+        ("jam_overlap_max_cm", "deepest overlap in the jam [cm]"),
+        ("jam_half_second_cm", "error after 0.5 s of the jam [cm]"),
+    ]
+    colors = ("blue", "sky blue", "green", "orange", "vermilion")
+    for axis, (column, label) in zip(axes, panels, strict=True):
+        for color, (dt_s, rows) in zip(colors, ours.groupby("dt_s"), strict=True):
+            rows = rows.sort_values("tolerance_cm")
+            at = rows.tolerance_cm.replace(math.inf, once_cm)
+            axis.plot(at, rows[column], label=f"{dt_s:g} s", **_style(OKABE_ITO[color], "o", True))
+        axis.set(xscale="log", yscale="log", ylabel=label, xlabel="tolerance_cm")
+        axis.set_xticks([*finite, once_cm], [*(f"{cm:.0e}" for cm in finite), "once"])
+        axis.minorticks_off()
+    axes[0].legend(frameon=False, title="dt", fontsize=8)
+    return figure
+
+
 def _order_of_schemes(m: Measurements) -> plt.Figure:
     figure, axis = plt.subplots(figsize=(7, 5), layout="constrained")
     names = {
@@ -89,7 +118,7 @@ def _order_of_schemes(m: Measurements) -> plt.Figure:
         "paper": (OKABE_ITO["purple"], "^"),
     }
     for scheme, style in names.items():
-        rows = _rows(m.slide, ours(scheme, 2))
+        rows = _rows(m.slide, ours(scheme, "1e-9 cm"))
         axis.plot(rows.dt_s, rows.slide_median_cm, label=scheme, **_style(*style, True))
     for name in ("rapier2d-f64", "Box2D", "pymunk (Chipmunk)", "MuJoCo"):
         who, *style = SERIES[name]

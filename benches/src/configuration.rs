@@ -22,8 +22,13 @@ pub enum Kind {
     RapierF64(rapier_f64::Settings),
     /// rapier2d, single precision.
     RapierF32(rapier_f32::Settings),
-    /// Box2D with so many substeps.
-    Box2d(i32),
+    /// Box2D.
+    Box2d {
+        /// Substeps of a step.
+        substeps: i32,
+        /// Threads of its own scheduler.
+        workers: i32,
+    },
 }
 
 /// An engine with its settings and its step.
@@ -79,7 +84,21 @@ impl Configuration {
     /// Box2D with the substeps that it advises.
     pub fn box2d(dt_s: f64) -> Self {
         Self {
-            kind: Kind::Box2d(4),
+            kind: Kind::Box2d {
+                substeps: 4,
+                workers: 1,
+            },
+            dt_s,
+        }
+    }
+
+    /// The same with two threads.
+    pub fn box2d_with_two_workers(dt_s: f64) -> Self {
+        Self {
+            kind: Kind::Box2d {
+                substeps: 4,
+                workers: 2,
+            },
             dt_s,
         }
     }
@@ -146,7 +165,10 @@ impl Configuration {
         });
         all.extend([0.005, 0.01, 0.02].map(Self::box2d));
         all.push(Self {
-            kind: Kind::Box2d(16),
+            kind: Kind::Box2d {
+                substeps: 16,
+                workers: 1,
+            },
             dt_s: STEP_S,
         });
         all
@@ -182,7 +204,9 @@ impl Configuration {
             Kind::RapierF32(settings) => {
                 Box::new(rapier_f32::Rapier::new(parameters, seed, start, settings))
             }
-            Kind::Box2d(substeps) => Box::new(Box2d::new(parameters, seed, start, substeps)),
+            Kind::Box2d { substeps, workers } => {
+                Box::new(Box2d::new(parameters, seed, start, substeps, workers))
+            }
         }
     }
 
@@ -216,7 +240,7 @@ impl Configuration {
             Kind::Ours { .. } => "flockenv",
             Kind::RapierF64(_) => "rapier2d-f64",
             Kind::RapierF32(_) => "rapier2d (f32)",
-            Kind::Box2d(_) => "Box2D (f32)",
+            Kind::Box2d { .. } => "Box2D (f32)",
         }
     }
 
@@ -240,7 +264,14 @@ impl Configuration {
             Kind::RapierF32(set) => {
                 rapier_setting(set.iterations, set.length_unit_cm, set.round_obstacle)
             }
-            Kind::Box2d(substeps) => format!("{substeps} substeps / unit 10 cm"),
+            Kind::Box2d { substeps, workers } => {
+                let threads = if workers > 1 {
+                    format!(" / {workers} threads")
+                } else {
+                    String::new()
+                };
+                format!("{substeps} substeps / unit 10 cm{threads}")
+            }
         }
     }
 }

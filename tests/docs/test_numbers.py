@@ -113,6 +113,20 @@ TRAININGS_PAGE = "studies/trainings/README.md"
 PLANNING = "studies/planning/results/plan_"
 
 
+def throughput() -> list[Number]:
+    page, table = "docs/speed_vs_error.md", "docs/throughput/environments.csv"
+    rows = {pool: {"row": f"64 flocks, {pool}"} for pool in ("wide", "narrow")}
+
+    def agent_steps(rows: Any) -> float:
+        leaders = 4
+        return leaders * rows["median"].iloc[0] / 1e6
+
+    return [
+        Number(page, "That is {} and # million agent steps", table, rows["wide"], agent_steps),
+        Number(page, "That is # and {} million agent steps", table, rows["narrow"], agent_steps),
+    ]
+
+
 def levels() -> list[Number]:
     """Numbers of suite v3: what laws reach in each level."""
     page, file, laws = "docs/levels.md", "studies/levels/results/laws.csv", []
@@ -373,6 +387,7 @@ def lessons() -> list[Number]:
 
 NUMBERS = [
     *readme(),
+    *throughput(),
     *levels(),
     *leaders("README.md"),
     *leaders("docs/leaders.md"),

@@ -1,5 +1,5 @@
 //! The scene in Box2D: capsules of mass 1, walls as chains, no friction, no restitution, no sleeping.
-//! One thread, single precision, vector instructions as Box2D chooses them.
+//! Single precision, vector instructions as Box2D chooses them.
 #![allow(unsafe_code, reason = "Box2D is a C library")]
 
 use crate::engines::{Driver, Side, circle};
@@ -31,9 +31,15 @@ pub struct Box2d {
 }
 
 impl Box2d {
-    /// A scene that starts at the start given; Box2D advises 4 substeps.
-    pub fn new(parameters: &FlockParameters, seed: u64, start: &Start, substeps: i32) -> Self {
-        let world = create_world();
+    /// A scene that starts at the start given; Box2D advises 4 substeps. More than one worker are threads of its own.
+    pub fn new(
+        parameters: &FlockParameters,
+        seed: u64,
+        start: &Start,
+        substeps: i32,
+        workers: i32,
+    ) -> Self {
+        let world = create_world(workers);
         let pool = parameters.pool;
         if pool.has_inner_wall() {
             add_wall(world, pool.inner_radius_cm, Side::Outside);
@@ -128,7 +134,7 @@ impl Drop for Box2d {
     }
 }
 
-fn create_world() -> b2WorldId {
+fn create_world(workers: i32) -> b2WorldId {
     let _held = LIST_OF_WORLDS.lock();
     // SAFETY: the world is made from Box2D's own defaults and used by this thread alone.
     unsafe {
@@ -136,6 +142,7 @@ fn create_world() -> b2WorldId {
         let mut definition = b2DefaultWorldDef();
         definition.gravity = b2Vec2 { x: 0.0, y: 0.0 };
         definition.enableSleep = false;
+        definition.workerCount = workers;
         b2CreateWorld(&raw const definition)
     }
 }

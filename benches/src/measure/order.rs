@@ -167,9 +167,17 @@ pub fn measure(effort: Effort) -> Table {
     };
     let finest = Configuration::exact(Scheme::Leapfrog, f64::INFINITY, 0.005);
     let mut all = vec![(finest, OTHER_SEEDS)];
-    all.extend(exact(Scheme::Leapfrog, f64::INFINITY, &[0.01, 0.02, 0.05, 0.1]));
+    all.extend(exact(
+        Scheme::Leapfrog,
+        f64::INFINITY,
+        &[0.01, 0.02, 0.05, 0.1],
+    ));
     all.extend(exact(Scheme::Leapfrog, 1e-4, &[0.02, 0.05, 0.1]));
-    all.extend(exact(Scheme::Moreau, f64::INFINITY, &[0.01, 0.02, 0.05, 0.1]));
+    all.extend(exact(
+        Scheme::Moreau,
+        f64::INFINITY,
+        &[0.01, 0.02, 0.05, 0.1],
+    ));
     all.extend(exact(Scheme::Paper, f64::INFINITY, &[0.01, 0.02, 0.05]));
     all.extend([Configuration::rapier(STEP_S), Configuration::box2d(STEP_S)].map(|c| (c, 1)));
     let reference = reference(effort, seeds);

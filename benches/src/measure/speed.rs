@@ -125,6 +125,12 @@ pub fn measure(effort: Effort) -> Table {
     .concat();
     for scene in Scene::ALL {
         add_rows(&mut table, scene, 27, &exact, seeds, timed_s);
+        // In turns of its own: a second thread would disturb the others.
+        let threads = [
+            Configuration::rapier(STEP_S),
+            Configuration::box2d_with_two_workers(STEP_S),
+        ];
+        add_rows(&mut table, scene, 27, &threads, 1, effort.choose(6.0, 24.0));
         // Their steps take so much longer that one seed is as long as three of the others.
         add_rows(&mut table, scene, 27, &inexact, 1, effort.choose(6.0, 24.0));
     }
@@ -148,7 +154,13 @@ pub fn larger_flocks() -> Vec<Configuration> {
     let ours = TOLERANCES_CM.map(|cm| Configuration::exact(Scheme::Leapfrog, cm, STEP_S));
     let mut all = ours.to_vec();
     all.push(Configuration::exact(Scheme::Moreau, f64::INFINITY, STEP_S));
-    all.extend([Configuration::rapier(STEP_S), Configuration::box2d(STEP_S)]);
+    // The default.
+    all.push(Configuration::exact(Scheme::Leapfrog, 1e-4, 0.02));
+    all.extend([
+        Configuration::rapier(STEP_S),
+        Configuration::box2d(STEP_S),
+        Configuration::box2d_with_two_workers(STEP_S),
+    ]);
     all.extend(single);
     all
 }
