@@ -142,8 +142,7 @@ class FlockParameters:
             raise ParameterError(
                 f"pool = {short_repr(pool)}: the critical noise of preset {preset!r} has not been "
                 "measured there. Choose another pool, or give a backward duration (bw_s; on the "
-                "command line `--pool narrow` or `--set bw_s=1.0`); studies/critical_noise "
-                "measures it"
+                "command line `--pool narrow` or `--bw-s 1.0`); `flockenv sweep` measures it"
             )
         return bw_s
 
@@ -212,6 +211,12 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
             f"bw_s must be a number, not {short_repr(bw_s)}: environments take a range, of which "
             "each episode draws its own, "
             'as in gymnasium.make("flockenv/Leaders-v0", bw_s=(0.1, 0.4))'
+        )
+    target = changes.get("target")
+    if isinstance(target, str) and target in ("random", "alternate"):
+        raise ParameterError(
+            f'target = "{target}" is not accepted: "cw" or "ccw"; environments take it, as in '
+            f'gymnasium.make("flockenv/Leaders-v0", target="{target}")'
         )
     return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
 

@@ -16,7 +16,7 @@ from flockenv.cli.compare_entries import compare_entries
 from flockenv.cli.console import console, echo, errors, print_json
 from flockenv.cli.options import TRUST, Printing, option, option_of, takes
 from flockenv.cli.output import prepare, printable
-from flockenv.cli.parameters import Flocks, changed_fields
+from flockenv.cli.parameters import Flocks, changed_fields, pool_of
 from flockenv.cli.progress import progress
 from flockenv.comparison.case import Case
 from flockenv.comparison.levels import SUITE as LEVELS_SUITE
@@ -56,7 +56,9 @@ class CompareOptions(Flocks, Printing):
     name: list[str] | None = option(None, "Name of your policy; once for each. [its file's name]")
     only: bool = option(False, f"Leave out {', '.join(REFERENCES)}.", "--only")
     trust: bool = option(False, TRUST, "--trust")
-    pool: list[str] | None = option(None, "Pool; repeatable. [wide, or the parameters' pool]")
+    pool: list[str] | None = option(
+        None, "wide, narrow or (outer_cm, inner_cm); repeatable. [wide, or the parameters' pool]"
+    )
     bw_s: list[float] | None = option(None, "Noise: backward duration in s; repeatable. [critical]")
     n_leaders: str | None = option(
         None, "Numbers of leaders, as in 0-4 or 1,3. [0-4; 1-4 with --env]", metavar="NUMBERS"
@@ -357,7 +359,7 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     base = options.parameters()
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
-    pools: Sequence[Pool] = options.pool or [base.pool]
+    pools: Sequence[Pool] = [*map(pool_of, options.pool or ())] or [base.pool]
     for pool in pools:
         levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
         preset = str(given.get("preset", "simulation"))

@@ -54,7 +54,10 @@ def load_recording(
     check_ending(path)
     if layout is None and not (beside := description_of(path)).exists():
         checks = guess_layout(path)
-        echo(f"{printable(path)} has no description; {printable(beside)} is a guess:", errors)
+        echo(
+            f"{printable(path)} has no description; {printable(beside)} is a guess. Its doubts:",
+            errors,
+        )
         for line in checks:
             echo(f"  {line}", errors)
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from flockenv._io.toml import read_toml, read_toml_file
 from flockenv.cli.options import option, option_of
@@ -51,10 +51,8 @@ class Flocks:
             value = getattr(self, name)
             if value is not None and name in changed:
                 raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
-            if name == "pool" and re.fullmatch(r"[\d.]+, *[\d.]+", value or ""):
-                raise ParameterError(f"--pool {value} is not accepted: type `--pool '({value})'`")
             if value is not None:
-                changed[name] = _value(value) if isinstance(value, str) else value
+                changed[name] = pool_of(value) if isinstance(value, str) else value
         return fields | changed
 
 
@@ -86,6 +84,13 @@ def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, o
             raise ParameterError(f"{option} changes {name} twice")
         fields[name] = _value(text)
     return fields
+
+
+def pool_of(text: str) -> Any:
+    """Return the pool that an option names: a word, or two radii in parentheses or brackets."""
+    if re.fullmatch(r"[\d.]+, *[\d.]+", text):
+        raise ParameterError(f"--pool {text} is not accepted: type `--pool '({text})'`")
+    return _value(text)
 
 
 def _value(text: str) -> object:

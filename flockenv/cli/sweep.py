@@ -128,6 +128,7 @@ def _show_table(options: SweepOptions, folder: Path, runs: int, table: "pd.DataF
 def _show_critical_noises(table: "pd.DataFrame") -> None:
     """Print where each flock loses its order, if the sweep has several noises."""
     from flockenv.runs.sweep import critical_noises
+    from flockenv.statistics import LEAST_ROTATION
 
     found = critical_noises(table)
     for row in found.to_dict("records"):
@@ -136,8 +137,13 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
         lost = f"order is lost at bw_s {noise:.3g} s ({low:.3g} to {high:.3g})"
         if math.isnan(noise):
             most = row["rotation_size"]
-            lost = f"no order to lose, or fewer than three runs (mean |m| at most {most:.2f})"
-        echo(f"{flock}: {lost}" if flock else lost.capitalize())
+            lost = f"no order to lose: mean |m| is {most:.2f} at most, below {LEAST_ROTATION}"
+            if most >= LEAST_ROTATION:
+                lost = (
+                    "no answer where order is lost: it takes three runs at each noise, and noises "
+                    "up to disorder"
+                )
+        echo(f"{flock}: {lost}" if flock else f"{lost[0].upper()}{lost[1:]}")
 
 
 def _check_same(path: Path, work: "SweepSpec") -> None:
@@ -161,6 +167,14 @@ def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) 
     if options.as_json:
         print_json(asdict(work))
         return
-    hours = "an unknown number of" if work.core_hours is None else f"{work.core_hours:.2g}"
     echo(f"{work.runs} runs, {work.stored} of them stored")
-    echo(f"The others: {work.flock_hours:.4g} flock-hours, about {hours} core-hours here")
+    hours = work.core_hours
+    time = "an unknown time" if hours is None else f"about {_in_units(3600 * hours)}"
+    echo(f"The others: {work.flock_hours:.4g} flock-hours, {time} of one core here")
+
+
+def _in_units(seconds: float) -> str:
+    """Return a time as one reads it."""
+    if seconds < 100.0:
+        return f"{max(seconds, 1.0):.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000.0 else f"{seconds / 3600:.1f} h"

@@ -54,10 +54,12 @@ WORDS: Mapping[str, tuple[str, ...]] = {
         *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp", "position_t"),
         *("rosbagtimestamp", "*time", "*stamp", "step", "image", "frames", "frame", "frame_*"),
         *("time_*", "*_frame", "framenumber", "sample", "index"),
+        *("zeit", "bild", "bild_*"),
     ),
     "id": (
         *("track_id", "track", *(f"{thing}{end}" for thing in _THINGS for end in ("", "s", "_*"))),
         *("id", "name", "instance", "oid", "trackid", "label"),
+        *("boot", "roboter", "fisch", "tier"),
     ),
     "x": (
         *("pos_x", "position_x", "cent_x", "centroid_x", "center_x", "centre_x", "wcentroid_x"),
@@ -65,6 +67,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     ),
     "heading": (
         *("heading", "theta", "angle", "orientation", "yaw", "alpha", "direction", "ang", "*yaw"),
+        *("winkel", "richtung"),
     ),
 }
 """What columns are often called, in small letters without a unit, the better names first."""

@@ -177,7 +177,7 @@ def _guess_time(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) ->
     if per_s is not None and (per_s != 1.0 or is_whole):
         form.setdefault("fps", per_s)
     elif "fps" not in form and per_s is None and is_whole:
-        is_frame = name.startswith(("frame", "step", "image"))
+        is_frame = name.startswith(("frame", "step", "image", "bild"))
         words = "frames per second" if is_frame else "how many of its units a second has"
         doubts["fps"] = (25.0, f"{'check' if is_frame else 'fill in'}: {words}")
 

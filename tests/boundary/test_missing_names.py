@@ -70,6 +70,7 @@ def test_copies_and_pickles_are_made_all_the_same():
     [
         (lambda: FlockParameters(bw_s=(0.1, 0.4)), "environments take a range"),
         (lambda: PARAMETERS.replace(bw_s=[0.1, 0.4]), "environments take a range"),
+        (lambda: FlockParameters(target="random"), 'environments take it, .* target="random"'),
         (lambda: flockenv.LeadersEnv(reward=len), "of many flocks take a function"),
         (lambda: flockenv.parallel_env(reward=len), "of many flocks take a function"),
         (lambda: flockenv.LeadersEnv(num_envs=4), "gymnasium.make_vec"),

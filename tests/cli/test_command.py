@@ -60,6 +60,7 @@ def test_a_field_that_is_given_twice_is_refused(cli, tmp_path):
     [
         ("run --bw-s 0,3", "--bw-s 0,3 is not accepted: type `--bw-s 0.3`"),
         ("run --minutes=0,5 -q", "--minutes 0,5 is not accepted: type `--minutes 0.5`"),
+        ("compare --pool 180,97", "--pool 180,97 is not accepted: type `--pool '(180,97)'`"),
         ("run --pool 180,97", "--pool 180,97 is not accepted: type `--pool '(180,97)'`"),
         ("run --minutes 0", "--minutes 0 is not accepted: more than 0, as in --minutes 0.1"),
     ],

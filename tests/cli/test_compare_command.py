@@ -132,7 +132,7 @@ def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path
 
 
 def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
-    arguments = ["--set", "pool=[90.0, 30.0]", "--set", "bw_s=0.3", "--out", str(tmp_path)]
+    arguments = ["--pool", "(90, 30)", "--set", "bw_s=0.3", "--out", str(tmp_path)]
     done = cli.succeeds("compare", *SHORT, *UP_TO_ONE, *arguments, "--quiet")
     assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
     assert REFERENCES[2] in done.stdout
@@ -155,7 +155,7 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--set", "n_boats=2"], "--n-leaders and --n-boats"),
         (["--set", "n_leaders=3"], "--set n_leaders is not accepted: use --n-leaders"),
         (["--set", "target=cw,ccw"], "one target"),
-        (["--set", "pool=[90, 10]"], "bw_s=1.0`"),
+        (["--pool", "(90, 10)"], "--bw-s 1.0`"),
         (["--policy", "damped law", "--policy", "damped law"], "given twice"),
         (["--policy", "damped law", "--name", "a", "--name", "b"], "2 --name for 1 --policy"),
         (["--policy", "damped law", "--name", "learned"], "another policy has this name"),

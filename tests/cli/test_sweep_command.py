@@ -10,6 +10,10 @@ import termios
 import time
 from pathlib import Path
 
+import pandas as pd
+import pytest
+
+from flockenv.cli.sweep import _in_units, _show_critical_noises
 from flockenv.runs.sweep import load_sweep
 
 SPEC = "minutes = 0.5\nseeds = 2\n[[grid]]\nn_boats = [5, 6]\nbw_s = [0.0, 0.4]\n"
@@ -21,8 +25,7 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = cli.succeeds("sweep", spec, "--out", out)
     assert "8 runs" in done.stdout
-    # Two runs of a noise bear no interval.
-    assert "n_boats 5: no order to lose, or fewer than three runs" in done.stdout
+    assert "n_boats 5: no answer where order is lost" in done.stdout
     table = load_sweep(out)
     assert table[["n_boats", "bw_s", "seed"]].drop_duplicates().shape == (8, 3)
     before = (out / "sweep.csv").read_bytes()
@@ -30,6 +33,24 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     assert again.stderr == ""
     assert len(json.loads(again.stdout)) == 8
     assert (out / "sweep.csv").read_bytes() == before
+
+
+def test_why_no_critical_noise_is_named(capsys) -> None:
+    """Too little rotation, or with enough of it too few runs: one of them, not both."""
+    table = pd.DataFrame(
+        {"bw_s": [0.0, 0.4], "seed": 0, "psi_o_mean": [0.9, 0.2], "rotation_size": [0.9, 0.1]}
+    ).assign(failure="")
+    _show_critical_noises(table)
+    assert capsys.readouterr().out.startswith("No answer where order is lost: it takes three runs")
+    _show_critical_noises(table.assign(rotation_size=0.45))
+    assert capsys.readouterr().out == "No order to lose: mean |m| is 0.45 at most, below 0.5\n"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.1, "1 s"), (99.4, "99 s"), (100, "2 min"), (6000, "1.7 h")]
+)
+def test_how_long_a_sweep_takes_is_said_in_units_of_a_clock(seconds, words) -> None:
+    assert _in_units(seconds) == words
 
 
 def test_shards_make_the_table_of_one_command(cli, tmp_path: Path) -> None:

@@ -47,6 +47,8 @@ def test_a_table_of_a_lab_is_guessed(seen, tmp_path, separator, decimal, encodin
         ("time_s;robot_no;x_m;y_m;heading_deg", {"cm_per_unit": 100.0, "heading_unit": "deg"}),
         ("Timestamp;Tag ID;X;Y;Orientation", {"id": "Tag ID", "heading": "Orientation"}),
         ("step;fish;pos_x;pos_y;theta", {"frame": "step", "id": "fish", "x": "pos_x"}),
+        ("Zeit [s];Boot;x [cm];y [cm];Winkel [°]", {"frame": "Zeit [s]", "id": "Boot"}),
+        ("Bild;Fisch;x [cm];y [cm];Winkel [°]", {"fps": 25.0, "heading_unit": "deg"}),
         ("Time (Seconds);Body;X (m);Y (m);Yaw", {"fps": 1.0, "id": "Body", "cm_per_unit": 100.0}),
     ],
 )
