@@ -81,7 +81,7 @@ def _minutes_in_seconds(monkeypatch):
 
 @pytest.mark.filterwarnings("ignore:PettingZoo in TorchRL is tested")
 @pytest.mark.parametrize("page", EXECUTED)
-def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request):
+def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request, capsys):
     monkeypatch.chdir(tmp_path)
     known = {*gymnasium.registry}
     request.addfinalizer(lambda: [gymnasium.registry.pop(n) for n in {*gymnasium.registry} - known])
@@ -98,6 +98,13 @@ def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request):
             continue
         run += 1
     assert run >= 2
+    printed = capsys.readouterr().out.split()
+    said = re.findall(
+        "^It prints .*", (REPOSITORY / page).read_text(encoding="utf-8"), re.MULTILINE
+    )
+    numbers = [number for line in said for number in re.findall(r"-?\d+\.\d+", line)]
+    assert [number for number in numbers if number not in printed] == []
+    assert page != "docs/start.md" or len(numbers) == 4
 
 
 def test_the_home_page_opens_with_a_flock():
