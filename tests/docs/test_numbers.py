@@ -127,6 +127,31 @@ def throughput() -> list[Number]:
     ]
 
 
+def gradients() -> list[Number]:
+    """The squared gradient of the order at two policies."""
+    page, file = "studies/policy_gradient/README.md", "studies/policy_gradient/results/gradient.csv"
+    lines = {
+        ("tuned law", "lean features"): ("tuned law | 29 lean features |", ".1f"),
+        ("learned", "lean features"): ("learned | 29 lean features |", ".0f"),
+        ("learned", "lean and flock features"): ("learned | with the whole flock's |", ".0f"),
+    }
+    found = []
+    for (policy, features), (words, form) in lines.items():
+        by_lean = {"policy": policy, "features": features, "metric": "lean"}
+        for column, shown in (("squared_gradient", "{} ± #"), ("spread", "# ± {}")):
+            for row, before, digits in (
+                (by_lean, words, ".1f"),
+                (by_lean | {"metric": "weights"}, f"{words} # ± # | # |", form),
+            ):
+                value = in_millionths(column)
+                found.append(Number(page, f"{before} {shown} |", file, row, value, digits))
+    return found
+
+
+def in_millionths(column: str) -> Callable[[Any], float]:
+    return lambda rows: 1e6 * rows[column].item()
+
+
 def levels() -> list[Number]:
     """Numbers of suite v3: what laws reach in each level."""
     page, file, laws = "docs/levels.md", "studies/levels/results/laws.csv", []
@@ -389,6 +414,7 @@ NUMBERS = [
     *readme(),
     *throughput(),
     *levels(),
+    *gradients(),
     *leaders("README.md"),
     *leaders("docs/leaders.md"),
     *plans("docs/leaders.md"),
