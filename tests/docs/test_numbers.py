@@ -127,6 +127,46 @@ def throughput() -> list[Number]:
     ]
 
 
+def entries() -> list[Number]:
+    """Numbers of what learns from nothing."""
+    page, folder = "studies/levels/README.md", "studies/levels/results/"
+    pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
+    found = []
+    for words, better, worse in (
+        ("of linear evolution is {} above that of A2C", "linear evolution", "A2C"),
+        ("and {} above that of paired branches", "linear evolution", "paired branches"),
+        ("Paired branches are {} above A2C", "paired branches", "A2C"),
+    ):
+        row = {"better": better, "worse": worse}
+        for place, end in enumerate(("", "_low", "_high")):
+            shown = ["#"] * 3
+            shown[place] = "{}"
+            mean_and_ends = f"{shown[0]} ({shown[1]} to {shown[2]})"
+            text = words.format(mean_and_ends)
+            found.append(Number(page, text, pairs, row, f"difference{end}"))
+    return [
+        *found,
+        Number(page, "training of TRPO has {},", table, {"entry": "TRPO"}, "score"),
+        Number(page, "that of PPO {}.", table, {"entry": "PPO"}, "score"),
+        Number(page, "branches have {} (# to #): one", table, {"budget": 100}, "score"),
+        Number(page, "branches have # ({} to #): one", table, {"budget": 100}, "score_low"),
+        Number(page, "branches have # (# to {}): one", table, {"budget": 100}, "score_high"),
+    ]
+
+
+def easy_branches() -> list[Number]:
+    """What paired branches reach in the easy flock from nothing."""
+    page, file = "docs/train.md", "studies/levels/results/orders.csv.gz"
+    words = "seeds 0 to 2 came to {}, {} and {} after 100 flock-hours"
+    found = []
+    for seed in range(3):
+        shown = ["#"] * 3
+        shown[seed] = "{}"
+        row = {"budget": 100, "policy": f"branches-100/order-easy-{seed}.json"}
+        found.append(Number(page, words.format(*shown), file, row, mean("signed_order")))
+    return found
+
+
 def gradients() -> list[Number]:
     """The squared gradient of the order at two policies."""
     page, file = "studies/policy_gradient/README.md", "studies/policy_gradient/results/gradient.csv"
@@ -415,6 +455,8 @@ NUMBERS = [
     *throughput(),
     *levels(),
     *gradients(),
+    *entries(),
+    *easy_branches(),
     *leaders("README.md"),
     *leaders("docs/leaders.md"),
     *plans("docs/leaders.md"),
