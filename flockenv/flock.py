@@ -383,8 +383,8 @@ class Flock(HintsAtNames):
         """Advance as `advance` does, and return the error in cm that dt_s made on the way.
 
         The error is the distance from where substeps of dt_s / 8 lead from the same start, with the
-        same noise: the root mean square over boats of |Δx|² + ρ²Δα², with the radius of gyration ρ.
-        It takes nine times as long. Errors of successive advances do not add up.
+        same noise: the root mean square over boats of ``|Δx|² + ρ²Δα²``, with the radius of
+        gyration ρ. It takes nine times as long. Errors of successive advances do not add up.
 
         Parameters
         ----------

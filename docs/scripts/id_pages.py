@@ -269,7 +269,7 @@ def reached(env_id: str) -> tuple[Plot, str] | None:
 def _suite(task: str) -> tuple[Plot, str]:
     found = rows(SCORES, task=task)
     intervals = {
-        f"{row['policy']}: {float(row['signed_order']):.2f}": _interval(row, "score", "score_")
+        f"{row['policy']}: {float(row['signed_order']):z.2f}": _interval(row, "score", "score_")
         for row in found
     }
     own = float(found[0]["signed_order"]) - float(found[0]["score"])
