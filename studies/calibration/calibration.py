@@ -186,8 +186,7 @@ def total(table: pd.DataFrame) -> float:
 
 def card(table: pd.DataFrame) -> list[Interval]:
     """Return each number of the card with its interval."""
-    places = range(len(CARD))
-    return [over_seeds([table], lambda means, at=place: values_of(means)[at]) for place in places]
+    return [over_seeds([table], each.of) for each in CARD]
 
 
 @dataclass(frozen=True)
@@ -265,7 +264,7 @@ def draw(options: Options, found: Judgment, candidate: int) -> None:
         axes.axvspan(-0.15, 0.15, color="0.9", lw=0)
         plots.grouped(axes, series, colors, reference=0.0)
         axes.set_xlim(-_MOST_SHOWN - 0.5, _MOST_SHOWN + 0.5)
-        axes.set_xlabel("distance from the range that the paper claims, in tolerances (0: inside)")
+        axes.set_xlabel("distance from the claimed range in tolerances (0: inside)")
         figure.legend(loc="outside upper center", ncols=2)
 
 

@@ -1,8 +1,10 @@
 """Law: candidates follow from their numbers, and one replaces the preset by the whole rule."""
 
 import math
+from pathlib import Path
 from types import ModuleType
 
+import pandas as pd
 import pytest
 
 import flockenv
@@ -72,3 +74,17 @@ def test_the_rule_needs_all_three(script: ModuleType) -> None:
     assert not judgment(script, 10, lost=True).replaces()
     assert not judgment(script, 10, high=0.1).replaces()
     assert judgment(script, 10, lost=True).lost() == ["jams at 0 s"]
+
+
+def test_the_page_has_the_numbers_of_both_cards() -> None:
+    folder = Path(__file__).parent
+    claims = pd.read_csv(folder / "claims.csv")
+    page = (folder / "README.md").read_text("utf-8")
+    rows = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
+    assert len(rows) == len(CARD)
+    answers = {"holds": "match", "fails": "miss", "open": "undecided"}
+    for place, reading in ((4, "experiment"), (5, "candidate")):
+        lines = claims[claims["reading"].str.match(f"{reading}.*, narrow")]
+        for cells, (_, line) in zip(rows, lines.iterrows(), strict=True):
+            shown = f"{line['measured']:.3g}, {answers[line['verdict']]}".replace("-", "−")
+            assert cells[place].removesuffix(" |") == shown
