@@ -1,4 +1,4 @@
-"""Law: README and the pages that it links are plain Markdown, whose links lead somewhere.
+"""Law: README, the pages that it links and their words are Markdown, whose links lead somewhere.
 
 A repository's viewer knows no directive of Sphinx, and no file that a build makes.
 """
@@ -69,8 +69,9 @@ def target(page: Path, link: str) -> Path:
 
 
 def linked() -> list[Path]:
-    """README, and the pages that it links."""
-    pages = (target(README, each) for each in links(README) if not ELSEWHERE.match(each))
+    """README, the pages that it links, and the words that these look up."""
+    pages = [target(README, each) for each in links(README) if not ELSEWHERE.match(each)]
+    pages.append(REPOSITORY / "docs" / "questions.md")
     found = dict.fromkeys(each for each in pages if each.suffix == ".md")
     return [README, *(each for each in found if each.is_file())]
 
@@ -101,7 +102,7 @@ def test_nothing_of_sphinx_is_read_as_text(name):
         token.content or token.info
         for token in tokens(PAGES[name])
         if (token.type == "fence" and token.info.startswith("{"))
-        or (token.type == "text" and re.match(r":::|\{[a-z]+\}", token.content))
+        or (token.type == "text" and re.search(r"^:::|\{[a-z]+\}$|^\{[a-z]+\}", token.content))
     ]
     assert raw == []
 
