@@ -16,8 +16,8 @@ export const LESSONS = [
     name: "steer",
     title: "Lead them yourself",
     link: "#lesson=steer&pool=narrow&n_boats=12&n_leaders=4&bw_s=0.2&seed=1&flocks=3&leaders=you&beside.leaders=paper's law at every substep&speed=8",
-    before: "You turn the ringed boats of three flocks. Goal: more blue boats in five minutes than the paper's law gets. Start: ← or →, or the slider.",
-    after: "A leader has no power but its bumps: it leads by being in the way.",
+    before: "You turn the ringed boats of three flocks. Goal: more blue boats in five minutes than the law, a fixed rule. Start: ←, → or the slider.",
+    after: "Leaders lead by being in the way. Score: 1 if all others circle with the arrow, −1 if all go against it.",
   },
   {
     name: "noise",

@@ -23,8 +23,9 @@ export class LivePage {
   wanted = [];
   changing = false;
   broken = false;
-  /** The link that is followed now: a later one takes its place; and whether it asks for a picture that does not move. */
+  /** The link that is followed now: a later one takes its place. */
   followed = 0;
+  /** Whether the page paused, for a link that asks for a still picture or a round of the game, and not the visitor. */
   isHeld = false;
   link = new LinkWriter(() => (this.flocks.isRecorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
 
@@ -83,18 +84,15 @@ export class LivePage {
     if (isWanted() && !this.broken) {
       this.changing = false;
       this.#shows("open", false);
+      this.playback.hold(linked.other.paused === "1");
       this.say(linked.ignored.join(" "));
       await this.#change();
     }
   }
 
   /** The parts of a link besides the flocks. */
-  #showOther({ start: _, now: __, flocks: ___, paused, ...other }) {
+  #showOther({ start: _, now: __, flocks: ___, paused: ____, ...other }) {
     this.other = { speed: "8", ...other };
-    this.isHeld = paused === "1";
-    if (this.isHeld) {
-      this.playback.transport.pause();
-    }
     byId("speed").value = this.other.speed;
     byId("forces").checked = this.other.forces === "1";
     byId("colors").value = this.other.colors ?? "direction";

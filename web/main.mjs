@@ -3,7 +3,7 @@
 import { OPENING } from "./lessons.mjs";
 import { listen } from "./listen.mjs";
 import { LivePage } from "./live.mjs";
-import { PAUSED } from "./playback.mjs";
+import { PAUSED, wantsLessMotion } from "./playback.mjs";
 import { Simulator } from "./simulator.mjs";
 
 const text = (id) => document.getElementById(id).textContent;
@@ -26,7 +26,7 @@ async function start() {
   listen(window.page);
   await window.page.follow(location.hash.length > 1 ? location.hash : about.opening ?? OPENING);
   document.body.dataset.ready = "true";
-  if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
+  if (wantsLessMotion()) {
     window.page.say(text("status") || PAUSED);
   } else if (!window.page.isHeld) {
     window.page.toggle();

@@ -8,7 +8,8 @@ import { Game, scoreOf } from "./game.mjs";
 /** How long the simulator may compute for one frame, in ms, and after how long it is called slow; its first answer takes longer. */
 const [FRAME_WORK, SLOW, SLOW_AT_FIRST] = [12, 1000, 8000];
 
-/** Whether the system asks for less motion. */
+/** Whether the system asks for less motion, and what the page says then. */
+export const wantsLessMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 export const PAUSED = "Paused, since your system asks for less motion: the button or the space bar plays.";
 
 export class Playback {
@@ -38,6 +39,22 @@ export class Playback {
     }
   }
 
+  /** Whether what is shown is the game. */
+  get #isGame() {
+    return this.#page.other.lesson === "steer" && this.#page.flocks.areYours;
+  }
+
+  /** Pauses at what stands still until the visitor acts, as a round does; what comes after it plays on. */
+  hold(isStill) {
+    const wasHeld = this.#page.isHeld;
+    this.#page.isHeld = isStill || this.#isGame;
+    if (this.#page.isHeld) {
+      this.transport.pause();
+    } else if (wasHeld && !this.transport.playing && !wantsLessMotion()) {
+      this.transport.play();
+    }
+  }
+
   /** The hand was moved: a game that waits for it starts. */
   start() {
     if (this.#page.flocks.areYours && !this.#isOver && !this.transport.playing) {
@@ -52,6 +69,7 @@ export class Playback {
 
   toggle() {
     const { broken, flocks, runs, simulator } = this.#page;
+    this.#page.isHeld = false;
     if (this.transport.playing && this.#isSlow(simulator)) {
       simulator.stop("you stopped it in the middle of a step");
     } else if (this.transport.playing) {
@@ -128,12 +146,13 @@ export class Playback {
 
   /** Whether a round of the game ends, between two answers of the simulator. */
   #judge() {
-    const { flocks, other, view } = this.#page;
-    if (other.lesson !== "steer" || !flocks.areYours || this.#isOver || this.advancing || !Game.isOver(this.time)) {
+    const { flocks, view } = this.#page;
+    if (!this.#isGame || this.#isOver || this.advancing || !Game.isOver(this.time)) {
       return false;
     }
     const { runs, besides } = flocks;
     this.#isOver = true;
+    this.#page.isHeld = true;
     this.transport.pause();
     this.#page.say(this.game.end(scoreOf(runs.slice(0, besides)), scoreOf(runs.slice(besides))));
     view.rounds = this.game.words;

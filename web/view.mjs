@@ -169,10 +169,12 @@ export class View {
 
   /** What the flocks do, for those who do not see it: the pictures' names, and a sentence that is read now and then. */
   #tellWhatIsDone(time, isPlaying) {
-    const told = this.panels.map(({ canvas, run }) => {
+    const told = this.panels.map(({ canvas, run }, index) => {
       const words = doing(run, run.sampleAt(time), this.palette);
       canvas.setAttribute("aria-label", words);
-      return this.panels.length > 1 ? `${run.name}: ${words}` : words;
+      // The flocks of the game have one name.
+      const isNamed = this.panels.every((each) => each.run === run || each.run.name !== run.name);
+      return this.panels.length > 1 ? `${run.name}${isNamed ? "" : `, flock ${index + 1}`}: ${words}` : words;
     }).join(" ");
     const isDue = !isPlaying || performance.now() - this.#told > TELL_EVERY;
     if (isDue && told !== byId("doing").textContent) {

@@ -127,6 +127,19 @@ def test_without_leaders_you_are_one(open_live):
     assert live.find("#leaders").get_attribute("value") == "you"
 
 
+def test_a_round_waits_for_the_visitor_and_the_next_lesson_plays(open_live):
+    live = open_live().go("", plays=True)
+    for lesson, plays in (("steer", False), ("leaders", True), ("forces", False), ("noise", True)):
+        assert live.script("return page.playing") != plays
+        live.script("document.querySelector(`a[data-lesson='${arguments[0]}']`).click()", lesson)
+        live.until("return page.other.lesson === arguments[0] && !page.changing", lesson)
+        live.until("return page.playing === arguments[0]", plays)
+        if lesson == "steer":
+            assert live.script("return page.time") == 0.0
+            names = [each.split(":")[0] for each in live.text("#doing").split(". ")]
+            assert names == ["you, flock 1", "you, flock 2", "you, flock 3"]
+
+
 def test_rounds_of_the_game_are_scored_against_the_law(open_live):
     live = open_live().go()
     live.script("document.querySelector(\"a[data-lesson='steer']\").click()")

@@ -135,3 +135,42 @@ test("other flocks start another round", async () => {
     assert.equal(noted.said.length, round);
   }
 });
+
+test("a round waits for the visitor, and so does a still picture; what comes after them plays on", () => {
+  let isLess = false;
+  globalThis.matchMedia = () => ({ matches: isLess });
+  const { playback, page } = played({ end: 0, lesson: "steer" });
+  playback.transport.play();
+  playback.hold(false);
+  assert.equal(playback.transport.playing, false);
+  playback.start();
+  assert.equal(playback.transport.playing, true);
+  for (const [lesson, isStill, plays] of [["steer", false, false], ["noise", false, true], ["forces", true, false], ["noise", false, true]]) {
+    Object.assign(page.other, { lesson });
+    page.flocks.areYours = lesson === "steer";
+    playback.hold(isStill);
+    assert.equal(playback.transport.playing, plays, lesson);
+  }
+  // What the visitor paused stays so, and what the page paused does where the system asks for less motion.
+  playback.hold(true);
+  playback.toggle();
+  playback.toggle();
+  playback.hold(false);
+  assert.equal(playback.transport.playing, false);
+  playback.hold(true);
+  isLess = true;
+  playback.hold(false);
+  assert.equal(playback.transport.playing, false);
+});
+
+test("a round that is over holds the page until the next lesson plays", async () => {
+  globalThis.matchMedia = () => ({ matches: false });
+  const { playback, page, tick } = played({ end: 300, lesson: "steer" });
+  playback.restart();
+  playback.start();
+  await tick(0);
+  assert.deepEqual([playback.isOver, playback.transport.playing], [true, false]);
+  page.other.lesson = "noise";
+  playback.hold(false);
+  assert.equal(playback.transport.playing, true);
+});
