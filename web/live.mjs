@@ -83,8 +83,8 @@ export class LivePage {
     await this.attempt(() => follow(this.flocks, linked, isWanted));
     if (isWanted() && !this.broken) {
       this.changing = false;
-      this.#shows("open", false);
       this.playback.hold(linked.other.paused === "1");
+      this.#shows("open", false);
       this.say(linked.ignored.join(" "));
       await this.#change();
     }
