@@ -9,7 +9,7 @@ use std::marker::PhantomData;
 
 /// A struct that is stored as its fields by name.
 pub(crate) trait ByName: Default {
-    /// What it is called in messages.
+    /// Its name in messages.
     const NAME: &'static str;
 
     /// Reads the value of a field; returns whether there is a field of that name.
@@ -53,7 +53,7 @@ pub(crate) fn write<S: Serializer, T: Serialize>(
     to.collect_map(values)
 }
 
-/// Reads values that [`write`] wrote; `put` returns whether it has a place for that name.
+/// Reads values that [`write`] wrote; `put` returns whether it knows the name.
 pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
     from: D,
     of: &str,

@@ -21,7 +21,7 @@ pub fn seconds(ticks: Ticks) -> f64 {
     ticks as f64 / TICKS_PER_SECOND
 }
 
-/// How many steps a duration in s holds, which has to be a whole number of them.
+/// Number of steps in a duration (s), which must be a whole number of them.
 ///
 /// `rate_hz`: steps per second; `steps`: what they are, for the message.
 ///

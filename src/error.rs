@@ -1,4 +1,4 @@
-//! What can go wrong, in physical words. Nothing here knows of Python; `python::error` converts.
+//! Errors, in physical words. Nothing here knows of Python; `python::error` converts them.
 
 /// Every error that the simulator reports. No input reaches a panic.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -6,19 +6,19 @@ pub enum FlockError {
     /// A parameter, option or argument lies outside what is accepted.
     #[error("{field} = {value} is not accepted: {accepted}")]
     Parameter {
-        /// The name users know the field by, unit included.
+        /// The field's public name, unit included.
         field: &'static str,
         /// The value as it was given.
         value: String,
-        /// What would have been accepted.
+        /// The accepted values.
         accepted: String,
     },
     /// A value is of another kind than its field.
     #[error("{field} must be {accepted}")]
     Kind {
-        /// The name users know the field by.
+        /// The field's public name.
         field: &'static str,
-        /// What would have been accepted.
+        /// The accepted values.
         accepted: String,
     },
     /// An array has the wrong number of entries.
@@ -39,15 +39,15 @@ pub enum FlockError {
     Placement {
         /// Requested number of boats.
         requested: usize,
-        /// How many the best attempt held without overlap.
+        /// Number of boats that the best attempt placed without overlap.
         placed: usize,
     },
     /// A state given by the user holds overlapping hulls.
     #[error("{what} overlap by {overlap_cm} cm; move them apart or pass allow_overlap=True")]
     Overlap {
-        /// Which boats (or boat and wall).
+        /// The boats (or boat and wall).
         what: String,
-        /// By how much, in cm.
+        /// Depth of the overlap in cm.
         overlap_cm: f64,
     },
     /// Snapshot bytes that this flock cannot continue from.
@@ -112,7 +112,7 @@ impl FlockError {
         Err(Self::parameter(field, value, accepted))
     }
 
-    /// Refuses bytes or what they hold for a reason, unless they fit.
+    /// Refuses bytes or their content with a reason, unless they fit.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`].
@@ -132,7 +132,7 @@ fn readable(text: &str) -> String {
         let (digits, after) = from.split_at(from.find(is_over).unwrap_or(from.len()));
         written += before;
         match digits.parse::<f64>() {
-            // What is cut off is not known here.
+            // The full length is not known here.
             Ok(number) if digits.len() > MOST_DIGITS && !after.starts_with('…') => {
                 written += &format!("{number:e}");
             }

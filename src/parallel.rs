@@ -56,7 +56,7 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync 
     results.into_iter().flatten().collect()
 }
 
-/// How often a thread that waits for another's last item lets others run before it sleeps.
+/// Times that a thread which waits for another's last item yields before it sleeps.
 const MOST_YIELDS: u32 = 1000;
 
 /// Does part 0 of some work here and the others on other threads, and counts who helps.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::cell::Cell;
 
-/// What a stored state of some kind and version starts with.
+/// First bytes of a stored state of some kind and version.
 pub(crate) type Magic = [u8; 8];
 
 /// A state as bytes.
@@ -57,7 +57,7 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
 }
 
 thread_local! {
-    /// Why content was refused: postcard's errors drop the words that they are made of.
+    /// Reason why content was refused: postcard's errors drop the words that they are made of.
     static REASON: Cell<Option<String>> = const { Cell::new(None) };
 }
 

@@ -41,7 +41,7 @@ pub fn leaning() -> EnvSettings {
     EnvSettings {
         target: TargetChoice::Random,
         mirror_to_target: true,
-        observation: ObservationLayout::of(&[Block::LeanFeatures]),
+        observation: ObservationLayout::from_blocks(&[Block::LeanFeatures]),
         action_mode: ActionMode::Lean,
         decision_period_s: Some(1.0),
         reward: Weights::One(reward),

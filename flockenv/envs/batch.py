@@ -86,7 +86,7 @@ class LeaderBatch:
         rewards = self._rewards(self._own_reward(env), precision)
         # A step that only starts the next episode is worth nothing.
         rewards[starts[self._flock_of_row]] = 0.0
-        self.core.pay(rewards)
+        self.core.add_rewards(rewards)
         return observations, rewards, truncated
 
     def running(self) -> list[bool]:

@@ -5,7 +5,7 @@ use crate::parameters::named_choice;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 named_choice! {
-    /// What a flock does at one time (Table 2; ordered motion by its direction).
+    /// Collective state of a flock at one time (Table 2; ordered motion by its direction).
     pub enum CollectiveState ("state") {
         /// Boats point at the outer wall together and stand still.
         Jamming = "jamming",
@@ -17,7 +17,7 @@ named_choice! {
         OrderedCounterClockwise = "ordered ccw",
         /// Boats have no common direction.
         Disordered = "disordered",
-        /// None of these: on the way from one to another.
+        /// Any other: between two of the states above.
         Between = "between",
     }
 }
@@ -35,7 +35,7 @@ pub(crate) const CLUSTERED: f64 = 0.75;
 impl CollectiveState {
     /// The state of a flock in the analysis window with these order parameters, whose boats prefer
     /// the forward speed `speed_cm_s`, and of which the largest cluster holds this part.
-    pub fn of(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
+    pub fn from_order(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
         let moving = order.psi_v >= MOVING * speed_cm_s;
         if order.psi_o > HIGH_ORDER {
             let tangential = off_tangent(order.phi_o) < FRAC_PI_4;

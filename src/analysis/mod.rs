@@ -1,4 +1,4 @@
-//! What is measured of boats: order parameters, collective states, and where boats are relative to each
+//! Measurements of boats: order parameters, collective states, and where boats are relative to each
 //! other and to the wall.
 
 pub mod collective_state;

@@ -28,17 +28,17 @@ impl OrderParameters {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
-    pub fn of(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
+    pub fn from_poses(poses: &[Pose], velocities: &[Velocity]) -> Result<Self> {
         let mut hulls = Vec::with_capacity(poses.len());
         HullPose::replace_all(&mut hulls, poses);
-        Self::of_hulls(&hulls, velocities)
+        Self::from_hulls(&hulls, velocities)
     }
 
-    /// The same for poses whose direction vectors are worked out already.
+    /// The same for poses whose direction vectors are known.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
-    pub(crate) fn of_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
+    pub(crate) fn from_hulls(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Self> {
         let accepted = "order parameters need at least one normal boat; pass include_leaders=True";
         FlockError::unless(!hulls.is_empty(), "n_boats - n_leaders", 0, accepted)?;
         let (mut orientations, mut motions) = (VectorSum::default(), VectorSum::default());

@@ -30,7 +30,7 @@ impl Boats<'_> {
     }
 }
 
-/// What a quantity is a function of, and the function.
+/// The arguments of a quantity's formula, and the formula.
 #[derive(Debug, Clone, Copy)]
 pub enum Formula {
     /// Of the boats at a time. Recordings keep it with every sample.
@@ -46,19 +46,19 @@ pub enum Formula {
 pub struct Quantity {
     /// Name in recordings, tables and files.
     pub name: &'static str,
-    /// What it is in a few words.
+    /// A few words for labels.
     pub label: &'static str,
     /// Symbol, empty for none.
     pub symbol: &'static str,
     /// Unit, empty for none.
     pub unit: &'static str,
-    /// What it is, with its sign.
+    /// Meaning, with its sign.
     pub meaning: &'static str,
-    /// Where it is defined.
+    /// The paper's section or equation that defines it.
     pub source: &'static str,
     /// Least and greatest value, where there are such.
     pub range: Option<(f64, f64)>,
-    /// Fewer boats leave it undefined.
+    /// Least number of boats for which it is defined.
     pub least_boats: usize,
     /// Whether its mean over a run is shown; the mean of an angle is not.
     pub is_averaged: bool,
@@ -167,7 +167,7 @@ pub const QUANTITIES: &[Quantity] = &[
 ];
 
 impl Quantity {
-    /// What is declared of it by name.
+    /// Its declaration by name.
     pub fn named(&self) -> Value {
         let kind = match self.formula {
             Formula::Recorded(_) => "recorded",
@@ -188,7 +188,7 @@ impl Quantity {
     }
 }
 
-/// How many quantities are recorded, and of how many summaries of episodes hold means.
+/// Numbers of recorded quantities, and of those averaged in an episode summary.
 const COUNTS: [usize; 2] = {
     let (mut recorded, mut summarized, mut place) = (0, 0, 0);
     while place < QUANTITIES.len() {
@@ -206,18 +206,18 @@ const COUNTS: [usize; 2] = {
     [recorded, summarized]
 };
 
-/// How many quantities are recorded.
+/// Number of recorded quantities.
 pub const RECORDED: usize = COUNTS[0];
 
-/// How many quantities summaries of episodes hold means of.
+/// Number of quantities averaged in an episode summary.
 pub(crate) const SUMMARIZED: usize = COUNTS[1];
 
-/// The quantities that summaries of episodes hold means of, in the order of the table.
+/// The quantities averaged in an episode summary, in the order of the table.
 pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {
     QUANTITIES.iter().filter(|each| each.is_summarized())
 }
 
-/// What the summarized quantities of boats are now.
+/// Present values of the quantities averaged in an episode summary.
 pub(crate) fn summarized_values(boats: &Boats, target: Target) -> [f64; SUMMARIZED] {
     let mut values = [f64::NAN; SUMMARIZED];
     for (value, quantity) in values.iter_mut().zip(summarized()) {
@@ -241,7 +241,7 @@ pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded>
     let boats = Boats {
         hulls,
         velocities,
-        order: OrderParameters::of_hulls(hulls, velocities)?,
+        order: OrderParameters::from_hulls(hulls, velocities)?,
     };
     let mut values = [f64::NAN; RECORDED];
     for (value, quantity) in values.iter_mut().zip(QUANTITIES) {
@@ -255,7 +255,7 @@ pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded>
 /// The entry of a name.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] lists the names there are.
+/// [`FlockError::Parameter`] lists the known names.
 pub fn quantity(name: &str) -> Result<&'static Quantity> {
     let found = QUANTITIES.iter().find(|each| each.name == name);
     found.ok_or_else(|| {

@@ -1,11 +1,11 @@
-//! Boats at many times, some of which may not be there: tracks of robots and animals have gaps.
+//! Boats at many times, some of them missing: tracks of robots and animals have gaps.
 
 use super::quantities::{RECORDED, Recorded, recorded};
 use crate::error::Result;
 use crate::geometry::{HullPose, Pose, Velocity};
 
 /// Rows of three numbers, poses or velocities, of equally many boats at each time. Rows with a number that is not
-/// finite stand for boats that are not there.
+/// finite stand for missing boats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
     rows: Vec<Pose>,
@@ -36,7 +36,7 @@ impl Samples {
         self.rows.chunks_exact(self.boats)
     }
 
-    /// The boats that are there, one time after another.
+    /// The boats that are present, one time after another.
     pub fn present(&self) -> impl Iterator<Item = Vec<Pose>> {
         self.each()
             .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())

@@ -6,13 +6,13 @@ use crate::geometry::{Hull, HullPose, Pose, Vec2, outer_wall_gap, pair_gaps};
 use crate::parameters::FlockParameters;
 use std::f64::consts::PI;
 
-/// Hulls with a smaller gap than this (cm) count as in touch.
+/// Hulls touch if their gap is below this, in cm.
 pub const IN_TOUCH_CM: f64 = 0.5;
 
 /// The fewest boats of a jam.
 pub const JAM_BOATS: usize = 3;
 
-/// How far a boat's heading in a jam is from the way outward, at most (rad).
+/// Largest angle in rad between a jammed boat's heading and the outward direction.
 pub const JAM_ANGLE: f64 = PI / 3.0;
 
 /// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN of none.

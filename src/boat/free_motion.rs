@@ -1,4 +1,4 @@
-//! Eqs (8) and (9): what a boat does when nothing touches it.
+//! Free motion of a boat that nothing touches, eqs (8) and (9).
 //!
 //! Eq. (9) is grouped as −c1·α̇³ + (c2·s − c3·α̇)(u·ẋ) + c4·η. The printed grouping contradicts the
 //! paper's own description (a stopped boat does not steer, a moving one prefers a nonzero turning
@@ -7,7 +7,7 @@
 use crate::geometry::{Vec2, Velocity};
 use crate::parameters::FlockParameters;
 
-/// What acts on a boat during a substep.
+/// Drives of a boat during a substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Preferred speed v0 along the heading in cm/s, negative backwards.
@@ -20,7 +20,7 @@ pub struct Drive {
     pub noise: f64,
 }
 
-/// A free velocity and how readily contacts change it within the substep.
+/// Velocity without contacts, and the inverse effective inertia by which contacts change it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeVelocity {
     /// The velocity that the boat would have without contacts.

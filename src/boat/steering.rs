@@ -18,10 +18,10 @@ pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
     wrap_angle(polar_angle - target.sign() * FRAC_PI_2 - heading)
 }
 
-/// What a steering law reads of a leader.
+/// State of a leader that a steering law reads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
-    /// How far counter-clockwise the leader has to turn to head where it should, in rad, in any turn.
+    /// Angle in rad, not wrapped, by which the leader must turn counter-clockwise to reach its desired heading.
     pub misalignment: f64,
     /// Velocity along the heading, in any unit: its sign counts.
     pub forward: f64,

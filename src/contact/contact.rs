@@ -2,7 +2,7 @@
 
 use crate::geometry::{Feature, Gap, Hull, HullPose, Vec2, Velocity};
 
-/// What a boat is near to.
+/// The other side of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Partner {
     /// Another boat, always of a larger index.
@@ -22,7 +22,7 @@ pub struct Contact {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// Where on `boat`.
+    /// End of `boat` at which it is.
     pub feature: Feature,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,
@@ -39,7 +39,7 @@ impl Contact {
         }
     }
 
-    /// Whether it is another contact of the same two.
+    /// Whether both contacts join the same two bodies.
     #[inline]
     pub(super) fn is_twin(&self, other: &Self) -> bool {
         (self.boat, self.partner) == (other.boat, other.partner)

@@ -16,7 +16,7 @@ pub(super) const PENETRATION_SLOP: f64 = 0.002;
 /// linearization means little. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
 
-/// Passes after which a substep accepts the overlaps that are left.
+/// Number of passes after which a substep accepts the remaining overlaps.
 const MOST_PASSES: u32 = 8;
 
 /// Called now and then in long work: whether to continue.
@@ -72,7 +72,7 @@ impl Depenetration {
         for _ in 0..MOST_PASSES {
             detector.detect(boats, wide, &mut self.contacts);
             self.displace(poses, boats);
-            // The list is rebuilt where the wide margin asks for it, whether or not another pass comes: contacts come
+            // The wide margin decides when the list is rebuilt, even if no other pass follows: contacts come
             // in its order, and results made before rest on that.
             detector.update(boats, wide);
             detector.detect(boats, margin.min(wide), found);
@@ -137,7 +137,7 @@ pub(super) fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) 
         .sum()
 }
 
-/// Moves hulls apart, for placement, until none overlaps, `most_passes` are made or `keep_going` says no.
+/// Moves hulls apart during placement, until none overlaps, after `most_passes`, or if `keep_going` returns false.
 pub(crate) fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],

@@ -30,11 +30,11 @@ pub struct ContactDetector {
     skin: f64,
     /// Substeps are not cut for what boats can reach in them below this length, in s.
     shortest_s: f64,
-    /// Whether boats reach so many others in the substep that it was not worth finding them.
+    /// Whether detection stopped because boats reach too many others in this substep.
     is_crowded: bool,
-    /// How near something has to be to each boat to count: two boats that are nearer than both together.
+    /// Reach of each boat in cm: two boats count if they are nearer than the sum of theirs.
     reaches: Vec<f64>,
-    /// How far the fastest boat moves in the substep at hand, in cm.
+    /// Distance that the fastest boat moves in this substep, in cm.
     pub(super) farthest: f64,
 }
 
@@ -101,10 +101,10 @@ impl ContactDetector {
             }
         }
         self.farthest = fastest * dt;
-        let room = 0.5 * (self.farthest + 1e-3 * self.hull.radius);
+        let added = 0.5 * (self.farthest + 1e-3 * self.hull.radius);
         self.reaches
             .iter_mut()
-            .for_each(|reach| *reach = *reach * dt + room);
+            .for_each(|reach| *reach = *reach * dt + added);
         let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
         let may_crowd = boats.len() > 2 * MOST_PAIRS_A_BOAT && dt > self.shortest_s;
         self.is_crowded =
@@ -117,7 +117,7 @@ impl ContactDetector {
         margin
     }
 
-    /// Whether boats moved so far in the substep of the last detection that it pays to look which contacts may close.
+    /// Whether boats moved far enough in the last detected substep for skipping contacts to pay.
     pub(super) fn is_far(&self) -> bool {
         self.farthest > LONG * self.hull.radius
     }
@@ -190,7 +190,7 @@ impl ContactDetector {
         }
     }
 
-    /// Has the neighbor list hold everything nearer than `margin`.
+    /// Updates the neighbor list so that it holds everything nearer than `margin`.
     pub(super) fn update(&mut self, boats: &[HullPose], margin: f64) {
         let distance = 2.0 * self.hull.reach() + margin;
         self.neighbors

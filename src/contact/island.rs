@@ -10,7 +10,7 @@ pub struct Islands {
     /// Island of each island's first boat, and of each contact.
     island_of_root: Vec<u32>,
     island_of_contact: Vec<u32>,
-    /// Where each island starts in `members`.
+    /// Start of each island in `members`.
     starts: Vec<u32>,
     /// Contact indices, island by island.
     members: Vec<u32>,
@@ -51,7 +51,7 @@ impl Islands {
         }
     }
 
-    /// Has every boat know the first boat of its island.
+    /// Sets every boat's parent to the first boat of its island.
     fn join(&mut self, boats: usize, contacts: &[Contact]) {
         self.parent.clear();
         self.parent.extend(0..boats as u32);
@@ -67,7 +67,7 @@ impl Islands {
         }
     }
 
-    /// How many islands have contacts.
+    /// Number of islands with contacts.
     pub fn count(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
@@ -78,7 +78,7 @@ impl Islands {
     }
 }
 
-/// Has two boats belong together, in sets whose first boats are the last of their parents.
+/// Joins the sets of two boats. A set's first boat is the last of its parents.
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
     let (a, b) = (root(parent, a), root(parent, b));
     parent[a.max(b) as usize] = a.min(b);

@@ -1,4 +1,4 @@
-//! Which obstacles each boat may touch soon: a list that is as good as the neighbor list, and made again with it.
+//! Obstacles that each boat may touch soon: a list that is as good as the neighbor list, and rebuilt with it.
 
 use crate::geometry::{NeighborList, Obstacle};
 
@@ -8,7 +8,7 @@ pub(super) struct NearObstacles {
     pub(super) obstacles: Vec<Obstacle>,
     /// Whether some of them have no thickness.
     pub(super) has_walls: bool,
-    /// Where the obstacles of each boat start in `near`.
+    /// Start of each boat's obstacles in `near`.
     starts: Vec<u32>,
     near: Vec<u32>,
     /// Number of the neighbor list's build that it belongs to.

@@ -42,7 +42,7 @@ fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> boo
     pairs.any(|(a, b)| a.boat == b.boat && a.gap.normal.dot(&b.gap.normal) < 0.0)
 }
 
-/// Finds islands that contacts drive, with its scratch space.
+/// Finder of islands that contacts drive, with scratch space.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passivity {
     counted: Vec<bool>,

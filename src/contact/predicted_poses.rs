@@ -1,4 +1,4 @@
-//! The boats where a solve would move them, and the gaps there.
+//! Poses to which a solve would move the boats, and the gaps there.
 
 use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
@@ -11,7 +11,7 @@ pub(super) struct PredictedPoses {
     hulls: Vec<HullPose>,
     /// Whether boats with the velocities that were solved for last end there.
     is_end: bool,
-    /// How far each boat's hull moves at most, in cm.
+    /// Largest motion of each boat's hull, in cm.
     ways: Vec<f64>,
     /// Boats that are moved again, and whether each boat is one of them.
     listed: Vec<u32>,
@@ -65,7 +65,7 @@ impl PredictedPoses {
         self.is_end = true;
     }
 
-    /// Takes note that the velocities are others now.
+    /// Marks the prediction as outdated: velocities have changed.
     pub(super) fn set_old(&mut self) {
         self.is_end = false;
     }

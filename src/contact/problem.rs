@@ -34,7 +34,7 @@ impl ContactProblem<'_> {
         self.contacts[k].gap_rate(velocities) + self.biases[k]
     }
 
-    /// Changes velocities by an impulse at contact k.
+    /// Applies an impulse at contact k to the velocities.
     #[inline(always)]
     pub(crate) fn apply(&self, k: usize, impulse: f64, velocities: &mut [Velocity]) {
         let contact = &self.contacts[k];
@@ -100,7 +100,7 @@ impl ContactProblem<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// The velocities that impulses give.
+    /// Velocities after these impulses.
     pub fn velocities(&self, impulses: &[f64], velocities: &mut Vec<Velocity>) {
         velocities.clear();
         velocities.extend_from_slice(self.free);

@@ -1,5 +1,5 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solution,
-//! relinearization, and what to do where the constraints contradict each other.
+//! relinearization, and the fallback if constraints contradict each other.
 
 mod relinearization;
 
@@ -18,7 +18,7 @@ use crate::geometry::{HullPose, Pose, Vec2, Velocity};
 use crate::parameters::{FlockParameters, Scheme, Solver};
 use relinearization::Relinearization;
 
-/// Why a substep was not taken.
+/// Reason why a substep was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotTaken {
     /// It leaves overlaps, would drive boats, or moves a boat too far: a shorter one has to be tried. Deep overlaps may
@@ -28,7 +28,7 @@ pub(crate) enum NotTaken {
     Exhausted,
 }
 
-/// For which reasons a substep may be shortened.
+/// Reasons for which a substep may be shortened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Divisibility {
     /// Contacts would drive boats, or are too much work.
@@ -37,7 +37,7 @@ pub(crate) struct Divisibility {
     pub if_overlapping: bool,
 }
 
-/// What a solve came to.
+/// Outcome of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Solution {
     /// Every gap holds.
@@ -85,7 +85,7 @@ pub(crate) struct ContactResolver {
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
-    /// Those that are left out while the solution leaves them apart.
+    /// Contacts that are left out as long as the solution keeps them open.
     skipped: SkippedContacts,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
@@ -142,7 +142,7 @@ impl ContactResolver {
         self.warm_start_cache.impulses()
     }
 
-    /// Puts back what [`Self::warm_start_impulses`] gave.
+    /// Restores impulses that [`Self::warm_start_impulses`] returned.
     pub(crate) fn set_warm_start(&mut self, impulses: &[CachedImpulse]) {
         self.warm_start_cache.replace(impulses.iter().copied());
     }
@@ -265,7 +265,7 @@ impl ContactResolver {
                     return Err(NotTaken::TooLong);
                 }
                 Solution::Exhausted => return Err(NotTaken::Exhausted),
-                // Other biases lead to other poses, at which nobody looks for what was skipped.
+                // Other biases lead to other poses, where skipped contacts are not checked.
                 Solution::Driven if !self.skipped.is_empty() => self.restore_skipped(statistics),
                 Solution::Driven => {
                     if self.solve(None, motion, statistics) == Solution::Exhausted {
@@ -342,7 +342,7 @@ impl ContactResolver {
         }
     }
 
-    /// Has velocity biases follow from the gaps at hand alone in islands that would be driven or turned back
+    /// Computes velocity biases from the present gaps alone in islands that would be driven or turned back
     /// otherwise; returns whether there are any.
     fn stop_driving(&mut self, motion: &Motion) -> bool {
         let bias = self.bias(motion);

@@ -5,7 +5,7 @@ use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
-/// Part of the fastest boat's way that contacts mostly add to that of another boat at most. With more room fewer contacts
+/// Part of the fastest boat's displacement that contacts mostly add to another boat's, at most. With more, fewer contacts
 /// are skipped, with less more have to be restored.
 const ADDED: f64 = 0.125;
 
@@ -16,12 +16,12 @@ pub(super) struct SkippedContacts {
 }
 
 impl SkippedContacts {
-    /// Forgets them.
+    /// Forgets the skipped contacts.
     pub(super) fn clear(&mut self) {
         self.contacts.clear();
     }
 
-    /// Whether there are none.
+    /// Whether there are no skipped contacts.
     pub(super) fn is_empty(&self) -> bool {
         self.contacts.is_empty()
     }
@@ -36,7 +36,7 @@ impl SkippedContacts {
         dt: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let room = ADDED * (detector.farthest + 1e-3 * detector.hull().radius);
+        let added = ADDED * (detector.farthest + 1e-3 * detector.hull().radius);
         let (mut kept, mut next) = (0, 0);
         while next < contacts.len() {
             let touches = &contacts[next..(next + 2).min(contacts.len())];
@@ -44,7 +44,7 @@ impl SkippedContacts {
                 [first, second] if first.is_twin(second) => 2,
                 _ => 1,
             };
-            let stays = may_close(detector, &touches[..count], velocities, dt, room);
+            let stays = may_close(detector, &touches[..count], velocities, dt, added);
             for _ in 0..count {
                 if stays {
                     contacts[kept] = contacts[next];
@@ -78,7 +78,7 @@ impl SkippedContacts {
             || predicted.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
     }
 
-    /// Puts them with the others again; returns how many there were.
+    /// Moves the skipped contacts back to the others; returns their number.
     pub(super) fn restore(&mut self, contacts: &mut Vec<Contact>) -> u64 {
         let count = self.contacts.len() as u64;
         contacts.append(&mut self.contacts);
@@ -94,9 +94,9 @@ fn may_close(
     touches: &[Contact],
     velocities: &[Velocity],
     dt: f64,
-    room: f64,
+    added: f64,
 ) -> bool {
-    let may_close = |contact: &Contact| may_touch_close(detector, contact, velocities, dt, room);
+    let may_close = |contact: &Contact| may_touch_close(detector, contact, velocities, dt, added);
     match touches {
         // Ends at a wall that curves around them: no normal separates the other one.
         [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
@@ -105,25 +105,25 @@ fn may_close(
     }
 }
 
-/// The same for the nearer touch.
+/// As [`may_close`], for the nearer touch.
 #[inline]
 fn may_touch_close(
     detector: &ContactDetector,
     contact: &Contact,
     velocities: &[Velocity],
     dt: f64,
-    room: f64,
+    added: f64,
 ) -> bool {
     let hull = detector.hull();
     let gap = &contact.gap;
     let first = &velocities[contact.boat as usize];
-    let (linear, spin, room) = match contact.second() {
+    let (linear, spin, added) = match contact.second() {
         Some(second) => {
             let second = &velocities[second];
             let spin = first.angular.abs() + second.angular.abs();
-            (first.linear - second.linear, spin, 2.0 * room)
+            (first.linear - second.linear, spin, 2.0 * added)
         }
-        None => (first.linear, first.angular.abs(), room),
+        None => (first.linear, first.angular.abs(), added),
     };
     let swing = hull.half_length * spin * dt;
     let curve = if contact.partner == Partner::OuterWall {
@@ -132,5 +132,5 @@ fn may_touch_close(
     } else {
         0.0
     };
-    gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + room
+    gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + added
 }

@@ -1,4 +1,4 @@
-//! What a flock's substeps did: work counts and worst cases.
+//! Statistics of a flock's substeps: work counts and worst cases.
 
 use super::solver::SolveReport;
 use crate::parameters::{Value, named_fields};
@@ -54,7 +54,7 @@ impl Statistics {
         counts.into_iter().chain(worst).collect()
     }
 
-    /// What says whether overlaps stayed within the tolerance, by name.
+    /// Statistics of overlaps, by name.
     pub fn named_of_steps(&self) -> Value {
         let named = named_fields!(self; worst_overlap_cm unsolved halved_substeps);
         named.into_iter().collect()

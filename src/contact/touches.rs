@@ -1,4 +1,4 @@
-//! Which touch is which: two bodies may touch at two places, and a contact stands for one of them.
+//! Identity of touches: two bodies may touch at two points, and a contact stands for one of them.
 //!
 //! A touch is known by where it is along both cores. The group of ends that it belongs to names it only at one pose: a
 //! touch passes to the other group without moving where an end slides past the other hull's end, and where two hulls
@@ -10,13 +10,13 @@ use crate::geometry::{EndTouch, Gap};
 /// Coordinates along both cores in cm.
 pub(super) type Place = [f64; 2];
 
-/// Where a touch is.
+/// Coordinates of a touch.
 #[inline]
 pub(super) fn place(gap: &Gap) -> Place {
     [gap.along, gap.along_j]
 }
 
-/// How far one touch is from another along both cores, in cm.
+/// Distance of two touches along both cores, in cm.
 #[inline]
 pub(super) fn distance(a: Place, b: Place) -> f64 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).abs()

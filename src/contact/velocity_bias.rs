@@ -9,7 +9,7 @@ use std::hint::select_unpredictable;
 pub(super) struct VelocityBias {
     /// Length of the substep in s.
     pub dt: f64,
-    /// What an overlap has to close in, in s: a substep that a phase or control step cuts to 1 ns would
+    /// Time in s within which an overlap closes: a substep that a phase or control step cuts to 1 ns would
     /// close it at any speed.
     pub closing_s: f64,
     /// Overlaps beyond this (cm) are undone by moving poses; what that leaves must not push.
@@ -25,7 +25,7 @@ impl VelocityBias {
         select_unpredictable(is_deep, 0.0, gap.gap / time)
     }
 
-    /// What turning a flank into the inner wall, with this spin, takes off the bias.
+    /// Part of the bias that is lost as a flank turns into the inner wall with this spin.
     pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
         if gap.gap < -self.penetration_slop {
             0.0

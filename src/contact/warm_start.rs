@@ -1,4 +1,4 @@
-//! Which contacts carried an impulse in the last substep: the guess for the next one.
+//! Contacts that carried an impulse in the last substep: the guess for the next one.
 
 use super::touches::{Place, distance, place};
 use super::{Contact, Partner};
@@ -56,7 +56,7 @@ pub(super) struct WarmStartCache {
 }
 
 const NONE: u32 = u32::MAX;
-/// How many entries are passed over in search of a contact: those of contacts that are gone.
+/// Number of entries that a search may skip: those of contacts that are gone.
 const AHEAD: usize = 4;
 
 impl WarmStartCache {

@@ -88,7 +88,7 @@ impl FrameRenderer {
     }
 
     fn draw_canvas(&mut self, flock: &Flock, look: Look<'_>) {
-        let view = View::of(flock, self.width(), self.height());
+        let view = View::from_flock(flock, self.width(), self.height());
         self.draw_background(flock, &view);
         boats::draw(&mut self.canvas, flock, &view, look.coloring);
         let open = !flock.parameters().pool.has_outer_wall();

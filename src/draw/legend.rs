@@ -40,7 +40,7 @@ impl Legend {
         }
     }
 
-    /// Writes it, for a frame with or without a grid.
+    /// Draws the legend of a frame with or without a grid.
     pub(super) fn draw(
         &self,
         canvas: &mut Pixmap,
@@ -60,16 +60,8 @@ impl Legend {
         let mut left = |text: &str, baseline: f32, ink: Rgb| {
             typeface.write(canvas, text, edge, baseline, ink);
         };
-        let mut lines = vec![];
-        if !look.caption.is_empty() {
-            lines.push((cut(typeface, look.caption, CORNER.0 * size), INK));
-        }
-        lines.push((format!("{:.1} s", flock.time_s()), INK));
-        lines.push((motors(flock.phase().phase).to_owned(), INK));
-        if let Some(spacing_cm) = grid_cm {
-            lines.push((format!("grid {spacing_cm} cm"), FAINT));
-        }
-        for (line, (text, ink)) in (0..).zip(lines) {
+        let caption = cut(typeface, look.caption, CORNER.0 * size);
+        for (line, (text, ink)) in (0..).zip(clock(flock, caption, grid_cm)) {
             left(&text, top(line), ink);
         }
         let psi_o = order.map(|order| format!("{:.2}", order.psi_o));
@@ -94,7 +86,21 @@ impl Legend {
     }
 }
 
-/// The target, the backward duration, and the leaders that there are beside their color.
+/// Lines for the caption, the time, the phase and the grid, each if there is one.
+fn clock(flock: &Flock, caption: String, grid_cm: Option<f64>) -> Vec<(String, Rgb)> {
+    let mut lines = vec![];
+    if !caption.is_empty() {
+        lines.push((caption, INK));
+    }
+    lines.push((format!("{:.1} s", flock.time_s()), INK));
+    lines.push((motors(flock.phase().phase).to_owned(), INK));
+    if let Some(spacing_cm) = grid_cm {
+        lines.push((format!("grid {spacing_cm} cm"), FAINT));
+    }
+    lines
+}
+
+/// Lines for the target, the backward duration, and the leaders beside their color.
 fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
     let parameters = flock.parameters();
     let count = parameters.n_leaders;
@@ -127,7 +133,7 @@ fn leaders(count: usize) -> String {
     format!("{count} leader{}", if count == 1 { "" } else { "s" })
 }
 
-/// What the motors do, in the replay page's words.
+/// The motors' work in a phase, in the replay page's words.
 fn motors(phase: Phase) -> &'static str {
     match phase {
         Phase::Forward => "forward",
@@ -136,7 +142,7 @@ fn motors(phase: Phase) -> &'static str {
     }
 }
 
-/// A text that is so many pixels wide at most.
+/// A text, cut to a width in pixels.
 fn cut(typeface: &Typeface, text: &str, width: f32) -> String {
     let mut shown = text.to_owned();
     while typeface.width(&shown) > width {

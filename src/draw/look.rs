@@ -1,15 +1,15 @@
-//! What a frame is to show of a flock.
+//! Look of a frame.
 
 use super::palette::Coloring;
 use crate::flock::Flock;
 use crate::parameters::Target;
 
-/// How a frame shows a flock.
+/// Look of a flock in a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Look<'a> {
-    /// What the color of a boat shows.
+    /// Meaning of a boat's color.
     pub coloring: Coloring,
-    /// What stands above the time, cut where it does not fit its corner; nothing if it is empty.
+    /// Title above the time, cut to fit its corner; empty: none.
     pub caption: &'a str,
 }
 
@@ -22,7 +22,7 @@ impl Default for Look<'_> {
     }
 }
 
-/// Where all leaders head; `None` without leaders and where they head against each other.
+/// Common target of all leaders; `None` without leaders or if their targets differ.
 pub(super) fn target_of(flock: &Flock) -> Option<Target> {
     let parameters = flock.parameters();
     (parameters.n_leaders > 0 && !parameters.target.are_opposed())

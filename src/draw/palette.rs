@@ -71,7 +71,7 @@ macro_rules! declare_palette {
 }
 
 declare_palette! {
-    /// What surrounds the pool, and the obstacle in its middle.
+    /// The ground around the pool, and the obstacle in its middle.
     GROUND = "ground": hex(0xF7F5F0), hex(0x14191F);
     /// The walls.
     WALL = "wall": hex(0x7C8690), hex(0x6B7680);
@@ -126,7 +126,7 @@ declare_palette! {
 }
 
 named_choice! {
-    /// What the color of a boat shows.
+    /// Meaning of a boat's color.
     pub enum Coloring ("colors") {
         /// The direction in which it circles: clockwise, counter-clockwise, or neither. Leaders are ringed.
         Direction = "direction",

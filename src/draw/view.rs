@@ -1,4 +1,4 @@
-//! Which part of the world a frame shows: world y points up, pixel rows run down.
+//! Part of the world in a frame: world y points up, pixel rows run down.
 
 use crate::flock::Flock;
 use crate::geometry::{Hull, Vec2};
@@ -26,7 +26,7 @@ pub(super) struct View {
 
 impl View {
     /// The whole pool, or in open water the boats' bounding box, in a frame of this size.
-    pub(super) fn of(flock: &Flock, width: u32, height: u32) -> Self {
+    pub(super) fn from_flock(flock: &Flock, width: u32, height: u32) -> Self {
         let size = Vec2::new(f64::from(width), f64::from(height));
         let pool = &flock.parameters().pool;
         let (center, scale) = if pool.has_outer_wall() {
@@ -42,7 +42,7 @@ impl View {
         }
     }
 
-    /// Where a world point falls, in pixels.
+    /// Pixel coordinates of a world point.
     pub(super) fn pixel(&self, world: Vec2) -> Point {
         let offset = (world - self.center) * self.scale;
         Point {

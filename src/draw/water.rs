@@ -1,4 +1,4 @@
-//! What lies under the boats: ground, walls, obstacles and water, and the arrow that shows the target.
+//! Background of a frame: ground, walls, obstacles and water, and the arrow that shows the target.
 
 use super::palette::{GRID, GROUND, Rgb, TARGET, WALL, WATER};
 use super::text::Typeface;
@@ -11,7 +11,7 @@ use tiny_skia::{PathBuilder, Pixmap, Point};
 const LEAST_SPACING: f64 = 60.0;
 /// The obstacle's radius from which on the arrow fits, in pixels.
 const LEAST_ISLAND: f32 = 24.0;
-/// Pixels beyond which nothing is drawn.
+/// Largest pixel coordinate that is drawn.
 const FARTHEST: f32 = 1e6;
 
 /// Draws all of it.
@@ -125,7 +125,7 @@ fn arrow(canvas: &mut Pixmap, middle: Point, radius: f32, target: Target) {
     };
     if let Some(typeface) = Typeface::new(1.5 * radius) {
         let x = middle.x - typeface.width(symbol) / 2.0;
-        // Half of what letters rise above their baseline.
+        // Half of the height of letters above their baseline.
         let baseline = middle.y + 0.36 * typeface.size;
         typeface.write(canvas, symbol, x, baseline, TARGET);
     }

@@ -1,4 +1,4 @@
-//! What an action stands for: a rudder, one of some levels, or the heading that a law steers to.
+//! Meaning of actions: a rudder, one of some levels, or the heading that a law steers to.
 
 use crate::boat::DampedLaw;
 use crate::error::{FlockError, Result};
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 pub const LARGEST_LEAN: f64 = 1.2;
 
 named_choice! {
-    /// What an action stands for.
+    /// Meaning of an action.
     pub enum ActionMode ("action_mode") {
         /// The rudder itself.
         Rudder = "rudder",

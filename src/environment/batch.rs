@@ -12,7 +12,7 @@ use crate::sealed_bytes::{Magic, seal, unseal};
 
 const MAGIC: Magic = *b"flocken4";
 
-/// Where a step writes: one row per leader, flock after flock, and one flag per flock.
+/// Rows that a step fills: one per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
 pub struct BatchRows<'a> {
     /// Observations, `rows × observation size`.
@@ -38,8 +38,8 @@ struct Share<'a> {
     observations: &'a mut [f32],
     rewards: &'a mut [f64],
     truncated: &'a mut bool,
-    /// Whether somebody looks before it whether to continue.
-    is_looked_before: bool,
+    /// Whether `keep_going` is asked before this flock's step.
+    checks_interrupt: bool,
 }
 
 impl EnvBatch {
@@ -139,7 +139,7 @@ impl EnvBatch {
         let settings = &self.settings;
         let shares = shares(&mut self.envs, settings.observation.size(), actions, out);
         let step = |share: Share| {
-            if share.is_looked_before && !keep_going() {
+            if share.checks_interrupt && !keep_going() {
                 return Err(FlockError::Interrupted);
             }
             let (actions, observations) = (share.actions, share.observations);
@@ -151,7 +151,7 @@ impl EnvBatch {
         };
         let moved: Vec<Result<()>> = parallel::map(shares, step);
         if moved.contains(&Err(FlockError::Interrupted)) {
-            // Some have moved and others not: whoever goes on after that begins anew.
+            // Some flocks have moved and others have not: all must be reset.
             self.envs.iter_mut().for_each(FlockEnv::abandon);
             return Err(FlockError::Interrupted);
         }
@@ -165,16 +165,16 @@ impl EnvBatch {
         }
     }
 
-    /// Pays the leaders for the step just taken, one number a row, on top of what the settings' weights paid.
+    /// Adds one number per row to the rewards of the last step, on top of the settings' weighted terms.
     ///
     /// # Panics
     /// If there is another number of rewards than rows.
-    pub fn pay(&mut self, rewards: &[f64]) {
+    pub fn add_rewards(&mut self, rewards: &[f64]) {
         assert_eq!(rewards.len(), self.rows, "one reward a leader");
         let mut rest = rewards;
         for env in &mut self.envs {
             let own = rest.split_off(..env.parameters().n_leaders);
-            env.pay(own.unwrap_or_default());
+            env.add_rewards(own.unwrap_or_default());
         }
     }
 
@@ -222,7 +222,7 @@ impl EnvBatch {
         Ok(())
     }
 
-    /// Lets options hold for the episodes of some flocks that are to come; those that are not given stay as they were.
+    /// Sets options of the future episodes of some flocks; options that are not given stay as they were.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for options that a flock cannot have, or no such flock; nothing has changed then.
@@ -318,11 +318,11 @@ const FLOCKS_BETWEEN_LOOKS: usize = 16;
 
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.
 const MOST_BYTES: u64 = 16 << 30;
-/// What a flock takes at most, however few its boats, and what a boat takes with its contacts.
+/// Bytes of a flock besides its boats, and of a boat with its contacts, at most.
 const BYTES_A_FLOCK: u64 = 16 << 10;
 const BYTES_A_BOAT: u64 = 2 << 10;
 
-/// Refuses a batch that would end the process for want of memory.
+/// Refuses a batch for which memory would run out.
 fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<()> {
     // Observations are held by the caller too, and at the end of an episode by the environment.
     let bytes_a_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
@@ -370,7 +370,7 @@ fn shares<'a>(
                 .unwrap_or_default(),
             rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
-            is_looked_before: number.is_multiple_of(FLOCKS_BETWEEN_LOOKS),
+            checks_interrupt: number.is_multiple_of(FLOCKS_BETWEEN_LOOKS),
             env,
         }
     };

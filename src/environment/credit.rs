@@ -1,4 +1,4 @@
-//! What a leader's contacts do to normal boats, from the impulses of the contact solver. None of it has the noise of
+//! Effects of a leader's contacts on normal boats, from the impulses of the contact solver. They are free of the noise of
 //! boats that the leader does not touch.
 
 use crate::geometry::LapFrame;
@@ -8,12 +8,12 @@ use crate::parameters::Target;
 /// Time in s after which a turn that a leader gave counts for 1/e.
 pub(super) const MEMORY_S: f64 = 4.0;
 
-/// How one leader has turned one normal boat.
+/// Turning of one normal boat by one leader.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 struct Turned {
-    /// The part of the boat's angular velocity that is left of the leader's impulses, in rad/s.
+    /// Part of the boat's angular velocity that remains of the leader's impulses, in rad/s.
     spin: f64,
-    /// The part of its heading, in rad.
+    /// Part of its heading that the leader turned, in rad.
     angle: f64,
 }
 
@@ -48,14 +48,14 @@ impl ContactCredit {
         }
     }
 
-    /// Whether a stored credit is one of so many leaders and boats.
+    /// Whether a stored credit fits these numbers of leaders and boats.
     pub(super) fn fits(&self, leaders: usize, boats: usize) -> bool {
         self.leaders == leaders
             && self.given.len() == leaders
             && self.turned.len() == leaders * (boats - leaders)
     }
 
-    /// Forgets what was given in the control step before.
+    /// Clears the gifts of the previous control step.
     pub(crate) fn start(&mut self) {
         self.given.fill((0.0, 0.0));
     }

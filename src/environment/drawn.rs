@@ -1,4 +1,4 @@
-//! What an episode is given, or what is drawn for it from the flock's seed.
+//! Settings of an episode that are fixed, or drawn from the flock's seed.
 
 use crate::error::{FlockError, Result};
 use crate::parameters::{Kind, Range, Setting, Target, Targets, Value, wrong_kind};
@@ -56,7 +56,7 @@ impl Setting for Drawn {
     }
 }
 
-/// Which direction an episode's target is.
+/// Target directions of an episode.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum TargetChoice {
     /// The same throughout.

@@ -19,7 +19,7 @@ use crate::flock::Flock;
 use crate::integrator::{Integrator, Steering};
 use crate::parameters::{FlockParameters, Target, Targets};
 
-/// What an episode remembers. It is stored as it is.
+/// Stored state of an episode.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EpisodeState {
     flock: Flock,
@@ -31,7 +31,7 @@ pub(crate) struct EpisodeState {
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
     ended: bool,
-    /// What the leaders' contacts do, where a reward asks for it.
+    /// Effects of the leaders' contacts, if a reward term needs them.
     credit: Option<ContactCredit>,
     /// Of the normal boats; `None` where there is none.
     #[serde(skip)]
@@ -76,7 +76,7 @@ impl EpisodeState {
         FlockView::new(&self.flock, &self.rudders, self.order.as_ref())
     }
 
-    /// What leaders see: through the camera, if there is one.
+    /// The flock as leaders see it: through the camera, if there is one.
     fn seen(&self) -> FlockView<'_> {
         let (view, camera) = (self.view(), self.camera.as_ref());
         camera.map_or(view, |camera| camera.through(view))
@@ -100,10 +100,10 @@ impl Episode {
     /// # Errors
     /// [`FlockError::Parameter`] where the flock's pool has no law that the settings need.
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
-        Self::of(settings, EpisodeState::new(settings, schedule, flock))
+        Self::from_state(settings, EpisodeState::new(settings, schedule, flock))
     }
 
-    fn of(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
+    fn from_state(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
         state.order = state.flock.order_parameters(false).ok();
         let parameters = state.flock.parameters();
         let law = settings.action_mode.steering_law(parameters)?;
@@ -131,10 +131,10 @@ impl Episode {
         let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
         let camera = settings.lens().zip(state.camera);
         state.camera = camera.map(|(lens, camera)| camera.restored(lens, seed, leaders));
-        Self::of(settings, state)
+        Self::from_state(settings, state)
     }
 
-    /// What it remembers, to be stored.
+    /// Its state, for storage.
     pub(crate) fn state(&self) -> &EpisodeState {
         &self.state
     }
@@ -144,7 +144,7 @@ impl Episode {
         &self.state.flock
     }
 
-    /// What was drawn for the episode, and how far it is.
+    /// The episode's draw and its progress.
     pub fn schedule(&self) -> &EpisodeSchedule {
         &self.state.schedule
     }
@@ -180,18 +180,18 @@ impl Episode {
         &self.state.flock.parameters().target
     }
 
-    /// Writes what leaders see now; returns how many numbers were clipped.
+    /// Writes the leaders' present observations; returns the number of clipped values.
     pub fn observe(&mut self, out: &mut [f32]) -> u32 {
         self.observer.observe(&self.state.seen(), out)
     }
 
-    /// Writes what leaders see in the course of the episode, and counts what was clipped.
+    /// Writes the leaders' observations, and counts clipped numbers in the episode's statistics.
     pub(crate) fn observe_and_count(&mut self, out: &mut [f32]) {
         let clipped = self.observe(out);
         self.state.statistics.count_clipped(clipped, out.len());
     }
 
-    /// Writes what leaders see now in another layout.
+    /// Writes the leaders' present observations in another layout.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a layout that the flock cannot have.
@@ -201,12 +201,12 @@ impl Episode {
         Ok(())
     }
 
-    /// Writes the global state, which no camera stands before.
+    /// Writes the global state, which bypasses the camera.
     pub(crate) fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
-    /// Writes the features of the flock in the frame of a target, which no camera stands before.
+    /// Writes the features of the flock in the frame of a target, which bypass the camera.
     pub(crate) fn observe_features(
         &self,
         features: &FlockFeatures,
@@ -242,7 +242,7 @@ impl Episode {
                 self.move_rudders(servo);
             }
             let elapsed = self.advance(keep_going, settings, actions.is_none())?;
-            self.pay(settings, rewards);
+            self.add_rewards(settings, rewards);
             self.note_order(elapsed);
             self.advance_schedule()?;
             taken += 1;
@@ -254,7 +254,7 @@ impl Episode {
         Ok(())
     }
 
-    /// Works out the commands of a control step from actions that were chosen in views mirrored to targets, if any.
+    /// Computes the commands of a control step from actions, which may be of mirrored views.
     fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
         let view = self.state.seen();
@@ -323,7 +323,7 @@ impl Episode {
     }
 
     /// Adds each leader's terms and reward of the control step just taken, with the target that held in it.
-    fn pay(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
+    fn add_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
         let state = &mut self.state;
         let flock = &state.flock;
         let view = FlockView::new(flock, &state.rudders, state.order.as_ref());
@@ -336,24 +336,24 @@ impl Episode {
                 each.of(leader, &flock.integrator, target, step_s)
             });
             let terms = reward.terms(&view, leader, &credit);
-            let paid = settings.reward_factor() * settings.reward.total(leader, &terms);
+            let own = settings.reward_factor() * settings.reward.total(leader, &terms);
             state.statistics.add_terms(share, &terms);
-            state.statistics.add_reward(share * paid);
-            *sum += paid;
+            state.statistics.add_reward(share * own);
+            *sum += own;
             sums.iter_mut()
                 .zip(terms)
                 .for_each(|(sum, term)| *sum += term);
         }
     }
 
-    /// Adds rewards that leaders have from elsewhere.
+    /// Adds rewards that a user computed.
     pub(crate) fn add_reward(&mut self, rewards: &[f64]) {
         let sum: f64 = rewards.iter().sum();
         let statistics = &mut self.state.statistics;
         statistics.add_reward(sum / rewards.len().max(1) as f64);
     }
 
-    /// Takes note of the order, and of everything that is averaged where the step ends in the analysis window, after
+    /// Records the order, and everything that is averaged if the step ends in the analysis window, after
     /// the first tenth of the episode.
     fn note_order(&mut self, elapsed: Ticks) {
         let (flock, statistics) = (&self.state.flock, &mut self.state.statistics);

@@ -9,7 +9,7 @@ use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
-/// What is stored of an environment.
+/// Stored state of an environment.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct StoredEnv<E = EpisodeState> {
     seeds: Option<EpisodeSeeds>,
@@ -74,17 +74,17 @@ impl FlockEnv {
         &self.final_observation
     }
 
-    /// What holds for the episodes that are to come.
+    /// Settings of future episodes.
     pub fn upcoming(&self) -> &Upcoming {
         &self.upcoming
     }
 
-    /// Lets checked options hold for the episodes that are to come.
+    /// Sets checked options of future episodes.
     pub(crate) fn set_upcoming(&mut self, upcoming: Upcoming) {
         self.upcoming = upcoming;
     }
 
-    /// Whether options can hold for the episodes that are to come.
+    /// Checks options of future episodes.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
@@ -184,8 +184,8 @@ impl FlockEnv {
         Ok(true)
     }
 
-    /// Pays the leaders for the control steps just taken.
-    pub(crate) fn pay(&mut self, rewards: &[f64]) {
+    /// Adds to the leaders' rewards of the last step.
+    pub(crate) fn add_rewards(&mut self, rewards: &[f64]) {
         let Some(episode) = &mut self.episode else {
             return;
         };
@@ -230,7 +230,7 @@ impl FlockEnv {
         }
     }
 
-    /// How many numbers the global state has.
+    /// Size of the global state.
     pub fn state_size(&self) -> usize {
         self.state_observer.size()
     }

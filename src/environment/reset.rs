@@ -6,7 +6,7 @@ use crate::error::{FlockError, Result};
 use crate::flock::{Flock, LATEST, State};
 use crate::parameters::FlockParameters;
 
-/// Where an episode starts.
+/// Start of an episode.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Start {
     /// Placed at random from the episode's seed, at rest.
@@ -32,11 +32,11 @@ pub struct ResetRequest {
     pub target: Option<TargetChoice>,
     /// Length of the backward phase in this episode in s; `None`: as the settings say.
     pub bw_s: Option<Drawn>,
-    /// Where it starts.
+    /// Its start.
     pub start: Start,
 }
 
-/// What holds for the episodes that are still to come, unless a reset says otherwise.
+/// Settings of future episodes, unless a reset says otherwise.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Upcoming {
     /// Target of these episodes; `None`: as the settings say.
@@ -59,7 +59,7 @@ impl Upcoming {
 }
 
 impl ResetRequest {
-    /// The same request, with what holds for all episodes that are to come.
+    /// The request, completed by the settings of future episodes.
     #[must_use]
     pub(super) fn over(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();

@@ -36,7 +36,7 @@ named_choice! {
     }
 }
 
-/// How many terms there are.
+/// Number of terms.
 pub const TERMS: usize = RewardTerm::ALL.len();
 
 /// The value of each term, in the order of [`RewardTerm::ALL`].

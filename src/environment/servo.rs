@@ -1,4 +1,4 @@
-//! What a real servo does to a rudder command.
+//! The lag of a real servo.
 
 /// A servo that takes one move a control step and holds the rudder in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,7 @@ impl Servo {
         }
     }
 
-    /// Where the rudder is after the step's move.
+    /// The rudder after the step's move.
     pub fn moved(&self, rudder: f64, command: f64) -> f64 {
         if self.follow == 1.0 && self.most >= 2.0 {
             return command;

@@ -9,7 +9,7 @@ use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, Range, declare_fields, named_choice};
 
 named_choice! {
-    /// What happens when an episode has ended.
+    /// Behavior at the end of an episode.
     pub enum Autoreset ("autoreset_mode") {
         /// The next step starts a new episode and ignores its action.
         NextStep = "next_step",
@@ -61,7 +61,7 @@ declare_fields! {
     autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";
 }
 
-/// What observes flocks with these parameters in a layout.
+/// Observer of flocks with these parameters in a layout.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] for a layout that they cannot have.
@@ -111,7 +111,7 @@ impl EnvSettings {
         self.reward.check(parameters)
     }
 
-    /// What is observed, and whether it is mirrored.
+    /// The layout of observations, mirrored or not.
     pub fn layout(&self) -> ObservationLayout {
         self.observation.mirrored(self.mirror_to_target)
     }
@@ -141,7 +141,7 @@ impl EnvSettings {
         ticks(f64::from(steps) / self.control_hz)
     }
 
-    /// What the weighted sum of a control step's terms is multiplied by.
+    /// Factor of the weighted sum of a control step's terms.
     pub(crate) fn reward_factor(&self) -> f64 {
         self.reward_horizon_s
             .map_or(1.0, |horizon| 1.0 / (self.control_hz * horizon))
@@ -169,7 +169,7 @@ impl EnvSettings {
         )
     }
 
-    /// What stands between the flock and the leaders' eyes; `None` where nothing does.
+    /// The lens between the flock and the leaders; `None` if they see it as it is.
     pub(crate) fn lens(&self) -> Option<Lens> {
         Lens::new(self.dropout_rate, self.delay_frames)
     }

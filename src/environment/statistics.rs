@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 /// Signed order above this is motion in the target direction.
 pub const TOWARDS_TARGET: f64 = 0.5;
-/// How far off the tangent a flock counts as ordered: as eq. (7) prints it, and wider, since a boat that
+/// Largest angle off the tangent of an ordered flock: as eq. (7) prints it, and wider, since a boat that
 /// slides along the wall heads outward of it.
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
@@ -83,7 +83,7 @@ impl EpisodeStatistics {
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
-    /// Takes note of the order at a time since the episode started; `is_late` in its second half.
+    /// Records the order at a time since the episode started; `is_late` marks the second half.
     pub(super) fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
         for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
             watch.note(time_s, order, within, is_late);

@@ -1,4 +1,4 @@
-//! What changes while a flock moves: its target, or all its parameters.
+//! Changes of a flock while it moves: of its target, or of all parameters.
 
 use super::flock::Flock;
 use crate::error::Result;

@@ -9,7 +9,7 @@ use crate::geometry::Vec2;
 pub struct ContactForce {
     /// The contact, its gap taken at the current poses.
     pub contact: Contact,
-    /// Where the force acts on the hull of `contact.boat`, at the current poses.
+    /// Point of the hull of `contact.boat` where the force acts, at the current poses.
     pub point: Vec2,
     /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
     pub force: f64,

@@ -132,7 +132,7 @@ impl Flock {
         &self.schedule
     }
 
-    /// Where in the cycle the flock is.
+    /// Time in the cycle of phases.
     pub fn phase(&self) -> PhaseMoment {
         self.schedule.at(self.time)
     }
@@ -153,7 +153,7 @@ impl Flock {
         &self.integrator.velocities
     }
 
-    /// What the substeps so far did.
+    /// Statistics of the substeps so far.
     pub fn statistics(&self) -> &Statistics {
         &self.integrator.statistics
     }
@@ -188,7 +188,7 @@ impl Flock {
         self.advance_to(&|| true, end, steering)
     }
 
-    /// When a duration from now on ends.
+    /// Time at which a duration from now on ends.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a bad duration.
@@ -322,7 +322,7 @@ impl Flock {
         Ok(())
     }
 
-    /// What the substeps so far cost: boats moved, contacts and rows factored.
+    /// Work of the substeps so far: boats moved, contacts and rows factored.
     fn work(&self) -> u64 {
         let statistics = &self.integrator.statistics;
         let moved = statistics.substeps * self.parameters.n_boats as u64;
@@ -335,7 +335,7 @@ impl Flock {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Where an advance towards a time stops that may take about so many substeps times boats: on the substep grid, where
+    /// Time at which an advance stops after about this many substeps times boats: on the substep grid, where
     /// stopping changes nothing.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
@@ -349,7 +349,7 @@ impl Flock {
     /// [`FlockError::Parameter`] if there is no such boat.
     pub fn order_parameters(&self, include_leaders: bool) -> Result<OrderParameters> {
         let (hulls, velocities) = self.measured(include_leaders);
-        OrderParameters::of_hulls(hulls, velocities)
+        OrderParameters::from_hulls(hulls, velocities)
     }
 
     /// The recorded quantities of the normal boats, or of all, in the order of the table.

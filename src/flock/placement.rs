@@ -30,7 +30,7 @@ const CLEARANCE: f64 = 1e-3;
 const OPEN_WATER_AREAS: f64 = 25.0;
 /// Halvings of the difference between an outer radius of open water that suffices and one that does not.
 const HALVINGS: u32 = 10;
-/// Places that show how much of the water obstacles take up: good to about a percent.
+/// Points that sample the water taken up by obstacles: good to about a percent.
 const SURVEYED: u32 = 1024;
 
 /// Places all boats of checked parameters.
@@ -54,14 +54,7 @@ pub(super) fn place(
     if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng, keep_going) {
         return Ok(poses);
     }
-    // Hulls that cover nearly all of the water cannot be disjoint. Trying would only take time; how
-    // many can be is worth one try for the error message.
-    let full = region.area / region.hull.area();
-    let (boats, attempts) = if parameters.n_boats as f64 <= LARGEST_COVER * full {
-        (parameters.n_boats, ATTEMPTS)
-    } else {
-        ((WELL_COVERED * full) as usize, 1)
-    };
+    let (boats, attempts) = region.worth_growing(parameters.n_boats);
     let mut most = 0;
     for _ in 0..attempts {
         let poses = by_growth(parameters, boats, &region, &mut rng, keep_going);
@@ -90,11 +83,22 @@ struct Region {
     outer: f64,
     /// In cm², without what obstacles take up.
     area: f64,
-    /// How often a boat's place is drawn before rejection gives up.
+    /// Draws of a boat's position before rejection gives up.
     tries: usize,
 }
 
 impl Region {
+    /// Numbers of boats and of attempts to grow. Hulls that cover nearly all of the water cannot be disjoint: the number
+    /// that can be is worth one attempt, for the error message.
+    fn worth_growing(&self, boats: usize) -> (usize, usize) {
+        let full = self.area / self.hull.area();
+        if boats as f64 <= LARGEST_COVER * full {
+            (boats, ATTEMPTS)
+        } else {
+            ((WELL_COVERED * full) as usize, 1)
+        }
+    }
+
     fn new(parameters: &FlockParameters) -> Self {
         let hull = Hull::new(parameters);
         let pool = parameters.pool;
@@ -211,7 +215,7 @@ impl Region {
         clear
     }
 
-    /// How many boats, taken in order, overlap none before them.
+    /// Number of boats that, taken in order, overlap none before them.
     fn count_disjoint(&self, poses: &[Pose]) -> usize {
         let mut placed: Vec<HullPose> = Vec::with_capacity(poses.len());
         for pose in poses {
@@ -224,7 +228,7 @@ impl Region {
     }
 }
 
-/// Adds boats one by one; none where one finds no place.
+/// Adds boats one by one; `None` if one finds no free position.
 fn by_rejection(
     boats: usize,
     region: &Region,
@@ -260,7 +264,7 @@ fn by_growth(
 ) -> Vec<Pose> {
     let mut start = || loop {
         let pose = region.draw(rng);
-        // What starts deep in an obstacle of open water would have a long way out.
+        // A hull that starts deep in an obstacle of open water would have far to go.
         if region.pool.has_outer_wall() || region.is_open(pose.position, region.hull.radius) {
             return pose;
         }

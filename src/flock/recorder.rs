@@ -1,4 +1,4 @@
-//! A run sampled at a fixed rate: what sweeps and figures are made of.
+//! Runs sampled at a fixed rate.
 
 use super::change::Change;
 use super::contact_force::ContactForce;
@@ -51,7 +51,7 @@ impl Sampling {
         Ok(sampling)
     }
 
-    /// How many samples there are, at least 1.
+    /// Number of samples, at least 1.
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -62,7 +62,7 @@ impl Sampling {
     }
 }
 
-/// How a recording keeps poses and velocities.
+/// Precision of recorded poses and velocities.
 pub trait Real: Copy + Default + nalgebra::RealField {}
 
 impl Real for f64 {}
@@ -71,7 +71,7 @@ impl Real for f32 {}
 /// Contacts that carried a force, sample after sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactSamples {
-    /// How many of them each sample has.
+    /// Number of contacts in each sample.
     pub count: Vec<usize>,
     /// The contacts; their forces are means over the substep before the sample.
     pub contacts: Vec<ContactForce>,
@@ -113,7 +113,7 @@ impl<T: Real> Recording<T> {
     /// Recordings beyond this many bytes (16 GiB) are taken for a mistake.
     pub const MOST_BYTES: u64 = 16 << 30;
 
-    /// An empty recording with room for a run.
+    /// An empty recording with memory for a run.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`] or than there is memory.
@@ -175,7 +175,7 @@ impl<T: Real> Recording<T> {
     }
 }
 
-/// Why a run pauses.
+/// Reason for a pause of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pause {
     /// The work it was given is done; it can continue at any time.
@@ -365,7 +365,7 @@ impl<T: Real> Recorder<T> {
         seconds(self.flock.time() - self.start)
     }
 
-    /// What has been recorded.
+    /// The recording.
     pub fn into_recording(self) -> Recording<T> {
         self.recording
     }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const MAGIC: Magic = *b"flockst4";
 
-/// What a snapshot holds.
+/// Content of a snapshot.
 #[derive(Debug, Serialize, Deserialize)]
 struct Snapshot {
     parameters: FlockParameters,
@@ -85,7 +85,7 @@ impl<'de> Deserialize<'de> for Flock {
             FlockError::Snapshot(why) => refused(why),
             other => refused(other.to_string()),
         })?;
-        Ok(Self::of_state(state, None))
+        Ok(Self::from_checked(state, None))
     }
 }
 
@@ -107,7 +107,7 @@ impl Flock {
     }
 
     /// The flock of a checked state.
-    fn of_state(state: Snapshot, noise_seed: Option<u64>) -> Self {
+    fn from_checked(state: Snapshot, noise_seed: Option<u64>) -> Self {
         let mut flock = Self::unplaced(state.as_made(), state.seed);
         flock.replace_step(state.parameters.dt_s);
         flock.time = state.time;
@@ -140,6 +140,6 @@ impl Flock {
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
     pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
         let state = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
-        Ok(Self::of_state(state, noise_seed))
+        Ok(Self::from_checked(state, noise_seed))
     }
 }

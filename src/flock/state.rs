@@ -58,7 +58,7 @@ impl Flock {
         })
     }
 
-    /// Puts the boats somewhere else.
+    /// Sets poses, velocities and time.
     ///
     /// # Errors
     /// [`FlockError::Shape`] for wrong lengths, [`FlockError::Parameter`] for numbers that are not
@@ -71,6 +71,19 @@ impl Flock {
         time_s: f64,
         allow_overlap: bool,
     ) -> Result<()> {
+        self.check_boats(poses, velocities)?;
+        let time = time_from(time_s)?;
+        let mut integrator = self.integrator.clone();
+        integrator.place(poses, velocities);
+        if !allow_overlap {
+            refuse_overlap(&mut integrator, self.overlap_of_contacts(), |_| true)?;
+        }
+        (self.integrator, self.time) = (integrator, time);
+        Ok(())
+    }
+
+    /// Refuses other numbers of boats, and poses and velocities that a flock may not have.
+    fn check_boats(&self, poses: &[Pose], velocities: &[Velocity]) -> Result<()> {
         let n = self.parameters.n_boats;
         for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
             if length != n {
@@ -98,13 +111,6 @@ impl Flock {
             let value = format!("[{}, {}, {angular}] of boat {boat}", linear.x, linear.y);
             return Err(FlockError::parameter("velocity", value, accepted));
         }
-        let time = time_from(time_s)?;
-        let mut integrator = self.integrator.clone();
-        integrator.place(poses, velocities);
-        if !allow_overlap {
-            refuse_overlap(&mut integrator, self.overlap_of_contacts(), |_| true)?;
-        }
-        (self.integrator, self.time) = (integrator, time);
         Ok(())
     }
 }

@@ -22,7 +22,7 @@ impl Hull {
         }
     }
 
-    /// What pictures draw it by, in cm, by name.
+    /// Its lengths for pictures, in cm, by name.
     pub fn lengths(&self) -> [(&'static str, f64); 2] {
         [
             ("hull_radius_cm", self.radius),

@@ -29,7 +29,7 @@ pub struct Gap {
     pub bend: f64,
 }
 
-/// Where on a hull a contact is.
+/// Position of a contact on a hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Feature {
     /// Towards the stern.

@@ -1,4 +1,4 @@
-//! Which pairs of boats may touch soon: a list with a skin, rebuilt when boats have moved by half of
+//! Neighbor list: pairs of boats that may touch soon, with a skin, rebuilt when boats have moved by half of
 //! it. The list is a function of the centers it was built from, so a snapshot keeps those.
 
 use super::Vec2;
@@ -13,13 +13,13 @@ pub(crate) struct NeighborList {
     order: Vec<u32>,
     /// Their centers, in a flock of few.
     ordered: Vec<Vec2>,
-    /// For each place in `order`, where its partners start in `partners`.
+    /// Start of each boat's partners in `partners`, by its index in `order`.
     starts: Vec<u32>,
     /// Partners earlier in `order`.
     partners: Vec<u32>,
     /// Center distance within which the list is complete at the reference.
     cutoff: f64,
-    /// How often the list was built.
+    /// Number of builds of the list.
     builds: u64,
     grid: Grid,
 }
@@ -33,7 +33,7 @@ impl NeighborList {
         &self.reference
     }
 
-    /// How often the list was built.
+    /// Number of builds of the list.
     pub(crate) fn builds(&self) -> u64 {
         self.builds
     }
@@ -97,30 +97,38 @@ impl NeighborList {
         self.starts.clear();
         self.partners.clear();
         self.starts.push(0);
-        let reach = cutoff * cutoff;
         if self.reference.len() <= ALL_PAIRS {
-            self.ordered.clear();
-            for &boat in &self.order {
-                let center = self.reference[boat as usize];
-                for (&earlier, other) in self.order.iter().zip(&self.ordered) {
-                    if (center - other).norm_squared() < reach {
-                        self.partners.push(earlier);
-                    }
-                }
-                self.ordered.push(center);
-                self.starts.push(self.partners.len() as u32);
-            }
-            return;
+            self.list_all_pairs(cutoff * cutoff);
+        } else {
+            self.list_from_cells(cutoff);
         }
+    }
+
+    fn list_all_pairs(&mut self, reach: f64) {
+        self.ordered.clear();
+        for &boat in &self.order {
+            let center = self.reference[boat as usize];
+            for (&earlier, other) in self.order.iter().zip(&self.ordered) {
+                if (center - other).norm_squared() < reach {
+                    self.partners.push(earlier);
+                }
+            }
+            self.ordered.push(center);
+            self.starts.push(self.partners.len() as u32);
+        }
+    }
+
+    fn list_from_cells(&mut self, cutoff: f64) {
+        let reach = cutoff * cutoff;
         self.grid.sort(&self.reference, &self.order, cutoff);
-        for place in 0..self.order.len() {
-            let center = self.reference[self.order[place] as usize];
+        for index in 0..self.order.len() {
+            let center = self.reference[self.order[index] as usize];
             let start = self.partners.len();
             self.grid.for_each_near(center, |other| {
                 let near = (center - self.reference[self.order[other as usize] as usize])
                     .norm_squared()
                     < reach;
-                if (other as usize) < place && near {
+                if (other as usize) < index && near {
                     self.partners.push(other);
                 }
             });
@@ -164,7 +172,7 @@ struct Grid {
     columns: usize,
     rows: usize,
     starts: Vec<u32>,
-    /// Places (indices into the angular order), cell by cell.
+    /// Indices into the angular order, cell by cell.
     places: Vec<u32>,
 }
 

@@ -3,7 +3,7 @@
 use super::{Feature, Gap, Hull, HullPose, Vec2, inner_wall_gap, pair_gap, pair_gaps};
 use crate::parameters::{Disc, FlockParameters, Wall};
 
-/// What stands in the water.
+/// An obstacle's shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Obstacle {
     /// A disc.

@@ -1,4 +1,4 @@
-//! Where a boat is and how it moves.
+//! Pose and velocity of a boat.
 
 use super::{Vec2, wrap_angle};
 

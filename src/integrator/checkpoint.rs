@@ -1,4 +1,4 @@
-//! What decides how the motion continues, saved before every advance and stored in snapshots.
+//! Complete state of the motion, saved before every advance and stored in snapshots.
 
 use super::state::Integrator;
 use super::substep::LastSubstep;
@@ -17,9 +17,9 @@ pub(crate) struct Checkpoint {
     pub warm_start: Vec<CachedImpulse>,
     /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),
-    /// What leapfrog remembers.
+    /// Memory of the leapfrog scheme.
     pub last: LastSubstep,
-    /// What impulses are divided by to give forces, in s.
+    /// Divisor of impulses that gives forces, in s.
     pub step_length_s: f64,
     /// Running statistics.
     pub statistics: Statistics,

@@ -10,7 +10,7 @@ use crate::parameters::Scheme;
 /// Speeds below this, in cm/s or rad/s, count as rest. Drag alone would never end: their squares, and in the end they
 /// themselves, are so small that processors take ten times as long over each.
 const REST: f64 = 1e-150;
-/// How often boats are brought to rest.
+/// Time between two checks for boats to bring to rest.
 const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
 
 impl Integrator {

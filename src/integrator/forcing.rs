@@ -1,4 +1,4 @@
-//! What drives the boats in a substep: motors, rudders and the water.
+//! Drives of boats in a substep: motors, rudders and the water.
 
 use super::phase_schedule::Phase;
 use super::state::Integrator;

@@ -4,7 +4,7 @@ use crate::clock::{Ticks, ticks};
 use crate::parameters::{FlockParameters, named_choice};
 
 named_choice! {
-    /// What the motors do at a time.
+    /// Phase of the motors.
     pub enum Phase ("phase") {
         /// Forward.
         Forward = "fw",
@@ -50,7 +50,7 @@ pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     analyzed
 }
 
-/// Where in the cycle a time lies.
+/// Phase at a time, with the times since and until its switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PhaseMoment {
     /// The phase that holds from this time on.

@@ -1,4 +1,4 @@
-//! Everything that one substep reads and writes: poses, velocities, what drives them, contacts.
+//! State that a substep reads and writes: poses, velocities, drives, contacts.
 
 use super::substep::LastSubstep;
 use crate::boat::{Drive, FreeMotion};
@@ -62,7 +62,7 @@ impl Integrator {
         }
     }
 
-    /// Puts boats somewhere else; motion so far is forgotten.
+    /// Sets poses and velocities, and forgets earlier motion.
     pub(crate) fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
         self.poses.copy_from_slice(poses);
         self.velocities.copy_from_slice(velocities);
@@ -85,7 +85,7 @@ impl Integrator {
         self.contacts.set_whole_substep(dt_s);
     }
 
-    /// Works out the direction vectors of the poses.
+    /// Computes the direction vectors of the poses.
     pub(crate) fn update_boats(&mut self) {
         HullPose::replace_all(&mut self.boats, &self.poses);
     }
@@ -127,7 +127,7 @@ fn noise_paths(parameters: &FlockParameters, keys: StreamRng) -> BrownianPaths {
     } else {
         0
     };
-    BrownianPaths::of(keys, parameters.n_boats, 2 * dt, shift)
+    BrownianPaths::from_keys(keys, parameters.n_boats, 2 * dt, shift)
 }
 
 /// Per-boat factors of the preferred speed; empty where all boats are alike.

@@ -1,10 +1,10 @@
-//! One substep, and what is remembered of it.
+//! One substep, and the memory of it.
 
 use super::phase_schedule::Phase;
 use crate::clock::Ticks;
 use crate::geometry::Vec2;
 
-/// Where a leader's rudder command comes from.
+/// Source of the leaders' rudder commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Steering<'a> {
     /// The paper's law, eq. (10), at every substep.
@@ -20,13 +20,13 @@ pub(crate) struct Substep<'a> {
     pub start: Ticks,
     /// Its length.
     pub length: Ticks,
-    /// What the motors do.
+    /// The phase of the motors.
     pub phase: Phase,
-    /// What the rudders do.
+    /// The steering.
     pub steering: Steering<'a>,
 }
 
-/// What the leapfrog scheme remembers of the substep before: its second half belongs to the next kick.
+/// Memory of the leapfrog scheme: the second half of the last substep belongs to the next kick.
 /// Snapshots store the fields in this order.
 #[derive(Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LastSubstep {

@@ -32,7 +32,7 @@ impl Target {
 }
 
 named_choice! {
-    /// How a time step is taken.
+    /// Time integrator of a substep.
     pub enum Scheme ("scheme") {
         /// Velocities at half steps, Crank–Nicolson: second order while contacts persist.
         Leapfrog = "leapfrog",
@@ -54,7 +54,7 @@ impl Scheme {
 }
 
 named_choice! {
-    /// What η of eq. (9) means.
+    /// Meaning of η in eq. (9).
     pub enum Noise ("noise_scheme") {
         /// A stochastic differential equation: increment c4·sqrt(dt)·N(0, 1), c4 in rad/s^1.5.
         White = "white",
@@ -64,7 +64,7 @@ named_choice! {
 }
 
 named_choice! {
-    /// How the contact problem of a substep is solved.
+    /// Solver of the contact problem of a substep.
     pub enum Solver ("solver") {
         /// Exact: block principal pivoting on a Cholesky factor, island by island.
         BlockPivoting = "block-pivoting",

@@ -1,22 +1,22 @@
-//! What is declared of a parameter or an option: its kind, unit, range, source and meaning.
+//! Declaration of a parameter or an option: its kind, unit, range, source and meaning.
 
 use super::value::{Kind, Value};
 use crate::error::{FlockError, Result};
 
-/// What is declared of a field of `S`.
+/// Declaration of a field of `S`.
 #[derive(Debug)]
 pub struct Field<S: 'static> {
     /// Its name.
     pub name: &'static str,
-    /// What kind of value it has.
+    /// Kind of its value.
     pub kind: Kind,
     /// Its unit; empty for pure numbers and choices.
     pub unit: &'static str,
-    /// Which values are accepted.
+    /// Accepted values.
     pub range: Range,
-    /// Where the default comes from: a table, section or equation of the paper, or "chosen".
+    /// Source of the default: a table, section or equation of the paper, or "chosen".
     pub source: &'static str,
-    /// What it is, with its sign, and where the paper has it.
+    /// Meaning, with its sign, and the place in the paper.
     pub doc: &'static str,
     /// The value that it has.
     pub get: fn(&S) -> Value,
@@ -24,7 +24,7 @@ pub struct Field<S: 'static> {
     pub set: fn(&mut S, &Value) -> Result<()>,
 }
 
-/// Which values of a field are accepted.
+/// Accepted values of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Range {
     /// Whatever its type can hold.
@@ -82,7 +82,7 @@ impl<S> Field<S> {
 }
 
 impl<S> Field<S> {
-    /// Which values it accepts, in words.
+    /// Accepted values in words.
     pub fn accepted(&self) -> String {
         let quoted = |names: fn() -> Vec<&'static str>| {
             let names: Vec<_> = names().iter().map(|name| format!("{name:?}")).collect();
@@ -95,7 +95,7 @@ impl<S> Field<S> {
         }
     }
 
-    /// What is declared of it by name; its type in Python's words.
+    /// Its declaration by name, with its type in Python's words.
     #[cfg(feature = "python")]
     pub(crate) fn named(&self) -> Value
     where
@@ -174,7 +174,7 @@ macro_rules! declare_fields {
         }
 
         impl $struct {
-            /// What is declared of each field, in the order of documentation.
+            /// Declaration of each field, in the order of documentation.
             pub const FIELDS: &'static [$crate::parameters::Field<Self>] = &[$($crate::parameters::Field {
                 name: stringify!($name),
                 kind: <$type as $crate::parameters::Setting>::KIND,

@@ -118,7 +118,7 @@ impl FlockParameters {
         (self.pool, &self.discs, &self.walls) == (other.pool, &other.discs, &other.walls)
     }
 
-    /// What messages call an obstacle, the discs numbered first, then the walls.
+    /// Name of an obstacle in messages: the discs are numbered first, then the walls.
     pub(crate) fn obstacle_name(&self, number: usize) -> String {
         match number.checked_sub(self.discs.len()) {
             None => format!("disc {number}"),

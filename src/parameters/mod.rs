@@ -1,4 +1,4 @@
-//! What defines a flock: its fields, named sets of them, pools, and the choices users make by name.
+//! Parameters of a flock: its fields, named sets of them, pools, and the choices users make by name.
 
 mod choices;
 mod field;

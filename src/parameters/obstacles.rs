@@ -75,7 +75,7 @@ pub(super) trait Row: Copy {
 
 /// A row that describes an obstacle.
 pub(super) trait ObstacleRow: Row {
-    /// What is wrong with the shape of an obstacle, if something is.
+    /// Fault in the shape of an obstacle, if there is one.
     fn flaw(&self) -> Option<&'static str>;
     /// The least and the largest distance of its points from the pool's center.
     fn distances(&self) -> (f64, f64);

@@ -30,7 +30,7 @@ impl Pool {
     /// The pool of that name.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] lists the names there are.
+    /// [`FlockError::Parameter`] lists the known names.
     pub fn named(name: &str) -> Result<Self> {
         let found = Self::NAMED.iter().find(|(known, _)| *known == name);
         found.map(|&(_, pool)| pool).ok_or_else(|| {

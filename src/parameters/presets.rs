@@ -15,7 +15,7 @@ named_choice! {
 }
 
 named_choice! {
-    /// How finely an environment's physics is stepped.
+    /// Resolution of an environment's physics.
     pub enum Physics ("physics") {
         /// As the parameters have it.
         Default = "default",

@@ -1,10 +1,10 @@
-//! Where leaders steer to: all in one direction, or each in its own.
+//! Targets of leaders: one direction for all, or one for each.
 
 use super::Target;
 use super::value::{Kind, Setting, Value, text_of, wrong_kind};
 use crate::error::{FlockError, Result};
 
-/// How many targets of a list a message shows.
+/// Number of targets of a list that a message shows.
 const MOST_SHOWN: usize = 16;
 
 /// The targets of a flock's leaders.

@@ -1,9 +1,9 @@
-//! Values of parameters and options as they are given and shown outside, and the types that have such values.
+//! Values of parameters and options as users give and see them, and the types that have such values.
 
 use crate::error::{FlockError, Result};
 use std::fmt;
 
-/// A value as it is given and shown outside.
+/// A value as users give and see it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// None.
@@ -121,7 +121,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// Which kind of value a field has.
+/// Kind of a field's value.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
     /// A whole number of at least 0.
@@ -144,10 +144,10 @@ pub enum Kind {
 
 /// A type that fields have.
 pub(crate) trait Setting: Sized {
-    /// Which kind of values it has.
+    /// Kind of its values.
     const KIND: Kind;
 
-    /// As it is shown outside.
+    /// The value as users see it.
     fn value(&self) -> Value;
 
     /// From the value of the field of that name. It is not checked against the field's range.

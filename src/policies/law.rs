@@ -6,7 +6,7 @@ use crate::draw::palette::{DAMPED_LAW, LEARNED, PAPER_LAW, Rgb, TUNED_LAW};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
-/// How leaders steer by themselves. One more law is a variant, a line of [`Law::NAMED`] and a rudder in `Law::rudder`.
+/// A law that leaders steer by. One more law is a variant, a line of [`Law::NAMED`] and a rudder in `Law::rudder`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// The paper's law, eq. (10), at every substep, from the flock itself.
@@ -31,7 +31,7 @@ pub struct NamedLaw {
     origin: Origin,
 }
 
-/// Where a law that has a name comes from.
+/// Origin of a named law.
 #[derive(Debug, Clone, Copy)]
 enum Origin {
     /// It is the same in every pool.
@@ -57,7 +57,7 @@ impl NamedLaw {
         }
     }
 
-    /// What is declared of it by name.
+    /// Its declaration by name.
     pub fn named(&self) -> Value {
         let each = [
             ("name", Value::from(self.name)),

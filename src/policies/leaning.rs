@@ -7,7 +7,7 @@ use crate::error::{FlockError, Result};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 
-/// How a lean is kept within ±[`LARGEST_LEAN`].
+/// Bound of a lean, within ±[`LARGEST_LEAN`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Bound {
@@ -17,7 +17,7 @@ pub enum Bound {
     Clip,
 }
 
-/// How well a law leads, and how that was judged.
+/// Judgment of a law: its order, and the flocks that it was judged in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judged {
@@ -48,14 +48,14 @@ pub struct LeaningLaw {
     format: u32,
     /// Name of the pool that it is for, as whose usual values its features are standardized.
     pub pool: String,
-    /// How it was judged.
+    /// Its judgment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
     /// The damped law that steers to the heading; `None`: leaders choose rudders. A file says so: without gains it is
     /// not whole.
     #[serde(deserialize_with = "Option::deserialize")]
     pub gains: Option<DampedLaw>,
-    /// How the lean is bounded.
+    /// Bound of the lean.
     pub bound: Bound,
     /// For how many s a lean or a rudder is held, a whole number of control steps; `None`: one control step. Leans that
     /// are held are steered to with the gains tuned in the pool, as by the action mode "lean".

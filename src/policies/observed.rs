@@ -41,7 +41,7 @@ impl ObservedLaw {
         })
     }
 
-    /// How many numbers an observation has.
+    /// Size of an observation.
     pub fn observation_size(&self) -> usize {
         self.size
     }

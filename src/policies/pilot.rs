@@ -22,7 +22,7 @@ pub struct Pilot {
     views: Views,
 }
 
-/// What looks at flocks with some parameters.
+/// Reader of flocks with some parameters.
 #[derive(Debug, Clone)]
 struct Views {
     parameters: FlockParameters,

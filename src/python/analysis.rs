@@ -116,7 +116,7 @@ pub(super) fn structure_series<'py>(
     Ok(PyArray1::from_vec(py, values))
 }
 
-/// The place of the collective state at each time among `COLLECTIVE_STATES`.
+/// Index of the collective state at each time in `COLLECTIVE_STATES`.
 #[pyfunction]
 pub(super) fn collective_states<'py>(
     py: Python<'py>,
@@ -127,7 +127,8 @@ pub(super) fn collective_states<'py>(
     let (orders, clusters) = (orders.rows()?, largest_cluster.to_vec()?);
     same_length("largest_cluster", clusters.len(), orders.len())?;
     let places = orders.iter().zip(clusters);
-    let places = places.map(|(order, share)| CollectiveState::of(order, speed_cm_s, share) as i64);
+    let places =
+        places.map(|(order, share)| CollectiveState::from_order(order, speed_cm_s, share) as i64);
     Ok(PyArray1::from_iter(py, places))
 }
 
@@ -158,7 +159,7 @@ pub(super) fn sampled_analysis_window<'py>(
     Ok(PyArray1::from_vec(py, analyzed))
 }
 
-/// How many boats each jam holds, at each time.
+/// Sizes of the jams at each time.
 #[pyfunction]
 pub(super) fn jam_sizes(
     py: Python<'_>,

@@ -58,7 +58,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn of(object: &Bound<'_, PyAny>, name: &str, expected: &[usize]) -> PyResult<Self> {
+    fn from_object(object: &Bound<'_, PyAny>, name: &str, expected: &[usize]) -> PyResult<Self> {
         let mut numbers = Self {
             values: Vec::with_capacity(expected.iter().product()),
             are_whole: true,
@@ -128,7 +128,7 @@ pub(super) fn floats(
     name: &str,
     expected: &[usize],
 ) -> PyResult<Vec<f64>> {
-    Ok(Numbers::of(object, name, expected)?.values)
+    Ok(Numbers::from_object(object, name, expected)?.values)
 }
 
 /// Rows of three numbers for so many boats, such as their poses.
@@ -151,7 +151,7 @@ pub(super) fn flat_actions<'py>(
     levels: Option<usize>,
     name: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let Numbers { values, are_whole } = Numbers::of(actions, name, &shape)?;
+    let Numbers { values, are_whole } = Numbers::from_object(actions, name, &shape)?;
     if let Some(levels) = levels.filter(|_| !are_whole) {
         let last = levels.saturating_sub(1);
         let accepted = format!("whole numbers from 0 to {last}, the levels of the rudder");

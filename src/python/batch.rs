@@ -33,11 +33,11 @@ type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
 pub(super) struct PyEnvBatch(Exclusive<EnvBatch>);
 
 impl PyEnvBatch {
-    fn of(batch: EnvBatch) -> Self {
+    fn wrap(batch: EnvBatch) -> Self {
         Self(Exclusive::new(batch, "the environment"))
     }
 
-    /// What there is to read of a flock's environment.
+    /// Reads a flock's environment.
     fn env<T>(&self, flock: usize, read: impl FnOnce(&FlockEnv) -> T) -> Result<T> {
         let batch = self.0.read()?;
         let refuse = || {
@@ -47,7 +47,7 @@ impl PyEnvBatch {
         batch.envs().get(flock).map(read).ok_or_else(refuse)
     }
 
-    /// What there is to read of a flock's episode.
+    /// Reads a flock's episode.
     fn episode_of<T>(&self, flock: usize, read: impl FnOnce(&Episode) -> T) -> Result<T> {
         let found = self.env(flock, |env| env.episode().map(read))?;
         found.ok_or_else(never_reset)
@@ -86,7 +86,7 @@ impl PyEnvBatch {
     fn new(parameters: Vec<FlockParameters>, options: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut settings = EnvSettings::default();
         set_given(&mut settings, EnvSettings::FIELDS, options)?;
-        Ok(Self::of(EnvBatch::new(settings, parameters)?))
+        Ok(Self::wrap(EnvBatch::new(settings, parameters)?))
     }
 
     /// Numbers in an observation, control steps in an episode and from one decision to the next.
@@ -138,11 +138,11 @@ impl PyEnvBatch {
         ))
     }
 
-    /// Pays the leaders for the step just taken: one number per row.
-    fn pay(&self, rewards: &Bound<'_, PyAny>) -> PyResult<()> {
+    /// Adds one number per row to the rewards of the last step.
+    fn add_rewards(&self, rewards: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut batch = self.0.write()?;
         let rewards = floats(rewards, "rewards", &[batch.rows()])?;
-        batch.pay(&rewards);
+        batch.add_rewards(&rewards);
         Ok(())
     }
 
@@ -160,14 +160,14 @@ impl PyEnvBatch {
         interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
     }
 
-    /// Lets a target or a bw_s hold for the episodes of flocks that are to come.
+    /// Sets the target or the bw_s of flocks' future episodes.
     fn set_upcoming(&self, flocks: Vec<usize>, options: &Bound<'_, PyDict>) -> PyResult<()> {
         let ResetRequest { target, bw_s, .. } = request_from(options, 0)?;
         let options = Upcoming { target, bw_s };
         Ok(self.0.write()?.set_upcoming(&flocks, &options)?)
     }
 
-    /// The target and the bw_s of a flock's episodes that are to come.
+    /// The target and the bw_s of a flock's future episodes.
     fn upcoming(&self, flock: usize) -> Result<Value> {
         let batch = self.0.read()?;
         self.env(flock, |env| {
@@ -189,7 +189,7 @@ impl PyEnvBatch {
         rows_of(py, observations, size)
     }
 
-    /// What leaders observe now in another layout: (rows, size).
+    /// The leaders' present observations in another layout: (rows, size).
     fn observe_in<'py>(
         &self,
         py: Python<'py>,
@@ -290,7 +290,7 @@ impl PyEnvBatch {
 
     /// A copy of a flock.
     fn flock(&self, flock: usize) -> Result<PyFlock> {
-        self.episode_of(flock, |episode| PyFlock::of(episode.flock().clone()))
+        self.episode_of(flock, |episode| PyFlock::wrap(episode.flock().clone()))
     }
 
     /// A flock's target, step, backward duration and seed.
@@ -315,7 +315,7 @@ impl PyEnvBatch {
 
     #[classmethod]
     fn from_bytes(_class: &Bound<'_, PyType>, state: &[u8]) -> Result<Self> {
-        EnvBatch::from_bytes(state).map(Self::of)
+        EnvBatch::from_bytes(state).map(Self::wrap)
     }
 
     fn restore(&self, state: &[u8]) -> Result<()> {
@@ -323,7 +323,7 @@ impl PyEnvBatch {
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Result<Self> {
-        Ok(Self::of(self.0.read()?.clone()))
+        Ok(Self::wrap(self.0.read()?.clone()))
     }
 
     fn __reduce__<'py>(

@@ -34,7 +34,7 @@ const DECLARED: [(&str, &str); 5] = [
         "A flock or an environment is at work in another thread: each thread needs one of its own.",
     ),
 ];
-/// Their places.
+/// Indices of the exceptions.
 const PARAMETER: usize = 1;
 const EPISODE: usize = 2;
 const SOLVER: usize = 3;

@@ -1,4 +1,4 @@
-//! What one Python thread uses at a time, and long work that Ctrl-C ends.
+//! Objects that one Python thread uses at a time, and long work that Ctrl-C ends.
 
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};

@@ -24,7 +24,7 @@ pub(super) struct PyFlock(pub(super) Exclusive<Flock>);
 
 impl PyFlock {
     /// A flock for Python.
-    pub(super) fn of(flock: Flock) -> Self {
+    pub(super) fn wrap(flock: Flock) -> Self {
         Self(Exclusive::new(flock, "the flock"))
     }
 
@@ -54,7 +54,7 @@ impl PyFlock {
         let flock = interruptible(py, |keep_going| {
             Flock::new_while(keep_going, parameters, seed)
         })?;
-        Ok(Self::of(flock))
+        Ok(Self::wrap(flock))
     }
 
     #[classmethod]
@@ -64,7 +64,7 @@ impl PyFlock {
         noise_seed: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let noise_seed = noise_seed_from(noise_seed)?;
-        Ok(Flock::from_snapshot(snapshot, noise_seed).map(Self::of)?)
+        Ok(Flock::from_snapshot(snapshot, noise_seed).map(Self::wrap)?)
     }
 
     #[classmethod]
@@ -75,7 +75,7 @@ impl PyFlock {
         state: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let (seed, state) = (seed_from(seed)?, state_from(state, parameters.n_boats)?);
-        Ok(Self::of(Flock::from_state(parameters, seed, &state)?))
+        Ok(Self::wrap(Flock::from_state(parameters, seed, &state)?))
     }
 
     fn reset(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -130,7 +130,7 @@ impl PyFlock {
         Ok(self.0.read()?.phase().phase.name())
     }
 
-    /// What the substeps since the flock was made did, by name.
+    /// Statistics of the substeps since the flock was made, by name.
     #[getter]
     fn statistics(&self) -> Result<Value> {
         Ok(self.0.read()?.statistics().named())
@@ -201,7 +201,7 @@ impl PyFlock {
     }
 
     fn copy(&self) -> Result<Self> {
-        Ok(Self::of(self.0.read()?.clone()))
+        Ok(Self::wrap(self.0.read()?.clone()))
     }
 
     /// A square picture as the bytes of a PNG file.

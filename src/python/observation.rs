@@ -39,7 +39,7 @@ pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     Ok(rows.collect())
 }
 
-/// What the leaders of a flock observe now: (k, size) float32. `rudder`: as the rudders stand.
+/// Observations of a flock's leaders: (k, size) float32, with the rudders as they stand.
 #[pyfunction]
 #[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
 pub(super) fn observe<'py>(
@@ -54,7 +54,7 @@ pub(super) fn observe<'py>(
     observed(py, &flock, layout_from(blocks, mirror_to_target)?, &rudders)
 }
 
-/// What the leaders of a flock observe, given the rudders as they stand.
+/// Observations of a flock's leaders, given the rudders as they stand.
 pub(super) fn observed<'py>(
     py: Python<'py>,
     flock: &Flock,

@@ -36,7 +36,7 @@ impl PyParameters {
         Field::values(FlockParameters::FIELDS, &self.0)
     }
 
-    /// What pictures draw hulls by, in cm, by name.
+    /// Lengths of a hull for pictures, in cm, by name.
     #[getter]
     fn hull_lengths(&self) -> Value {
         Hull::new(&self.0).lengths().into_iter().collect()

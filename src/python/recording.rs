@@ -16,7 +16,7 @@ use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// What of a run is kept, what changes on the way, and who steers.
+/// Plan of a run: its samples, its changes, and its steering.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(super) struct Plan<'py> {
@@ -98,7 +98,7 @@ fn recorded<'py, T: Real + Element>(
     let statistics = recorder.flock().statistics().named_of_steps();
     let columns = columns(py, recorder.into_recording())?;
     columns.set_item("statistics", statistics)?;
-    // What was recorded until then goes with the error.
+    // The error carries the recording until then.
     run.or_else(|error| error.value(py).setattr("columns", &columns).and(Err(error)))?;
     Ok(columns)
 }

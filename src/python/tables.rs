@@ -1,4 +1,4 @@
-//! What the core declares of parameters and options, and what follows from it before there is a flock.
+//! Declarations of parameters and options, and values that follow from them without a flock.
 
 use super::value::given;
 use crate::clock::whole_steps;
@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::parameters::{FlockParameters, Physics, Pool, Preset, Value};
 use pyo3::prelude::*;
 
-/// Where each field of a preset comes from.
+/// Source of each field of a preset.
 #[pyfunction]
 pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
     let preset: Preset = given(preset, "preset")?;
@@ -47,7 +47,7 @@ pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
 
-/// How many decisions of a rate a time in s has, which must be a whole number.
+/// Number of decisions at a rate in a time (s), which must be whole.
 #[pyfunction]
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
     let held_s = given(hold_s, "hold_s")?;

@@ -16,7 +16,7 @@ use pyo3::types::{PyBytes, PyDict};
 pub(super) struct PyTrainer(Exclusive<Trainer>);
 
 impl PyTrainer {
-    fn of(trainer: Trainer) -> Self {
+    fn wrap(trainer: Trainer) -> Self {
         Self(Exclusive::new(trainer, "the training"))
     }
 }
@@ -35,7 +35,7 @@ impl PyTrainer {
         set_given(&mut settings, BranchSettings::FIELDS, options)?;
         settings = BranchSettings::usual(settings.action_mode);
         set_given(&mut settings, BranchSettings::FIELDS, options)?;
-        Ok(Self::of(Trainer::new(
+        Ok(Self::wrap(Trainer::new(
             settings, parameters, seed, first_seed,
         )?))
     }
@@ -46,7 +46,7 @@ impl PyTrainer {
     fn from_bytes(state: &[u8], flock_hours: Option<f64>) -> Result<Self> {
         let trainer = Trainer::from_bytes(state)?;
         let trainer = flock_hours.map_or(Ok(trainer.clone()), |hours| trainer.until(hours))?;
-        Ok(Self::of(trainer))
+        Ok(Self::wrap(trainer))
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {

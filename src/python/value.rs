@@ -158,7 +158,7 @@ pub(super) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) 
     ))
 }
 
-/// What a message shows of a value: its repr, cut at a length that fits a line.
+/// Repr of a value for messages, cut to fit a line.
 fn shown(object: &Bound<'_, PyAny>) -> String {
     const LONGEST: usize = 80;
     // A repr may fail: that of an int of more than 4300 digits does.

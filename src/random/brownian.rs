@@ -33,7 +33,7 @@ impl KeyedNormals {
     }
 }
 
-/// How often a cell is halved. Below that each time has a draw of its own.
+/// Halvings of a cell. Below that each time has a draw of its own.
 const HALVINGS: u32 = 10;
 
 /// A Brownian path per boat, readable at any time: the same path however the time axis is cut.
@@ -77,11 +77,11 @@ impl BrownianPaths {
     /// Paths of a seed for `boats` boats; cells of `cell_length` half ticks, the first of them start
     /// `shift` half ticks before time 0.
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
-        Self::of(Stream::NOISE.rng(seed), boats, cell_length, shift)
+        Self::from_keys(Stream::NOISE.rng(seed), boats, cell_length, shift)
     }
 
     /// As [`Self::new`], with keys from a stream of one's own.
-    pub(crate) fn of(keys: StreamRng, boats: usize, cell_length: u64, shift: u64) -> Self {
+    pub(crate) fn from_keys(keys: StreamRng, boats: usize, cell_length: u64, shift: u64) -> Self {
         let zeros = vec![0.0; boats];
         Self {
             normals: KeyedNormals::new(keys, boats),
@@ -100,7 +100,7 @@ impl BrownianPaths {
     /// Other paths in the same cells.
     pub(crate) fn replace_keys(&mut self, keys: StreamRng) {
         let boats = self.normals.keys.len();
-        *self = Self::of(keys, boats, self.cell_length, self.shift);
+        *self = Self::from_keys(keys, boats, self.cell_length, self.shift);
     }
 
     /// `increments[boat] = W(to) − W(from)`, times in half ticks, in units of sqrt(s).
@@ -141,21 +141,24 @@ impl BrownianPaths {
             .for_each(|(draw, found)| *draw = found);
     }
 
-    /// Has `last` be the paths at `offset` half ticks into a cell, which is strictly inside of it.
+    /// Draws the increments over a whole cell.
+    fn draw_whole(&mut self, cell: u64) {
+        let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
+        let draws = self.normals.draws(cell, 0);
+        let whole = self.last.whole.iter_mut().zip(draws);
+        whole.for_each(|(whole, draw)| *whole = scale * draw);
+    }
+
+    /// Sets `last` to the paths at `offset` half ticks into a cell, strictly inside of it.
     fn read(&mut self, cell: u64, offset: u64) {
-        let Reading { place, path, whole } = &mut self.last;
-        let known = place.replace((cell, offset));
+        let known = self.last.place.replace((cell, offset));
         if known == Some((cell, offset)) {
             return;
         }
         if known.is_none_or(|(known, _)| known != cell) {
-            let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
-            let draws = self.normals.draws(cell, 0);
-            whole
-                .iter_mut()
-                .zip(draws)
-                .for_each(|(whole, draw)| *whole = scale * draw);
+            self.draw_whole(cell);
         }
+        let Reading { path, whole, .. } = &mut self.last;
         let (low, high) = (&mut self.low, &mut self.high);
         low.fill(0.0);
         high.copy_from_slice(whole);

@@ -28,7 +28,7 @@ impl Stream {
     pub(crate) const EPISODE: Self = Self("episode");
     /// Seeds of an environment's episodes after the first.
     pub(crate) const EPISODE_SEEDS: Self = Self("episode-seeds");
-    /// What a training tries in its branches.
+    /// Offsets that a training tries in its branches.
     pub(crate) const TRAINING: Self = Self("training");
 
     /// The generator of this stream for a seed, at its start.

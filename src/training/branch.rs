@@ -13,7 +13,7 @@ use crate::policies::LeaningLaw;
 use crate::random::{Stream, StreamRng};
 use rand_chacha::rand_core::Rng;
 
-/// What every branch of a training has in common.
+/// Data that all branches of a training share.
 #[derive(Debug, Clone)]
 pub(super) struct Task {
     pub settings: BranchSettings,
@@ -27,7 +27,7 @@ pub(super) struct Task {
 /// A pair of flocks between two branches.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pair {
-    /// Where both continue; `None`: at rest, placed at random.
+    /// State from which both continue; `None`: at rest, placed at random.
     pub snapshot: Option<Vec<u8>>,
     pub is_clockwise: bool,
     /// Branches until the end of the episode.

@@ -146,7 +146,7 @@ impl BranchSettings {
             control_hz: CONTROL_HZ,
             action_mode: self.action_mode,
             decision_period_s: Some(self.decision_period_s),
-            observation: ObservationLayout::of(&[Block::LeanFeatures]),
+            observation: ObservationLayout::from_blocks(&[Block::LeanFeatures]),
             mirror_to_target: true,
             // A decision's reward is the mean order of its control steps.
             reward_horizon_s: Some(self.decision_period_s),

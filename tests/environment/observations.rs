@@ -76,7 +76,7 @@ fn steering_law_can_be_read_from_the_observation() {
 
 #[test]
 fn laws_name_a_block_that_is_off() {
-    let without = ObservationLayout::of(&[Block::Target]);
+    let without = ObservationLayout::from_blocks(&[Block::Target]);
     let message = ObservedLaw::new(Law::Paper, &without)
         .unwrap_err()
         .to_string();
@@ -111,7 +111,7 @@ fn the_nearest_come_first_and_equally_near_ones_in_the_order_of_boats() {
     for (boats, leaders) in [(1, 1), (2, 2), (27, 6), (90, 5)] {
         let flock = grid(boats, leaders);
         for wanted in [1, 3, 6, 16, 17, 64] {
-            let mut layout = ObservationLayout::of(&[Block::Neighbors]);
+            let mut layout = ObservationLayout::from_blocks(&[Block::Neighbors]);
             layout.repeat(Block::Neighbors, wanted);
             let observed = observe_flock(&flock, layout, &[]).unwrap();
             for (leader, row) in observed.chunks_exact(layout.size()).enumerate() {
@@ -145,7 +145,7 @@ fn the_nearest_do_not_depend_on_those_seen_before() {
         ..parameters(6)
     };
     let (dense, spread) = (grid(27, 6), Flock::new(own, 1).unwrap());
-    let mut layout = ObservationLayout::of(&[Block::Neighbors]);
+    let mut layout = ObservationLayout::from_blocks(&[Block::Neighbors]);
     layout.repeat(Block::Neighbors, 6);
     let mut observer = Observer::new(layout, spread.parameters()).unwrap();
     for flock in [&dense, &spread, &dense, &dense, &spread] {

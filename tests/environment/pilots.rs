@@ -41,7 +41,7 @@ fn a_pilot_and_an_environment_with_the_laws_actions_are_the_same() {
         for target in [Target::Clockwise, Target::CounterClockwise] {
             let blocks = [Block::Own, Block::LeanFeatures];
             let mut settings = EnvSettings {
-                observation: ObservationLayout::of(&blocks),
+                observation: ObservationLayout::from_blocks(&blocks),
                 ..EnvSettings::default()
             };
             settings.mirror_to_target = true;
@@ -89,7 +89,7 @@ fn laws_whose_gains_are_no_numbers_lead_nobody() {
     let Ok(Law::Damped(gains)) = Law::named("tuned law", Some("narrow")) else {
         panic!("the law is tuned in this pool");
     };
-    let layout = ObservationLayout::of(&[Block::Own, Block::LeanFeatures]);
+    let layout = ObservationLayout::from_blocks(&[Block::Own, Block::LeanFeatures]);
     for wrong in [f64::NAN, f64::INFINITY, 1e10] {
         for place in 0..3 {
             let mut own = gains;

@@ -38,7 +38,7 @@ fn states_are_those_of_table_2() {
         (0.95, PI, 0.2, 0.2, Between),
         (0.65, FRAC_PI_2, 9.0, 0.9, Between),
     ] {
-        let found = CollectiveState::of(&order(psi_o, phi_o, psi_v), SPEED, cluster);
+        let found = CollectiveState::from_order(&order(psi_o, phi_o, psi_v), SPEED, cluster);
         assert_eq!(found, expected, "{psi_o} {phi_o} {psi_v} {cluster}");
     }
 }
@@ -48,8 +48,9 @@ fn mirrored_flocks_are_in_mirrored_states() {
     for psi_o in [0.1, 0.6, 0.9] {
         for phi_o in [0.1, 0.8, 1.5, 2.5] {
             for psi_v in [0.5, 8.0] {
-                let state =
-                    |sign: f64| CollectiveState::of(&order(psi_o, sign * phi_o, psi_v), SPEED, 0.3);
+                let state = |sign: f64| {
+                    CollectiveState::from_order(&order(psi_o, sign * phi_o, psi_v), SPEED, 0.3)
+                };
                 let expected = match state(1.0) {
                     CollectiveState::OrderedClockwise => CollectiveState::OrderedCounterClockwise,
                     other => other,

@@ -31,7 +31,7 @@ fn ring(boats: &[(f64, f64, [f64; 2])]) -> (Vec<Pose>, Vec<Velocity>) {
 
 fn order_of(boats: &[(f64, f64, [f64; 2])]) -> OrderParameters {
     let (poses, velocities) = ring(boats);
-    OrderParameters::of(&poses, &velocities).expect("boats")
+    OrderParameters::from_poses(&poses, &velocities).expect("boats")
 }
 
 #[test]

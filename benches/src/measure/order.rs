@@ -62,7 +62,7 @@ impl Frames {
         if time_s < self.first_s || !self.schedule.in_analysis_window(ticks(time_s)) {
             return;
         }
-        let order = OrderParameters::of(poses, velocities).expect("there are boats");
+        let order = OrderParameters::from_poses(poses, velocities).expect("there are boats");
         self.count += 1.0;
         self.psi_o += order.psi_o;
         self.c_v += order.c_v;

@@ -29,7 +29,7 @@ impl Relinearization {
         }
     }
 
-    /// Whether gaps are looked at where they have curved to.
+    /// Whether gaps are evaluated at the predicted poses.
     pub(super) fn is_on(&self) -> bool {
         self.tolerance < f64::INFINITY
     }

@@ -23,8 +23,8 @@ pub(super) struct BlockPivoting {
     /// in the processor's cache.
     pub keeps_factors: bool,
     islands: Vec<IslandSolver>,
-    /// How many multiplications are left; negative once an island was given up.
-    pub room: i64,
+    /// Multiplications that are left; negative if an island was given up.
+    pub budget: i64,
     /// J·v_free and b, contact by contact.
     rates: Vec<f64>,
     rights: Vec<f64>,
@@ -39,7 +39,7 @@ impl BlockPivoting {
     pub(super) fn new(regularization: f64) -> Self {
         Self {
             regularization,
-            room: i64::MAX,
+            budget: i64::MAX,
             ..Self::default()
         }
     }
@@ -56,7 +56,7 @@ impl BlockPivoting {
         self.places.resize(boats, NONE);
     }
 
-    /// Works out how fast gaps open at the free velocities, for all solves of a substep.
+    /// Computes the opening rates of gaps at the free velocities, for all solves of a substep.
     pub(super) fn set_free(&mut self, problem: &ContactProblem) {
         let contacts = problem.contacts.iter();
         self.rates.clear();
@@ -88,7 +88,7 @@ impl BlockPivoting {
             }
         }
         self.solve_left(problem, islands, active, impulses, velocities, &mut report);
-        report.converged = self.room >= 0 && report.residual <= EXACT.max(self.regularization);
+        report.converged = self.budget >= 0 && report.residual <= EXACT.max(self.regularization);
         report
     }
 
@@ -146,9 +146,9 @@ impl BlockPivoting {
             let contacts = islands.contacts(number);
             island.build(problem, contacts, active, impulses, places);
             island.set_right(problem, &self.rights);
-            island.factor.room = self.room;
+            island.factor.budget = self.budget;
             island.solve(self.regularization, report);
-            self.room = island.factor.room;
+            self.budget = island.factor.budget;
             for (contact, is_active, impulse) in island.solution() {
                 (active[contact as usize], impulses[contact as usize]) = (is_active, impulse);
             }

@@ -17,16 +17,7 @@ pub(super) fn solve(
     impulses: &mut [f64],
     velocities: &mut Vec<Velocity>,
 ) -> SolveReport {
-    let boats = problem.free.len();
     let contacts = problem.contacts.len();
-    let metric: Vec<f64> = problem
-        .inertia
-        .iter()
-        .flat_map(|i| [1.0 / i.linear, 1.0 / i.linear, 1.0 / i.angular])
-        .collect();
-    let columns: Vec<usize> = (0..3 * boats).collect();
-    let hessian =
-        CscMatrix::new_from_triplets(3 * boats, 3 * boats, columns.clone(), columns, metric);
     let right: Vec<f64> = (0..contacts)
         .map(|k| problem.slack(k, problem.free))
         .collect();
@@ -35,9 +26,9 @@ pub(super) fn solve(
         verbose: false,
         ..DefaultSettings::default()
     };
-    let linear = vec![0.0; 3 * boats];
+    let linear = vec![0.0; 3 * problem.free.len()];
     let solver = DefaultSolver::new(
-        &hessian,
+        &metric(problem),
         &linear,
         &constraints(problem),
         &right,
@@ -63,6 +54,17 @@ pub(super) fn solve(
     report.residual = problem.natural_residual(impulses, velocities);
     report.converged = report.residual <= GOOD;
     report
+}
+
+/// M, the effective inertia of each boat on the diagonal.
+fn metric(problem: &ContactProblem) -> CscMatrix<f64> {
+    let numbers = 3 * problem.free.len();
+    let inertia = problem.inertia.iter();
+    let diagonal = inertia
+        .flat_map(|i| [1.0 / i.linear, 1.0 / i.linear, 1.0 / i.angular])
+        .collect();
+    let columns: Vec<usize> = (0..numbers).collect();
+    CscMatrix::new_from_triplets(numbers, numbers, columns.clone(), columns, diagonal)
 }
 
 /// −J, contacts × 3·boats.

@@ -11,20 +11,20 @@ const UPDATE: i64 = 5;
 /// Sweeps between two evaluations of the residual.
 const SWEEPS_BETWEEN_CHECKS: u64 = 10;
 
-/// Solves by sweeping, from the impulses given, while there is `room` for so many multiplications.
+/// Solves by sweeping from the given impulses, while the budget of multiplications lasts.
 pub(super) fn solve(
     problem: &ContactProblem,
     impulses: &mut [f64],
     velocities: &mut Vec<Velocity>,
-    room: &mut i64,
+    budget: &mut i64,
 ) -> SolveReport {
     impulses
         .iter_mut()
         .for_each(|impulse| *impulse = impulse.max(0.0));
     problem.velocities(impulses, velocities);
     let mut report = SolveReport::default();
-    while report.iterations < MOST_SWEEPS && *room >= 0 {
-        *room -= UPDATE * impulses.len() as i64;
+    while report.iterations < MOST_SWEEPS && *budget >= 0 {
+        *budget -= UPDATE * impulses.len() as i64;
         for (k, impulse) in impulses.iter_mut().enumerate() {
             let wanted = *impulse - problem.slack(k, velocities) / problem.diagonal(k);
             let change = wanted.max(0.0) - *impulse;

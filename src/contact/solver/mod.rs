@@ -1,4 +1,4 @@
-//! How the contact problem is solved.
+//! Solvers of the contact problem.
 
 mod block_pivoting;
 #[cfg(feature = "clarabel")]
@@ -11,7 +11,7 @@ use crate::parameters::Solver;
 
 use block_pivoting::BlockPivoting;
 
-/// What a solve did and how well.
+/// Work and quality of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolveReport {
     /// Whether the residual meets the solver's bound (1e-10 cm/s for block pivoting). It may not if
@@ -48,7 +48,7 @@ pub struct ContactSolver {
     /// The work of a whole substep, and the part of it that is kept back from the contacts at hand.
     most_work: i64,
     kept_back: i64,
-    /// What the substeps before took.
+    /// Work of the earlier substeps.
     work_before: i64,
     /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
     pub active: Vec<bool>,
@@ -100,37 +100,37 @@ impl ContactSolver {
         self.pivoting.reset(boats, self.islands.count());
     }
 
-    /// Gives the contacts of a whole substep their room of work.
+    /// Sets the work budget of a whole substep.
     pub(crate) fn refill(&mut self, boats: usize) {
-        if self.pivoting.room + self.kept_back != self.most_work {
+        if self.pivoting.budget + self.kept_back != self.most_work {
             self.work_before = self.work();
             self.most_work = MOST_WORK + MOST_WORK_A_BOAT * boats as i64;
-            (self.pivoting.room, self.kept_back) = (self.most_work, 0);
+            (self.pivoting.budget, self.kept_back) = (self.most_work, 0);
         }
     }
 
-    /// Shares the room of another solver, whose work counts in the same substep.
+    /// Takes over the remaining work budget of another solver in the same substep.
     pub(crate) fn share_room(&mut self, other: &Self) {
-        let room = other.pivoting.room + other.kept_back;
-        (self.pivoting.room, self.kept_back) = (room, 0);
+        let budget = other.pivoting.budget + other.kept_back;
+        (self.pivoting.budget, self.kept_back) = (budget, 0);
     }
 
-    /// Has the next contacts be given up after a small part of the work, if others that are easier can stand for them.
+    /// Limits the next contacts to a small part of the budget, if easier ones can stand in for them.
     pub(crate) fn give_up_early(&mut self, easier_possible: bool) {
-        let room = self.pivoting.room + self.kept_back;
-        let spare = (room - self.most_work / 16).max(0);
+        let budget = self.pivoting.budget + self.kept_back;
+        let spare = (budget - self.most_work / 16).max(0);
         self.kept_back = if easier_possible { spare } else { 0 };
-        self.pivoting.room = room - self.kept_back;
+        self.pivoting.budget = budget - self.kept_back;
     }
 
     /// About how many multiplications the contacts of all substeps took, those that failed included.
     pub(crate) fn work(&self) -> i64 {
-        self.work_before + self.most_work - self.pivoting.room - self.kept_back
+        self.work_before + self.most_work - self.pivoting.budget - self.kept_back
     }
 
-    /// Whether the contacts taken on last were too much work, so that there is no solution.
+    /// Whether the last contacts were too much work, so that there is no solution.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.pivoting.room < 0
+        self.pivoting.budget < 0
     }
 
     /// The islands of the contacts taken on last.
@@ -192,7 +192,7 @@ impl ContactSolver {
                     .solve(problem, islands, all, active, impulses, velocities)
             }
             Solver::GaussSeidel => {
-                gauss_seidel::solve(problem, impulses, velocities, &mut self.pivoting.room)
+                gauss_seidel::solve(problem, impulses, velocities, &mut self.pivoting.budget)
             }
             #[cfg(feature = "clarabel")]
             Solver::Clarabel => clarabel::solve(problem, impulses, velocities),

@@ -8,7 +8,7 @@ use crate::geometry::{HullPose, Pose, Velocity};
 use crate::random::Stream;
 use rand_chacha::rand_core::Rng;
 
-/// What the camera does to the leaders' picture of the flock.
+/// Flaws of the camera through which leaders see the flock.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Lens {
     /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last one.
@@ -109,7 +109,8 @@ impl Camera {
         let mut hulls = std::mem::take(&mut self.hulls);
         let seen = self.seen();
         HullPose::replace_all(&mut hulls, &seen.poses);
-        let order = OrderParameters::of_hulls(&hulls[leaders..], &seen.velocities[leaders..]).ok();
+        let order =
+            OrderParameters::from_hulls(&hulls[leaders..], &seen.velocities[leaders..]).ok();
         (self.hulls, self.order) = (hulls, order);
     }
 
@@ -132,7 +133,7 @@ impl Camera {
         }
     }
 
-    /// Whether stored frames are of so many boats.
+    /// Whether stored frames have this number of boats.
     pub(crate) fn fits(&self, boats: usize) -> bool {
         [&self.now, &self.before].into_iter().all(|frame| {
             frame.poses.len() == boats

@@ -1,4 +1,4 @@
-//! What steering laws read of a leader, rounded as observations are: from an observation, or from a flock in view.
+//! The course that steering laws read, rounded as observations are: from an observation, or from a flock in view.
 
 use super::blocks::{Block, OWN, TARGET, own};
 use super::view::{FlockView, Scaling};
@@ -8,7 +8,7 @@ use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
 use crate::parameters::FlockParameters;
 
-/// Where a leader's course stands in observations of one layout.
+/// Indices of a leader's course in observations of one layout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CourseReader {
     cos_orientation: usize,
@@ -78,7 +78,7 @@ impl CourseView {
     /// # Errors
     /// None: the layout has what the laws read.
     pub fn new(parameters: &FlockParameters) -> Result<Self> {
-        let layout = ObservationLayout::of(&[Block::Own, Block::Target]);
+        let layout = ObservationLayout::from_blocks(&[Block::Own, Block::Target]);
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         Ok(Self {
             reader: CourseReader::new(&layout)?,

@@ -80,9 +80,9 @@ pub struct Entry {
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: &'static str,
-    /// What it is, with its sign.
+    /// Meaning, with its sign.
     pub meaning: &'static str,
-    /// How the physical value becomes the observed one.
+    /// Scaling of the physical value to the observed one.
     pub scale: Scale,
     /// Lower bound of the observed value.
     pub low: f64,
@@ -112,7 +112,7 @@ impl Entry {
         }
     }
 
-    /// What is declared of it by name, as the entry at a place of a block.
+    /// Its declaration by name, as the entry at an index of a block.
     pub fn named(&self, block: &'static str, place: usize) -> Value {
         let [name, unit, low, high, mirrored, meaning] =
             named_fields!(self; name unit low high mirrored meaning);

@@ -91,7 +91,7 @@ pub struct FlockFeatures {
 }
 
 impl FlockFeatures {
-    /// How many there are.
+    /// Their number.
     pub const SIZE: usize = GROUPS * GROUP.len() + NEAR_LEADERS.len() + PHASE.len() + CLOCK.len();
 
     /// For checked parameters.
@@ -163,27 +163,9 @@ fn moments(group: &[Seen]) -> [f64; GROUP.len()] {
     // cos(mθ) and sin(mθ) for m = 1, 2 and 3.
     let mut harmonics = [Vec2::zeros(); 3];
     for boat in group {
-        let place = usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead);
         let mut share = [0.0; 6];
-        share[place] = 1.0;
-        let values = [
-            boat.radial,
-            boat.radial * boat.radial,
-            boat.outward,
-            boat.outward * boat.outward,
-            boat.ahead,
-            boat.ahead * boat.outward,
-            boat.outward_velocity,
-            boat.outward_velocity * boat.outward_velocity,
-            boat.velocity_ahead,
-            boat.velocity_ahead * boat.velocity_ahead,
-            boat.spin_ahead,
-            boat.spin_ahead * boat.spin_ahead,
-            boat.radial * boat.outward,
-            boat.radial * boat.ahead,
-            boat.radial * boat.velocity_ahead,
-        ];
-        for (sum, value) in sums.iter_mut().zip(values.into_iter().chain(share)) {
+        share[usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead)] = 1.0;
+        for (sum, value) in sums.iter_mut().zip(products(boat).into_iter().chain(share)) {
             *sum += value;
         }
         let turn = boat.polar;
@@ -201,6 +183,27 @@ fn moments(group: &[Seen]) -> [f64; GROUP.len()] {
         *sum = harmonic.norm();
     }
     sums.map(|sum| sum / group.len().max(1) as f64)
+}
+
+/// The numbers of a boat whose means are the first features of its group.
+fn products(boat: &Seen) -> [f64; 15] {
+    [
+        boat.radial,
+        boat.radial * boat.radial,
+        boat.outward,
+        boat.outward * boat.outward,
+        boat.ahead,
+        boat.ahead * boat.outward,
+        boat.outward_velocity,
+        boat.outward_velocity * boat.outward_velocity,
+        boat.velocity_ahead,
+        boat.velocity_ahead * boat.velocity_ahead,
+        boat.spin_ahead,
+        boat.spin_ahead * boat.spin_ahead,
+        boat.radial * boat.outward,
+        boat.radial * boat.ahead,
+        boat.radial * boat.velocity_ahead,
+    ]
 }
 
 /// 0 for boats that head against the target, 2 for those that head along it, within 60°; 1 for the others.

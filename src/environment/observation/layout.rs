@@ -11,7 +11,7 @@ pub const OBSERVATION_VERSION: u32 = 1;
 /// The most neighbors, and the most obstacles, that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
-/// Which blocks are on.
+/// Blocks that are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ObservationLayout {
     #[serde(with = "stored_repeats")]
@@ -57,7 +57,7 @@ impl Default for ObservationLayout {
 
 impl ObservationLayout {
     /// A layout of these blocks alone, each once.
-    pub fn of(blocks: &[Block]) -> Self {
+    pub fn from_blocks(blocks: &[Block]) -> Self {
         let mut layout = Self {
             repeats: [0; Block::COUNT],
             is_mirrored: false,
@@ -101,12 +101,12 @@ impl ObservationLayout {
         self.repeats(block) > 0
     }
 
-    /// How often a block occurs: 0 or 1, or the number of neighbors or obstacles.
+    /// Occurrences of a block: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeats(&self, block: Block) -> usize {
         self.repeats[block as usize]
     }
 
-    /// Has a block occur so often: 0 or 1, or the number of neighbors or obstacles.
+    /// Sets the occurrences of a block: 0 or 1, or the number of neighbors or obstacles.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
         self.repeats[block as usize] = if block.is_counted() {
             repeats
@@ -115,14 +115,14 @@ impl ObservationLayout {
         };
     }
 
-    /// Where a block starts, if it is on.
+    /// Index of a block's first entry, if it is on.
     pub fn offset(&self, wanted: Block) -> Option<usize> {
         let before = Block::ALL.iter().take(wanted as usize);
         let sizes = before.map(|&block| self.repeats(block) * block.entries().len());
         self.has(wanted).then(|| sizes.sum())
     }
 
-    /// Where an entry of a block stands, if the block is on; the first neighbor's for `Neighbors`.
+    /// Index of a block's entry, if the block is on; the first neighbor's for `Neighbors`.
     pub fn place(&self, block: Block, name: &str) -> Option<usize> {
         let mut entries = block.entries().iter();
         let place = entries.position(|entry| entry.name == name)?;

@@ -1,4 +1,4 @@
-//! What leaders see: the layout of an observation, the camera between flock and eye, and the numbers.
+//! Observations of leaders: their layout, the camera between flock and leaders, and the numbers.
 
 mod blocks;
 mod camera;

@@ -4,7 +4,7 @@
 use crate::geometry::HullPose;
 use wide::f64x4;
 
-/// Leaders whose distances are worked out together.
+/// Leaders whose distances are computed together.
 const AT_ONCE: usize = 4;
 /// Up to this many boats are found and sorted without branches.
 const FEW: usize = 16;
@@ -51,7 +51,7 @@ impl Nearest {
             .map(|&boat| boat as usize)
     }
 
-    /// Lists the boats within a leader's limit; returns how many.
+    /// Lists the boats within a leader's limit; returns their number.
     fn find(&mut self, leader: usize) -> usize {
         let (lane, limit) = (leader % AT_ONCE, self.limits[leader]);
         let mut count = 0;
@@ -62,7 +62,7 @@ impl Nearest {
         count
     }
 
-    /// Works out distances from some leaders.
+    /// Computes distances from some leaders.
     fn measure(&mut self, hulls: &[HullPose], first: usize) {
         let others = hulls[first..].iter().map(|hull| hull.center);
         let (mut x, mut y) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
@@ -99,7 +99,7 @@ impl Nearest {
         let smallest = &mut smallest[..wanted];
         for &squares in &self.squares {
             let mut square = f64x4::new(squares);
-            // In ascending order; what has no place any more moves on.
+            // In ascending order: a square that is pushed out moves on.
             for place in &mut *smallest {
                 (*place, square) = (place.fast_min(square), place.fast_max(square));
             }

@@ -95,7 +95,7 @@ impl StateObserver {
         }
     }
 
-    /// How many numbers there are.
+    /// Number of features.
     pub(crate) fn size(&self) -> usize {
         self.boats * self.boat.len() + self.rest.len()
     }

@@ -1,4 +1,4 @@
-//! A flock as it is observed, and how physical values become observed ones.
+//! A flock as it is observed, and the scaling of physical values to observed ones.
 
 use super::entry::Entry;
 use crate::analysis::OrderParameters;
@@ -16,9 +16,9 @@ pub struct FlockView<'a> {
     pub hulls: &'a [HullPose],
     /// Velocities.
     pub velocities: &'a [Velocity],
-    /// How many of the boats are leaders.
+    /// Number of leaders.
     pub leaders: usize,
-    /// Where in the cycle the flock is.
+    /// Time in the cycle of phases.
     pub phase: PhaseMoment,
     /// Length of the backward phase in s.
     pub bw_s: f64,

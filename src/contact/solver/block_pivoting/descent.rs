@@ -48,7 +48,7 @@ impl IslandSolver {
         let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
             let largest = held.iter().copied().fold(0.0, f64::max);
-            if !largest.is_finite() || largest > CONTRADICTION || self.factor.room < 0 {
+            if !largest.is_finite() || largest > CONTRADICTION || self.factor.budget < 0 {
                 return false;
             }
             let Some(entering) = self.most_violated(&is_refused) else {
@@ -91,10 +91,10 @@ impl IslandSolver {
         let mut entering: Vec<usize> = (0..rows.len())
             .filter(|&k| !rows[k].is_active && rows[k].is_violated())
             .collect();
-        let room = self.most_active().saturating_sub(active).max(1);
-        if entering.len() > room {
+        let most = self.most_active().saturating_sub(active).max(1);
+        if entering.len() > most {
             entering.sort_by(|&a, &b| rows[a].slack.total_cmp(&rows[b].slack));
-            entering.truncate(room);
+            entering.truncate(most);
         }
         for k in entering {
             self.set_active(k, true);
@@ -130,7 +130,7 @@ impl IslandSolver {
                     *held = 0.0;
                 }
             }
-            if step == 1.0 || self.factor.room < 0 {
+            if step == 1.0 || self.factor.budget < 0 {
                 return first.unwrap_or(0.0);
             }
         }

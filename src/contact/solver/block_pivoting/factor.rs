@@ -70,12 +70,12 @@ const NO_ROW: Chain = Chain {
 pub(super) struct Factor {
     nodes: Vec<Node>,
     entries: Vec<Entry>,
-    /// How many entries are in use.
+    /// Number of entries in use.
     used: usize,
     /// Whether rows have entered or left since it was brought up to date.
     is_stale: bool,
-    /// About how many multiplications it may still make; negative once it has stopped halfway.
-    pub room: i64,
+    /// Multiplications that are left, roughly; negative if it has stopped halfway.
+    pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
     /// A row that is being computed; zero between two rows, and always zero beyond the rows.
@@ -94,13 +94,13 @@ impl Factor {
         self.work.resize(rows + 1, 0.0);
     }
 
-    /// How many numbers the factor of the active rows holds.
+    /// Number of entries in the factor of the active rows.
     pub(super) fn len(&self) -> u64 {
         let rows = self.active.iter().map(|&k| &self.nodes[k as usize]);
         rows.map(|node| u64::from(node.count) + 1).sum()
     }
 
-    /// Takes note that rows have entered or left the active ones.
+    /// Marks the factor as outdated: rows have entered or left the active set.
     pub(super) fn set_stale(&mut self) {
         self.is_stale = true;
     }
@@ -119,7 +119,7 @@ impl Factor {
             if row.is_active {
                 if self.visit(&rows.rows, k, regularization) {
                     computed += 1;
-                    if self.room < 0 {
+                    if self.budget < 0 {
                         break;
                     }
                 }
@@ -233,14 +233,14 @@ impl Factor {
         (node.is_factored, node.is_dirty) = (true, false);
     }
 
-    /// Takes what a long row cost off the room: each of its entries was a product with another row.
+    /// Subtracts a long row's work from the budget: each of its entries was a product with another row.
     #[cold]
     fn charge(&mut self, start: usize, count: usize) {
         let entries = &self.entries[start..start + count];
         let others = entries
             .iter()
             .map(|entry| &self.nodes[entry.column as usize]);
-        self.room -= others.map(|node| i64::from(node.count)).sum::<i64>();
+        self.budget -= others.map(|node| i64::from(node.count)).sum::<i64>();
     }
 
     /// Puts row k's couplings with the active rows before it to `work`.

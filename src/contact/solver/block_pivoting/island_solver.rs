@@ -16,7 +16,7 @@ pub(super) const SWEPT_ROWS: usize = 48;
 /// all of them.
 const ROUND: u64 = 50;
 const ENTRY: u64 = 8;
-/// How many sweeps guess the active rows.
+/// Sweeps that guess the active rows.
 const SWEEPS: u32 = 2;
 
 /// One island with its factor.
@@ -98,7 +98,7 @@ impl IslandSolver {
             && rows.iter().filter(|row| is_in(row)).count() > most
     }
 
-    /// How many rows can be independent of each other.
+    /// Largest number of independent rows.
     pub(super) fn most_active(&self) -> usize {
         3 * (self.rows.bodies.len() - 1)
     }
@@ -115,7 +115,7 @@ impl IslandSolver {
                 refinements += 1;
             }
             let violations = self.violations;
-            if violations == 0 || self.factor.room < 0 {
+            if violations == 0 || self.factor.budget < 0 {
                 break;
             }
             if violations < fewest {
@@ -184,11 +184,11 @@ impl IslandSolver {
         (self.violations, self.worst) = self.rows.update();
     }
 
-    /// Takes what a round that was not the last one cost off the room, apart from long rows of the factor.
+    /// Subtracts the work of a round that was not the last from the budget, apart from long rows of the factor.
     #[cold]
     pub(super) fn charge_round(&mut self) {
         let rows = ROUND * self.rows.rows.len() as u64;
-        self.factor.room -= (rows + ENTRY * self.factor.len()) as i64;
+        self.factor.budget -= (rows + ENTRY * self.factor.len()) as i64;
     }
 
     fn flip_violated(&mut self) {
@@ -199,7 +199,7 @@ impl IslandSolver {
         }
     }
 
-    /// Has a row enter or leave the active ones.
+    /// Lets a row enter or leave the active set.
     pub(super) fn set_active(&mut self, row: usize, is_active: bool) {
         if self.rows.rows[row].is_active != is_active {
             self.rows.rows[row].is_active = is_active;

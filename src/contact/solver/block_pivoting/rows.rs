@@ -8,10 +8,10 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 
 /// No row.
 pub(super) const NONE: u32 = u32::MAX;
-/// The place of the walls among an island's bodies: at rest, and nothing moves them.
+/// Index of the walls among an island's bodies: at rest, and nothing moves them.
 pub(super) const WALLS: u32 = 0;
 
-/// How far a row is from its law, of its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to give
+/// Violation of a row, from its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to give
 /// way.
 #[inline]
 pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
@@ -32,7 +32,7 @@ pub(super) type Motion = [f64; 3];
 pub(super) struct Row {
     /// The contact it belongs to.
     pub contact: u32,
-    /// Its bodies, by their place in the island.
+    /// Its bodies, by their index in the island.
     pub bodies: [u32; 2],
     /// J, and J·M⁻¹.
     pub jacobian: [Motion; 2],
@@ -54,7 +54,7 @@ pub(super) struct Row {
 /// A boat of an island.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Body {
-    /// Its number in the flock; none for the walls.
+    /// Its index in the flock; none for the walls.
     pub boat: u32,
     /// Its velocity without contacts, and with.
     pub free: Motion,
@@ -74,7 +74,7 @@ fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
 }
 
 impl Body {
-    /// At rest, of that number in the flock.
+    /// A body at rest, with its index in the flock.
     fn new(boat: u32) -> Self {
         Self {
             boat,
@@ -103,7 +103,7 @@ impl Row {
         dot(&self.response[side], &other.jacobian[other_side])
     }
 
-    /// Changes velocities by an impulse at the row.
+    /// Applies an impulse at the row to the velocities.
     #[inline]
     fn push(&self, impulse: f64, bodies: &mut [Body]) {
         let (first, second) = (self.bodies[0] as usize, self.bodies[1] as usize);
@@ -167,7 +167,7 @@ impl Rows {
         }
     }
 
-    /// The place of a boat.
+    /// Index of a boat in the island, which is added if it is new.
     fn body(&mut self, boat: u32, places: &mut [u32]) -> u32 {
         let place = &mut places[boat as usize];
         if *place == NONE {

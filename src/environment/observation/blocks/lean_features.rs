@@ -1,4 +1,4 @@
-//! What the lean of a leader depends on: numbers of its view, mirrored to the target and standardized.
+//! Features that a leader's lean depends on: numbers of its view, mirrored to the target and standardized.
 
 use super::super::entry::{Entry, Scale};
 use super::super::view::{FlockView, Scaling};
@@ -10,7 +10,7 @@ use super::{MadeFor, Seen, WriteBlock};
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
-/// How many numbers there are.
+/// Number of features.
 pub const LEAN_FEATURES: usize = 29;
 
 /// The pools in which the features are standardized.
@@ -62,7 +62,7 @@ const fn feature(name: &'static str, meaning: &'static str) -> Entry {
     Entry::new(name, "", Scale::Plain, (-BOUND, BOUND), meaning)
 }
 
-/// Mean and standard deviation of each feature in one of [`POOLS`], by its place.
+/// Mean and standard deviation of each feature in one of [`POOLS`], by its index.
 fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
     let mut usual = [(f64::NAN, f64::NAN); LEAN_FEATURES];
     for row in USUAL.lines().skip(1) {
@@ -86,7 +86,7 @@ const NEIGHBORS: usize = OWN.len() + PHASE.len();
 const ORDERS: usize = NEIGHBORS + SEEN_NEIGHBORS * NEIGHBOR.len();
 const VIEW: usize = ORDERS + ORDER.len();
 
-/// Works out lean features, with its memory.
+/// Writer of lean features, with its memory.
 #[derive(Debug, Clone)]
 pub struct LeanFeatures {
     usual: [(f64, f64); LEAN_FEATURES],
@@ -120,7 +120,7 @@ impl LeanFeatures {
         })
     }
 
-    /// Checks that the features are standardized in a pool, and returns its place.
+    /// Checks that the features are standardized in a pool, and returns its index.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

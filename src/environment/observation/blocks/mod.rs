@@ -42,7 +42,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// What is made for a flock. Whatever has a default is made for every flock.
+/// Anything that is made for a flock. Types with a default are made the same for every flock.
 trait MadeFor: Sized {
     /// For checked parameters.
     ///
@@ -57,7 +57,7 @@ impl<T: Default> MadeFor for T {
     }
 }
 
-/// What writes the physical values of a block, with its memory.
+/// Writer of the physical values of a block, with its memory.
 trait WriteBlock: MadeFor {
     /// Adds the values of a block that occurs so often, in the order of its entries.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
@@ -74,10 +74,10 @@ macro_rules! declare_blocks {
         }
 
         impl Block {
-            /// How many blocks there are.
+            /// Number of blocks.
             pub(super) const COUNT: usize = Self::ALL.len();
 
-            /// How often each occurs by default.
+            /// Number of occurrences of each by default.
             pub(super) const DEFAULT: [usize; Self::COUNT] = [$($default),+];
 
             /// Whether the block may occur more than once, as that of a neighbor does.
@@ -85,7 +85,7 @@ macro_rules! declare_blocks {
                 match self { $(Self::$block => declare_blocks!(@ $counted),)+ }
             }
 
-            /// What messages call the choice of this block.
+            /// Name of this block's option in messages.
             pub fn option(self) -> &'static str {
                 match self { $(Self::$block => concat!("observation ", $name),)+ }
             }
@@ -127,7 +127,7 @@ macro_rules! declare_blocks {
 declare_blocks! {
     /// The leader itself.
     Own = "own": own::{OWN, Own}, 1 once;
-    /// Where in the fw-nop-bw-nop cycle the flock is.
+    /// Time in the fw-nop-bw-nop cycle.
     Phase = "phase": phase::{PHASE, Phase}, 1 once;
     /// The direction to lead in.
     Target = "target": target::{TARGET, Target}, 1 once;
@@ -137,6 +137,6 @@ declare_blocks! {
     Order = "order": order::{ORDER, Order}, 1 once;
     /// The nearest obstacles.
     Obstacles = "obstacles": obstacles::{OBSTACLE, NearestObstacles}, 0 counted;
-    /// What the lean of a leader depends on, mirrored to the target and standardized.
+    /// Features that a leader's lean depends on, mirrored to the target and standardized.
     LeanFeatures = "lean_features": lean_features::{ENTRIES, LeanFeatures}, 0 once;
 }

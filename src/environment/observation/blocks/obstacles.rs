@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geometry::{Hull, Obstacle};
 use crate::parameters::FlockParameters;
 
-/// One obstacle; all zero where there are fewer than places.
+/// One obstacle; zeros if there are fewer than observed.
 #[rustfmt::skip]
 pub(super) const OBSTACLE: [Entry; 4] = [
     Entry::new("there", "", Scale::Plain, FLAG, "1 where there is such an obstacle"),

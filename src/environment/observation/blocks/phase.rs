@@ -1,11 +1,11 @@
-//! Where in the cycle the flock is.
+//! Time in the cycle of phases.
 
 use super::super::entry::{Entry, FLAG, Scale};
 use super::super::view::FlockView;
 use super::{Seen, WriteBlock};
 use crate::clock::seconds;
 
-/// Where in the cycle the flock is.
+/// Time in the cycle of phases.
 #[rustfmt::skip]
 pub(crate) const PHASE: [Entry; 6] = [
     Entry::new("fw", "", Scale::Plain, FLAG, "1 in the forward phase"),
@@ -26,7 +26,7 @@ impl WriteBlock for Phase {
     }
 }
 
-/// Where in the cycle the flock is, in the order of [`PHASE`].
+/// Time in the cycle of phases, in the order of [`PHASE`].
 pub(crate) fn phase(view: &FlockView) -> [f64; PHASE.len()] {
     let mut entries = [0.0; PHASE.len()];
     entries[view.phase.phase.index()] = 1.0;
