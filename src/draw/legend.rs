@@ -12,7 +12,7 @@ use tiny_skia::Pixmap;
 const SIDE_OVER_SIZE: f32 = 40.0;
 /// The smallest letters, in pixels.
 const LEGIBLE_SIZE: f32 = 9.0;
-/// What the text of a corner takes, in sizes, and how far from the middle it has to stay, as a share of
+/// Space that the text of a corner takes, in letter sizes, and its least distance from the middle, as a share of
 /// the frame's shorter side: smaller frames show the boats alone.
 const CORNER: (f32, f32) = (13.0, 4.0);
 const CLEAR: f32 = 0.39;
@@ -77,13 +77,21 @@ impl Legend {
         for (line, (text, color)) in (0..).zip(task(flock)) {
             right(&text, top(line), color);
         }
-        let (words, towards) = match target_of(flock) {
-            Some(target) => ("signed order", target),
-            None => ("rotation", Target::Clockwise),
-        };
-        let signed = order.map(|order| signed_text(order.signed_order(towards)));
-        right(&labeled(words, signed), bottom, None);
+        right(&signed_order(flock), bottom, None);
     }
+}
+
+/// The signed order towards the leaders' target, or the rotation if they have none in common.
+fn signed_order(flock: &Flock) -> String {
+    let (words, towards) = match target_of(flock) {
+        Some(target) => ("signed order", target),
+        None => ("rotation", Target::Clockwise),
+    };
+    let order = flock.order_parameters(false).ok();
+    labeled(
+        words,
+        order.map(|order| signed_text(order.signed_order(towards))),
+    )
 }
 
 /// Lines for the caption, the time, the phase and the grid, each if there is one.

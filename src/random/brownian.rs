@@ -174,11 +174,9 @@ impl BrownianPaths {
             let (to_low, to_high) = (right / (left + right), left / (left + right));
             let spread = (left * to_low * HALF_TICK_S).sqrt();
             let ends = low.iter().zip(&*high).zip(self.normals.draws(cell, key));
-            path.iter_mut()
-                .zip(ends)
-                .for_each(|(path, ((low, high), draw))| {
-                    *path = low * to_low + high * to_high + spread * draw;
-                });
+            for (path, ((low, high), draw)) in path.iter_mut().zip(ends) {
+                *path = low * to_low + high * to_high + spread * draw;
+            }
             if middle == offset {
                 return;
             }

@@ -18,9 +18,8 @@ pub(super) fn solve(
     velocities: &mut Vec<Velocity>,
 ) -> SolveReport {
     let contacts = problem.contacts.len();
-    let right: Vec<f64> = (0..contacts)
-        .map(|k| problem.slack(k, problem.free))
-        .collect();
+    let slack = |k| problem.slack(k, problem.free);
+    let right: Vec<f64> = (0..contacts).map(slack).collect();
     let cones = [SupportedConeT::NonnegativeConeT(contacts)];
     let settings = DefaultSettings {
         verbose: false,
@@ -40,10 +39,8 @@ pub(super) fn solve(
         solver.solve();
         let solution = &solver.solution;
         report.iterations = u64::from(solution.iterations);
-        let usable = matches!(
-            solution.status,
-            SolverStatus::Solved | SolverStatus::AlmostSolved
-        );
+        use SolverStatus::{AlmostSolved, Solved};
+        let usable = matches!(solution.status, Solved | AlmostSolved);
         for (impulse, dual) in impulses.iter_mut().zip(&solution.z) {
             *impulse = if usable { dual.max(0.0) } else { 0.0 };
         }
