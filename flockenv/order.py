@@ -36,7 +36,7 @@ class Quantity:
     #: Its meaning, with its sign; and the paper's definition.
     meaning: str
     source: str
-    #: Least and greatest value, if there are such.
+    #: Least and greatest value, or None.
     range: tuple[float, float] | None
     #: Least number of boats for which it is defined; NaN for fewer.
     least_boats: int

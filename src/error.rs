@@ -82,7 +82,7 @@ impl FlockError {
         }
     }
 
-    /// The same error, as that of one flock of a batch in which so many more have failed.
+    /// The same error for one flock of a batch, with the number of others that failed.
     #[cold]
     pub(crate) fn of_flock(self, flock: usize, more: usize) -> Self {
         let others = match more {

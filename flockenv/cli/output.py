@@ -89,7 +89,7 @@ def prepare(*paths: Path, overwrites: bool = True) -> None:
 
 
 def open_page(page: Path) -> None:
-    """Open a page in a browser; where there is none that can show it, say where the page is."""
+    """Open a page in a browser; without one that can show it, print its path."""
     address = page.resolve().as_uri()
     # A browser in the terminal would take it over, and run none of the page's scripts.
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")

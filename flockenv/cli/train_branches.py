@@ -37,7 +37,7 @@ _BETWEEN_LINES_S = 3.0
 def train_branches(
     given: dict[str, Any], out: Path, flocks: int, printing: Printing, *, resume: bool
 ) -> None:
-    """Train, write the policy with its curve, and compare it with the laws in so many flocks."""
+    """Train, write the policy with its curve, and compare it with the laws in this many flocks."""
     start, command = time.process_time(), _command(given)
     if resume:
         echo(f"Resuming from {out / CHECKPOINT}", errors)

@@ -212,7 +212,7 @@ class LeadersEnv(
         return rows.reshape(-1), reward, False, over, info
 
     def set_wrapper_attr(self, name: str, value: object, *, force: bool = True) -> bool:
-        """Set an attribute that there is, for Gymnasium's wrappers; options are refused."""
+        """Set an existing attribute, for Gymnasium's wrappers; options are refused."""
         self._refuse_from_outside(name)
         return super().set_wrapper_attr(name, value, force=force)
 

@@ -177,7 +177,7 @@ class Policy:
     def decide(
         self, observation: NDArray[np.float32], state: object, leaders: int
     ) -> tuple[NDArray[np.float64], object]:
-        """Return checked actions for observations of so many leaders, one after another."""
+        """Return checked actions for the observations of a number of leaders, one after another."""
         returned = self.source.predict(observation, state)
         if not isinstance(returned, tuple) or len(returned) != 2:
             raise ParameterError(

@@ -248,7 +248,7 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
         try:
             return _WEIGHTS in zipfile.ZipFile(file).namelist()
         except (zipfile.BadZipFile, NotImplementedError, ValueError):
-            # Damage may name a version that there is not, or letters that are none.
+            # Damaged bytes may name an unknown version, or be no letters.
             return False
 
 

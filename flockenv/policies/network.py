@@ -315,7 +315,7 @@ def _checked_layers(
     activation: str | Sequence[str],
     size: int,
 ) -> list[_Layer]:
-    """Return layers from so many inputs to one output, as float32."""
+    """Return layers from a number of inputs to one output, as float32."""
     count = len(weights)
     if count != len(biases) or count == 0:
         raise ParameterError(

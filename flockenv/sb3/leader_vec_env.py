@@ -241,7 +241,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, flat, np.float32)
         except Exception:
-            # Of the motion of a flock or the reward: the flocks whose episode is over start anew.
+            # Of the motion of a flock or the reward: flocks whose episode is over start again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]

@@ -56,7 +56,7 @@ pub struct Quantity {
     pub meaning: &'static str,
     /// The paper's section or equation that defines it.
     pub source: &'static str,
-    /// Least and greatest value, where there are such.
+    /// Least and greatest value, or `None`.
     pub range: Option<(f64, f64)>,
     /// Least number of boats for which it is defined.
     pub least_boats: usize,

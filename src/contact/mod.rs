@@ -1,4 +1,4 @@
-//! Frictionless, perfectly inelastic contacts: which there are, and the impulses that hold them.
+//! Frictionless, perfectly inelastic contacts, and the impulses that hold them.
 //!
 //! Post-contact motion minimizes Σ|Δv|² + ρ²ΣΔω² (eqs A.1 and A.2) over the velocities for which no
 //! linearized gap closes beyond zero in the substep.

@@ -115,7 +115,7 @@ impl WarmStartCache {
         }
     }
 
-    /// The entries of a contact's two bodies, of which there are two at most, from the first of them on.
+    /// The entries of a contact's two bodies, at most two, from the first of them on.
     #[inline]
     fn entries_from(&self, start: usize, contact: &Contact) -> Range<usize> {
         let second = self.entries.get(start + 1);

@@ -46,7 +46,7 @@ impl ActionMode {
     }
 }
 
-/// Checks an action, a number of a level where there are so many levels.
+/// Checks an action, which is the number of a level if there are levels.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] for NaN and for levels that do not exist. Rudders beyond ±1 are accepted: they are clipped.

@@ -33,7 +33,7 @@ pub(crate) struct EpisodeState {
     ended: bool,
     /// Effects of the leaders' contacts, if a reward term needs them.
     credit: Option<ContactCredit>,
-    /// Of the normal boats; `None` where there is none.
+    /// Of the normal boats; `None` without any.
     #[serde(skip)]
     order: Option<OrderParameters>,
 }
@@ -154,7 +154,7 @@ impl Episode {
         self.state.ended
     }
 
-    /// Order parameters of the normal boats now; `None` where there is none.
+    /// Order parameters of the normal boats now; `None` without any.
     pub fn order(&self) -> Option<&OrderParameters> {
         self.state.order.as_ref()
     }

@@ -133,7 +133,7 @@ impl FlockEnv {
         self.episode = None;
     }
 
-    /// Whether a step is due, be it one that only starts the next episode.
+    /// Whether a step is due, even if it only starts the next episode.
     ///
     /// # Errors
     /// [`FlockError::Episode`] if the environment has to be reset first.

@@ -153,7 +153,7 @@ pub struct EpisodeSummary {
     #[serde(with = "stored_terms")]
     pub terms: RewardTerms,
     /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
-    /// where there is none.
+    /// if there are none.
     pub averages: Averages,
     /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,

@@ -103,7 +103,7 @@ pub struct Recording<T> {
     /// Rudder commands of the leaders, sample after sample: those held up to each time, or under the
     /// steering law those at its poses.
     pub rudder: Vec<f64>,
-    /// Recorded quantities of the normal boats; all NaN where there is none.
+    /// Recorded quantities of the normal boats; all NaN without any.
     pub order: Vec<Recorded>,
     /// Contacts, if they are recorded.
     pub contacts: Option<ContactSamples>,

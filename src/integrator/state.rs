@@ -79,7 +79,7 @@ impl Integrator {
         }
     }
 
-    /// Takes whole substeps of another length from now on, on the noise paths that there are.
+    /// Takes whole substeps of another length from now on, on the present noise paths.
     pub(crate) fn set_step(&mut self, dt_s: f64) {
         self.parameters.dt_s = dt_s;
         self.contacts.set_whole_substep(dt_s);

@@ -36,7 +36,7 @@ impl Targets {
         }
     }
 
-    /// Mean sign of the targets of so many leaders: +1 where all are clockwise, −1 where all are counter-clockwise.
+    /// Mean sign of the first leaders' targets: +1 if all are clockwise, −1 if all are counter-clockwise.
     pub fn mean_sign(&self, leaders: usize) -> f64 {
         match self {
             Self::One(target) => target.sign(),

@@ -43,7 +43,7 @@ impl Views {
 }
 
 impl Pilot {
-    /// For a flock with these checked parameters that has so many control steps per second.
+    /// For a flock with these checked parameters and a number of control steps per second.
     ///
     /// # Errors
     /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are no whole number of
@@ -107,7 +107,7 @@ impl Pilot {
         }
     }
 
-    /// Continues a run with control steps for about so many substeps times boats, or to its end.
+    /// Continues a run with control steps for about this many substeps times boats, or to its end.
     ///
     /// # Errors
     /// As for [`Recorder::run`] and [`Self::rudders`].

@@ -18,7 +18,7 @@ fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
     object.getattr("shape").ok()?.extract().ok()
 }
 
-/// The shape that the first items of an array-like suggest, to so many axes. An error if the first one is no real
+/// The shape that the first items of an array-like suggest, up to a number of axes. An error if the first one is no real
 /// number.
 fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<usize>> {
     if let Some(shape) = array_shape(object) {
@@ -131,7 +131,7 @@ pub(super) fn floats(
     Ok(Numbers::from_object(object, name, expected)?.values)
 }
 
-/// Rows of three numbers for so many boats, such as their poses.
+/// Rows of three numbers for a number of boats, such as their poses.
 pub(super) fn rows_from(
     object: &Bound<'_, PyAny>,
     name: &str,
@@ -141,7 +141,7 @@ pub(super) fn rows_from(
     Ok(numbers.as_chunks::<3>().0.to_vec())
 }
 
-/// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are such. A rudder of 1.0
+/// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are levels. A rudder of 1.0
 /// is not level 1, so that levels must be integers. Messages call the actions by `name`.
 #[pyfunction]
 #[pyo3(signature = (actions, shape, levels, name="actions"))]
@@ -205,7 +205,7 @@ pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult
     Err(wrong_shape(name, &[found], &shape_text(&[expected])))
 }
 
-/// Numbers as rows of so many.
+/// Numbers as rows of a given length.
 pub(super) fn rows_of<T: Element>(
     py: Python<'_>,
     numbers: Vec<T>,

@@ -53,7 +53,7 @@ impl PyEnvBatch {
         found.ok_or_else(never_reset)
     }
 
-    /// Numbers of every flock's episode, as rows of so many.
+    /// Numbers of every flock's episode, as rows of a given length.
     fn gathered<'py, T: Element>(
         &self,
         py: Python<'py>,
@@ -335,7 +335,7 @@ impl PyEnvBatch {
     }
 }
 
-/// A request of a flock of so many boats.
+/// A request of a flock of a number of boats.
 fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
     let mut request = ResetRequest::default();
     let (mut snapshot, mut noise_seed) = (None, None);

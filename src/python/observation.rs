@@ -25,7 +25,7 @@ pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value
     Ok(rows.collect())
 }
 
-/// Every entry of the global state of so many boats, in order.
+/// Every entry of the global state of a number of boats, in order.
 #[pyfunction]
 pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let n_boats = given(n_boats, "n_boats")?;

@@ -54,7 +54,7 @@ pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<
     Ok(whole_steps("hold_s", held_s, rate_hz, "decisions")?)
 }
 
-/// The rudders that numbers of levels stand for, of so many that an environment may have.
+/// The rudders of levels by their numbers, in an environment with `rudder_levels`.
 #[pyfunction]
 pub(super) fn rudders_of_levels(levels: Vec<f64>, rudder_levels: usize) -> Result<Vec<f64>> {
     let settings = EnvSettings {

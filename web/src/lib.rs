@@ -65,7 +65,7 @@ impl Page {
     }
 }
 
-/// Where the next request is to be written: so many bytes of UTF-8.
+/// Memory for the next request: a number of bytes of UTF-8.
 #[unsafe(no_mangle)]
 pub extern "C" fn input(length: usize) -> *mut u8 {
     with(|page| {
@@ -224,7 +224,7 @@ pub extern "C" fn steer(flock: usize, heading: f64) -> u32 {
     })
 }
 
-/// Takes up to so many samples, within about so many substeps times boats; returns how many, −1 for an error.
+/// Takes up to `samples` samples within a work limit in substeps times boats; returns their number, −1 for an error.
 #[unsafe(no_mangle)]
 pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32 {
     with(|page| {

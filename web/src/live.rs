@@ -140,7 +140,7 @@ impl Live {
         Ok(())
     }
 
-    /// Takes up to so many samples within about so many substeps times boats, and returns how many.
+    /// Takes some samples within a work limit in substeps times boats, and returns their number.
     ///
     /// # Errors
     /// [`FlockError::Solver`] if numbers left their range, and those of [`Leaders::decide`].

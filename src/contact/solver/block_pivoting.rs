@@ -44,7 +44,7 @@ impl BlockPivoting {
         }
     }
 
-    /// Forgets the factors; so many islands of so many boats come next.
+    /// Forgets the factors, and prepares for the next numbers of islands and boats.
     pub(super) fn reset(&mut self, boats: usize, islands: usize) {
         let solvers = if self.keeps_factors { islands } else { 1 };
         if self.islands.len() < solvers {

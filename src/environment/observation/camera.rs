@@ -18,7 +18,7 @@ pub(crate) struct Lens {
 }
 
 impl Lens {
-    /// A lens that loses boats at a rate and is so many frames late; `None` where the picture does not differ from the
+    /// A lens that loses boats at a rate and is some frames late; `None` if the picture does not differ from the
     /// flock at all.
     pub(crate) fn new(dropout_rate: f64, delay_frames: usize) -> Option<Self> {
         let lens = Self {

@@ -44,8 +44,8 @@ impl CourseReader {
         })
     }
 
-    /// The course about a heading so many rad outward of the target's tangent, in the observation's own sense where it
-    /// is mirrored.
+    /// The course about a heading that leans by an angle (rad) outward of the target's tangent, in the observation's
+    /// own sense if it is mirrored.
     pub fn course(&self, observation: &[f32], outward: f64) -> Course {
         let read = |place: usize| f64::from(observation[place]);
         let target = self.target.map_or(1.0, read);
@@ -86,7 +86,8 @@ impl CourseView {
         })
     }
 
-    /// The course of a leader about a heading so many rad outward of its target's tangent, counter-clockwise positive.
+    /// The course of a leader about a heading that leans by an angle (rad) outward of its target's tangent,
+    /// counter-clockwise positive.
     pub fn course(&self, view: &FlockView, leader: usize, outward: f64) -> Course {
         let frame = LapFrame::at(view.poses[leader].position);
         let mut physical = [0.0; OWN.len() + TARGET.len()];

@@ -185,7 +185,7 @@ impl Setting for ObservationLayout {
     }
 }
 
-/// All entries of the global state of so many boats.
+/// All entries of the global state of a number of boats.
 pub fn state_entries(boats: usize) -> Vec<Entry> {
     let mut entries: Vec<Entry> = (0..boats).flat_map(|_| BOAT).collect();
     entries.extend(PHASE.iter().chain(&TARGET).chain(&CLOCK));

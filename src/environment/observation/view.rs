@@ -26,7 +26,7 @@ pub struct FlockView<'a> {
     pub targets: &'a Targets,
     /// The leaders' rudders as they stand.
     pub rudders: &'a [f64],
-    /// Order parameters of the normal boats; `None` where there is none.
+    /// Order parameters of the normal boats; `None` without any.
     pub order: Option<&'a OrderParameters>,
 }
 

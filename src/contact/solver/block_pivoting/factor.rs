@@ -83,7 +83,7 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// The factor of no row, of an island with so many rows.
+    /// An empty factor for an island of a number of rows.
     pub(super) fn reset(&mut self, rows: usize) {
         self.nodes.clear();
         self.nodes.resize(rows, EMPTY);
