@@ -190,18 +190,18 @@ impl Quantity {
 
 /// Numbers of recorded quantities, and of those averaged in an episode summary.
 const COUNTS: [usize; 2] = {
-    let (mut recorded, mut summarized, mut place) = (0, 0, 0);
-    while place < QUANTITIES.len() {
-        let quantity = &QUANTITIES[place];
+    let (mut recorded, mut summarized, mut index) = (0, 0, 0);
+    while index < QUANTITIES.len() {
+        let quantity = &QUANTITIES[index];
         if matches!(quantity.formula, Formula::Recorded(_)) {
             assert!(
-                place == recorded,
+                index == recorded,
                 "recorded quantities come first in the table"
             );
             recorded += 1;
         }
         summarized += quantity.is_summarized() as usize;
-        place += 1;
+        index += 1;
     }
     [recorded, summarized]
 };

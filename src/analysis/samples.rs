@@ -74,21 +74,21 @@ impl Samples {
     /// than `longest_s`, and of more than `fastest_cm_s`, which are counted. Rows without any are NaN.
     pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
         let (mut broken, rows) = (0, &self.rows);
-        let mut step = |place: usize| {
-            let (before, after) = (place.checked_sub(self.boats)?, place);
+        let mut step = |row: usize| {
+            let (before, after) = (row.checked_sub(self.boats)?, row);
             let time_s = times_s.get(after)? - times_s[before];
             let (from, to) = (rows[before], rows[after]);
-            let way = (to.position - from.position) * time_s.recip();
-            let slope = Pose::new(way.x, way.y, (to.heading - from.heading) / time_s);
+            let velocity = (to.position - from.position) * time_s.recip();
+            let slope = Pose::new(velocity.x, velocity.y, (to.heading - from.heading) / time_s);
             if !slope.is_finite() || time_s > longest_s {
                 return None;
             }
-            let is_fast = way.norm_squared() > fastest_cm_s * fastest_cm_s;
+            let is_fast = velocity.norm_squared() > fastest_cm_s * fastest_cm_s;
             broken += usize::from(is_fast);
             (!is_fast).then_some((slope, time_s))
         };
         let steps: Vec<_> = (0..rows.len() + self.boats).map(&mut step).collect();
-        let mean = |place: usize| match (steps[place], steps[place + self.boats]) {
+        let mean = |row: usize| match (steps[row], steps[row + self.boats]) {
             (Some((a, short)), Some((b, long))) => {
                 let share = long / (short + long);
                 let mix = |x: f64, y: f64| x * share + y * (1.0 - share);

@@ -12,7 +12,7 @@ pub(super) struct PredictedPoses {
     /// Whether boats with the velocities that were solved for last end there.
     is_end: bool,
     /// Largest motion of each boat's hull, in cm.
-    ways: Vec<f64>,
+    displacements: Vec<f64>,
     /// Boats that are moved again, and whether each boat is one of them.
     listed: Vec<u32>,
     is_listed: Vec<bool>,
@@ -28,8 +28,8 @@ impl PredictedPoses {
         self.poses.clear();
         self.poses.extend(moved);
         HullPose::replace_all(&mut self.hulls, &self.poses);
-        self.ways.clear();
-        self.ways
+        self.displacements.clear();
+        self.displacements
             .extend(velocities.iter().map(|each| hull.speed(each) * dt));
         self.is_end = true;
     }
@@ -59,7 +59,7 @@ impl PredictedPoses {
             let boat = boat as usize;
             self.is_listed[boat] = false;
             self.poses[boat] = poses[boat].moved(&velocities[boat], dt);
-            self.ways[boat] = hull.speed(&velocities[boat]) * dt;
+            self.displacements[boat] = hull.speed(&velocities[boat]) * dt;
         }
         HullPose::replace_some(&mut self.hulls, &self.poses, &self.listed);
         self.is_end = true;
@@ -95,14 +95,15 @@ impl PredictedPoses {
     #[inline]
     pub(super) fn may_close(&self, contacts: &[Contact], k: usize) -> bool {
         let contact = &contacts[k];
-        let way = |boat: usize| self.ways[boat];
-        let ways = way(contact.boat as usize) + contact.second().map_or(0.0, way);
-        contact.gap.gap <= ways
+        let displacement = |boat: usize| self.displacements[boat];
+        let displacements =
+            displacement(contact.boat as usize) + contact.second().map_or(0.0, displacement);
+        contact.gap.gap <= displacements
             || contact.has_ends()
                 && first_of_two(contacts, k).is_some_and(|first| {
                     contacts[first..first + 2]
                         .iter()
-                        .any(|twin| twin.gap.gap <= ways)
+                        .any(|twin| twin.gap.gap <= displacements)
                 })
     }
 

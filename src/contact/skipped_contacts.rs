@@ -127,8 +127,8 @@ fn may_touch_close(
     };
     let swing = hull.half_length * spin * dt;
     let curve = if contact.partner == Partner::OuterWall {
-        let way = linear.norm() * dt + swing;
-        0.5 * way * way / (detector.pool.outer_radius_cm - hull.radius - gap.gap)
+        let displacement = linear.norm() * dt + swing;
+        0.5 * displacement * displacement / (detector.pool.outer_radius_cm - hull.radius - gap.gap)
     } else {
         0.0
     };

@@ -50,8 +50,8 @@ impl Rgb {
     pub(super) fn blend(self, canvas: &mut Pixmap, (column, row): (i64, i64), coverage: f32) {
         let (width, height) = (i64::from(canvas.width()), i64::from(canvas.height()));
         if (0..width).contains(&column) && (0..height).contains(&row) {
-            let place = 4 * (row * width + column) as usize;
-            let pixel = canvas.data_mut()[place..].iter_mut();
+            let offset = 4 * (row * width + column) as usize;
+            let pixel = canvas.data_mut()[offset..].iter_mut();
             for (under, over) in pixel.zip([self.0, self.1, self.2]) {
                 let (below, above) = (f32::from(*under), f32::from(over));
                 *under = (below + coverage.min(1.0) * (above - below)).round() as u8;

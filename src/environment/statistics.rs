@@ -39,8 +39,8 @@ impl<'de> Deserialize<'de> for Averages {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let mut averages = Self([f64::NAN; SUMMARIZED]);
         by_name::read(from, "the averages of an episode", |name, value| {
-            let place = summarized().position(|each| each.name == name);
-            place.map(|place| averages.0[place] = value).is_some()
+            let index = summarized().position(|each| each.name == name);
+            index.map(|index| averages.0[index] = value).is_some()
         })?;
         Ok(averages)
     }

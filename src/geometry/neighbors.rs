@@ -173,7 +173,7 @@ struct Grid {
     rows: usize,
     starts: Vec<u32>,
     /// Indices into the angular order, cell by cell.
-    places: Vec<u32>,
+    indices: Vec<u32>,
 }
 
 impl Grid {
@@ -203,12 +203,12 @@ impl Grid {
             self.starts[cell] += self.starts[cell - 1];
         }
         let mut next = self.starts.clone();
-        self.places.clear();
-        self.places.resize(centers.len(), 0);
-        for (place, &boat) in order.iter().enumerate() {
+        self.indices.clear();
+        self.indices.resize(centers.len(), 0);
+        for (index, &boat) in order.iter().enumerate() {
             let (column, row) = self.cell_of(centers[boat as usize]);
             let slot = &mut next[row * self.columns + column];
-            self.places[*slot as usize] = place as u32;
+            self.indices[*slot as usize] = index as u32;
             *slot += 1;
         }
     }
@@ -227,7 +227,7 @@ impl Grid {
             for near_column in column.saturating_sub(1)..=(column + 1).min(self.columns - 1) {
                 let cell = near_row * self.columns + near_column;
                 let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
-                self.places[range].iter().for_each(|&place| visit(place));
+                self.indices[range].iter().for_each(|&index| visit(index));
             }
         }
     }

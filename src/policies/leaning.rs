@@ -144,7 +144,7 @@ impl LeaningLaw {
             bound: Bound::Tanh,
             decision_period_s,
             bias: numbers[LEAN_FEATURES],
-            weights: std::array::from_fn(|place| numbers[place]),
+            weights: std::array::from_fn(|index| numbers[index]),
             provenance: BTreeMap::new(),
         };
         law.check()?;

@@ -50,8 +50,8 @@ impl ObservedLaw {
     /// law holds leans. It depends on nothing else, such as other observations of a batch.
     pub fn action(&self, observation: &[f32]) -> f64 {
         let lean = self.law.leaning().zip(self.features);
-        let lean = lean.map_or(0.0, |(law, place)| {
-            f64::from(law.action(&observation[place..place + LEAN_FEATURES]))
+        let lean = lean.map_or(0.0, |(law, index)| {
+            f64::from(law.action(&observation[index..index + LEAN_FEATURES]))
         });
         match &self.courses {
             Some(courses) => {

@@ -25,8 +25,8 @@ type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
 /// Columns of the table's recorded quantities, by name: arrays (t,).
 pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    for (place, each) in QUANTITIES[..RECORDED].iter().enumerate() {
-        let values = series.iter().map(|values| values[place]);
+    for (index, each) in QUANTITIES[..RECORDED].iter().enumerate() {
+        let values = series.iter().map(|values| values[index]);
         columns.set_item(each.name, PyArray1::from_iter(py, values))?;
     }
     Ok(columns)
@@ -126,10 +126,10 @@ pub(super) fn collective_states<'py>(
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let (orders, clusters) = (orders.rows()?, largest_cluster.to_vec()?);
     same_length("largest_cluster", clusters.len(), orders.len())?;
-    let places = orders.iter().zip(clusters);
-    let places =
-        places.map(|(order, share)| CollectiveState::from_order(order, speed_cm_s, share) as i64);
-    Ok(PyArray1::from_iter(py, places))
+    let states = orders.iter().zip(clusters);
+    let states =
+        states.map(|(order, share)| CollectiveState::from_order(order, speed_cm_s, share) as i64);
+    Ok(PyArray1::from_iter(py, states))
 }
 
 /// Ordering time τ of a run, eq. (7), in s; infinite if the run does not order.

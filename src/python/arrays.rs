@@ -84,8 +84,8 @@ impl Numbers {
             (None, _) if value_from(part).number().is_some() => Ok(false),
             (None, _) => Err(wrong_type(part, name, "an array of real numbers")),
             (Some(length), [first, rest @ ..]) if length == *first => {
-                for place in 0..length {
-                    if !self.read(&part.get_item(place)?, name, rest)? {
+                for index in 0..length {
+                    if !self.read(&part.get_item(index)?, name, rest)? {
                         return Ok(false);
                     }
                 }

@@ -73,16 +73,16 @@ pub(super) fn refusal(message: String) -> PyErr {
     raised(PARAMETER, message)
 }
 
-fn raised(place: usize, message: String) -> PyErr {
+fn raised(index: usize, message: String) -> PyErr {
     Python::attach(|py| match exceptions(py) {
-        Ok(classes) => PyErr::from_type(classes[place].bind(py).clone(), message),
+        Ok(classes) => PyErr::from_type(classes[index].bind(py).clone(), message),
         Err(failure) => failure,
     })
 }
 
 impl From<FlockError> for PyErr {
     fn from(error: FlockError) -> Self {
-        let place = match error {
+        let index = match error {
             FlockError::Parameter { .. }
             | FlockError::Shape { .. }
             | FlockError::Overlap { .. }
@@ -94,6 +94,6 @@ impl From<FlockError> for PyErr {
             FlockError::Kind { .. } => return PyTypeError::new_err(error.to_string()),
             FlockError::Interrupted => return PyKeyboardInterrupt::new_err(()),
         };
-        raised(place, error.to_string())
+        raised(index, error.to_string())
     }
 }

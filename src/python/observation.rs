@@ -21,7 +21,7 @@ pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<O
 #[pyfunction]
 pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let entries = layout_from(blocks, false)?.entries().into_iter();
-    let rows = entries.map(|(block, place, entry)| entry.named(block.name(), place));
+    let rows = entries.map(|(block, index, entry)| entry.named(block.name(), index));
     Ok(rows.collect())
 }
 
@@ -32,7 +32,7 @@ pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let most = FlockParameters::MOST_BOATS;
     FlockError::unless(n_boats <= most, "n_boats", n_boats, format!("0 to {most}"))?;
     let entries = state_entries(n_boats).into_iter().enumerate();
-    let rows = entries.map(|(place, entry)| match place / BOAT.len() {
+    let rows = entries.map(|(index, entry)| match index / BOAT.len() {
         boat if boat < n_boats => entry.named("boat", boat),
         _ => entry.named("clock", 0),
     });

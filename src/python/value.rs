@@ -53,7 +53,7 @@ fn is_complex(object: &Bound<'_, PyAny>) -> bool {
 fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Value>> {
     let (most, inner) = most_items.split_first()?;
     let length = sequence_length(object).filter(|length| length <= most)?;
-    let items = (0..length).map(|place| object.get_item(place).ok());
+    let items = (0..length).map(|index| object.get_item(index).ok());
     items
         .map(|item| Some(nested_value(&item?, inner)))
         .collect()

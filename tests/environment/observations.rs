@@ -17,7 +17,7 @@ fn layout_adds_up() {
     assert_eq!(layout.size(), layout.entries().len());
     assert_eq!(layout.size(), 8 + 6 + 1 + 6 * 8 + 4);
     assert_eq!(layout.offset(Block::Target), Some(14));
-    assert_eq!(layout.place(Block::Order, "mean_sin_orientation"), Some(64));
+    assert_eq!(layout.index(Block::Order, "mean_sin_orientation"), Some(64));
     let mut few = layout;
     few.repeat(Block::Phase, 0);
     few.repeat(Block::Neighbors, 0);

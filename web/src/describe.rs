@@ -54,7 +54,7 @@ pub(crate) fn all() -> Json {
         "quantities": quantities().map(|each| written(&Quantity::named(each))).collect::<Json>(),
         "statistics": statistics(&Statistics::default()).into_iter().map(statistic).collect::<Json>(),
         "entries": entries
-            .map(|(block, place, entry)| written(&entry.named(block.name(), place)))
+            .map(|(block, index, entry)| written(&entry.named(block.name(), index)))
             .collect::<Json>(),
         "colors": style_sheet(),
     })

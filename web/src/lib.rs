@@ -156,8 +156,8 @@ pub extern "C" fn open(flock: usize) -> u32 {
         let opened = page.request().and_then(request::Request::read);
         let said = opened.and_then(Live::new).and_then(|live| {
             let values = describe::values(live.parameters());
-            let place = page.flocks.get_mut(flock);
-            *place.ok_or_else(|| {
+            let slot = page.flocks.get_mut(flock);
+            *slot.ok_or_else(|| {
                 FlockError::parameter("flock", flock, format!("less than {FLOCKS}"))
             })? = Some(live);
             Ok(values)
@@ -186,8 +186,8 @@ pub extern "C" fn change(flock: usize) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn close(flock: usize) {
     with(|page| {
-        if let Some(place) = page.flocks.get_mut(flock) {
-            *place = None;
+        if let Some(slot) = page.flocks.get_mut(flock) {
+            *slot = None;
         }
     });
 }
@@ -195,7 +195,7 @@ pub extern "C" fn close(flock: usize) {
 /// The derived quantity in this place of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,
 /// clockwise for a positive sign; NaN for a quantity that has more to it.
 #[unsafe(no_mangle)]
-pub extern "C" fn derived(place: usize, psi_o: f64, phi_o: f64, sign: f64) -> f64 {
+pub extern "C" fn derived(index: usize, psi_o: f64, phi_o: f64, sign: f64) -> f64 {
     let target = if sign < 0.0 {
         Target::CounterClockwise
     } else {
@@ -207,7 +207,7 @@ pub extern "C" fn derived(place: usize, psi_o: f64, phi_o: f64, sign: f64) -> f6
         ..OrderParameters::default()
     };
     match live::quantities()
-        .nth(place)
+        .nth(index)
         .map(|quantity| quantity.formula)
     {
         Some(Formula::Derived(formula)) => formula(&order, target),

@@ -200,11 +200,11 @@ impl Live {
         series.extend(
             quantities()
                 .enumerate()
-                .map(|(place, quantity)| match quantity.formula {
+                .map(|(index, quantity)| match quantity.formula {
                     Formula::Derived(formula) => {
                         order.map_or(f64::NAN, |order| formula(&order, target))
                     }
-                    _ => recorded.map_or(f64::NAN, |recorded| recorded[place]),
+                    _ => recorded.map_or(f64::NAN, |recorded| recorded[index]),
                 }),
         );
         let counted = statistics(flock.statistics());

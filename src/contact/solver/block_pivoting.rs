@@ -31,7 +31,7 @@ pub(super) struct BlockPivoting {
     /// The islands that no closed form solves.
     left: Vec<u32>,
     /// Where each boat is among the bodies of an island that is being built; [`NONE`] between two.
-    places: Vec<u32>,
+    indices: Vec<u32>,
 }
 
 impl BlockPivoting {
@@ -53,7 +53,7 @@ impl BlockPivoting {
         for island in &mut self.islands {
             island.is_built = false;
         }
-        self.places.resize(boats, NONE);
+        self.indices.resize(boats, NONE);
     }
 
     /// Computes the opening rates of gaps at the free velocities, for all solves of a substep.
@@ -138,13 +138,13 @@ impl BlockPivoting {
         velocities: &mut [Velocity],
         report: &mut SolveReport,
     ) {
-        let places = &mut self.places;
+        let indices = &mut self.indices;
         for &number in &self.left {
             let number = number as usize;
             let island = &mut self.islands[if self.keeps_factors { number } else { 0 }];
             island.is_built &= self.keeps_factors;
             let contacts = islands.contacts(number);
-            island.build(problem, contacts, active, impulses, places);
+            island.build(problem, contacts, active, impulses, indices);
             island.set_right(problem, &self.rights);
             island.factor.budget = self.budget;
             island.solve(self.regularization, report);

@@ -25,21 +25,21 @@ impl CourseReader {
     /// # Errors
     /// [`FlockError::Parameter`] if a block that the laws read is switched off.
     pub fn new(layout: &ObservationLayout) -> Result<Self> {
-        let place = |block: Block, name: &str| {
-            layout.place(block, name).ok_or_else(|| {
+        let index = |block: Block, name: &str| {
+            layout.index(block, name).ok_or_else(|| {
                 let accepted = "the steering laws read this block; switch it on";
                 FlockError::parameter("observation", format!("{}: off", block.name()), accepted)
             })
         };
         Ok(Self {
-            cos_orientation: place(Block::Own, "cos_orientation")?,
-            sin_orientation: place(Block::Own, "sin_orientation")?,
-            forward_velocity: place(Block::Own, "forward_velocity")?,
-            clockwise_spin: place(Block::Own, "clockwise_spin")?,
+            cos_orientation: index(Block::Own, "cos_orientation")?,
+            sin_orientation: index(Block::Own, "sin_orientation")?,
+            forward_velocity: index(Block::Own, "forward_velocity")?,
+            clockwise_spin: index(Block::Own, "clockwise_spin")?,
             target: if layout.is_mirrored {
                 None
             } else {
-                Some(place(Block::Target, "target")?)
+                Some(index(Block::Target, "target")?)
             },
         })
     }
@@ -47,7 +47,7 @@ impl CourseReader {
     /// The course about a heading that leans by an angle (rad) outward of the target's tangent, in the observation's
     /// own sense if it is mirrored.
     pub fn course(&self, observation: &[f32], outward: f64) -> Course {
-        let read = |place: usize| f64::from(observation[place]);
+        let read = |index: usize| f64::from(observation[index]);
         let target = self.target.map_or(1.0, read);
         // δ = φ − φ_target with φ_target = ±π/2.
         let sin = -target * read(self.cos_orientation);

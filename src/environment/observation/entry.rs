@@ -113,11 +113,11 @@ impl Entry {
     }
 
     /// Its declaration by name, as the entry at an index of a block.
-    pub fn named(&self, block: &'static str, place: usize) -> Value {
+    pub fn named(&self, block: &'static str, index: usize) -> Value {
         let [name, unit, low, high, mirrored, meaning] =
             named_fields!(self; name unit low high mirrored meaning);
         let scale = ("scale", self.scale.description().into());
-        let at = [("block", block.into()), ("place", place.into())];
+        let at = [("block", block.into()), ("place", index.into())];
         let each = [name, unit, scale, low, high, mirrored, meaning];
         at.into_iter().chain(each).collect()
     }

@@ -123,10 +123,10 @@ impl ObservationLayout {
     }
 
     /// Index of a block's entry, if the block is on; the first neighbor's for `Neighbors`.
-    pub fn place(&self, block: Block, name: &str) -> Option<usize> {
+    pub fn index(&self, block: Block, name: &str) -> Option<usize> {
         let mut entries = block.entries().iter();
-        let place = entries.position(|entry| entry.name == name)?;
-        self.offset(block).map(|offset| offset + place)
+        let index = entries.position(|entry| entry.name == name)?;
+        self.offset(block).map(|offset| offset + index)
     }
 
     /// Size of the observation of one leader.

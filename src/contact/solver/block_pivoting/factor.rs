@@ -251,9 +251,9 @@ impl Factor {
         for side in 0..2 {
             let mut link = nodes[k].before[side];
             while link != NONE {
-                let (place, other_side) = (link as usize / 2, link as usize % 2);
-                work[place] += row.coupling(side, &rows[place], other_side);
-                link = nodes[place].before[other_side];
+                let (index, other_side) = (link as usize / 2, link as usize % 2);
+                work[index] += row.coupling(side, &rows[index], other_side);
+                link = nodes[index].before[other_side];
             }
         }
     }

@@ -43,14 +43,14 @@ impl IslandSolver {
         contacts: &[u32],
         active: &[bool],
         impulses: &[f64],
-        places: &mut [u32],
+        indices: &mut [u32],
     ) {
         if self.is_built {
             return;
         }
         self.is_built = true;
         self.is_guess_old = true;
-        self.rows.build(problem, contacts, places);
+        self.rows.build(problem, contacts, indices);
         self.solution.clear();
         self.solution.resize(self.rows.rows.len() + 1, 0.0);
         for row in &mut self.rows.rows {

@@ -139,23 +139,28 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Lays out the rows of some contacts. `places` is scratch space, [`NONE`] for every boat.
-    pub(super) fn build(&mut self, problem: &ContactProblem, contacts: &[u32], places: &mut [u32]) {
+    /// Lays out the rows of some contacts. `indices` is scratch space, [`NONE`] for every boat.
+    pub(super) fn build(
+        &mut self,
+        problem: &ContactProblem,
+        contacts: &[u32],
+        indices: &mut [u32],
+    ) {
         self.bodies.clear();
         self.bodies.push(Body::new(NONE));
         self.rows.resize(contacts.len(), Row::default());
         for (number, &k) in contacts.iter().enumerate() {
             let contact = &problem.contacts[k as usize];
-            let first = self.body(contact.boat, places);
+            let first = self.body(contact.boat, indices);
             // A contact with a wall has its boat twice, the second time with zeros.
             let (sign, second) = match contact.second() {
                 Some(second) => (-1.0, second),
                 None => (0.0, contact.boat as usize),
             };
-            let place = self.body(second as u32, places);
+            let index = self.body(second as u32, indices);
             let row = &mut self.rows[number];
             row.contact = k;
-            row.bodies = [first, if sign == 0.0 { WALLS } else { place }];
+            row.bodies = [first, if sign == 0.0 { WALLS } else { index }];
             let (normal, inertia) = (contact.gap.normal, problem.inertia);
             let own = [normal.x, normal.y, contact.gap.arm_i];
             let other = [normal.x, normal.y, contact.gap.arm_j].map(|number| sign * number);
@@ -163,18 +168,18 @@ impl Rows {
                 + row.set_side(1, other, &inertia[second]);
         }
         for body in &self.bodies[1..] {
-            places[body.boat as usize] = NONE;
+            indices[body.boat as usize] = NONE;
         }
     }
 
     /// Index of a boat in the island, which is added if it is new.
-    fn body(&mut self, boat: u32, places: &mut [u32]) -> u32 {
-        let place = &mut places[boat as usize];
-        if *place == NONE {
-            *place = self.bodies.len() as u32;
+    fn body(&mut self, boat: u32, indices: &mut [u32]) -> u32 {
+        let index = &mut indices[boat as usize];
+        if *index == NONE {
+            *index = self.bodies.len() as u32;
             self.bodies.push(Body::new(boat));
         }
-        *place
+        *index
     }
 
     /// Guesses which rows are active: those that push after sweeps of projected Gauss–Seidel, from the impulses at

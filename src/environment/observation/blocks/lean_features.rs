@@ -68,12 +68,12 @@ fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
     for row in USUAL.lines().skip(1) {
         let mut cells = row.split(',');
         let name = cells.next();
-        let place = ENTRIES.iter().position(|entry| Some(entry.name) == name);
+        let index = ENTRIES.iter().position(|entry| Some(entry.name) == name);
         let mut numbers = cells.skip(2 * pool).map(str::parse);
-        if let (Some(place), Some(Ok(mean)), Some(Ok(deviation))) =
-            (place, numbers.next(), numbers.next())
+        if let (Some(index), Some(Ok(mean)), Some(Ok(deviation))) =
+            (index, numbers.next(), numbers.next())
         {
-            usual[place] = (mean, deviation);
+            usual[index] = (mean, deviation);
         }
     }
     usual
@@ -107,12 +107,12 @@ impl LeanFeatures {
     /// # Errors
     /// [`FlockError::Parameter`] for pools in which they are not.
     pub fn standardized(parameters: &FlockParameters, pool: Option<&str>) -> Result<Self> {
-        let place = Self::check_pool(pool)?;
+        let index = Self::check_pool(pool)?;
         let neighbors = NEIGHBOR.iter().cycle();
         let neighbors = neighbors.take(SEEN_NEIGHBORS * NEIGHBOR.len());
         let entries = OWN.iter().chain(&PHASE).chain(neighbors).chain(&ORDER);
         Ok(Self {
-            usual: usual(place),
+            usual: usual(index),
             scaling: Scaling::new(entries.copied(), parameters),
             neighbors: Neighbors::default(),
             order: Order::default(),
@@ -125,8 +125,8 @@ impl LeanFeatures {
     /// # Errors
     /// [`FlockError::Parameter`].
     pub(crate) fn check_pool(pool: Option<&str>) -> Result<usize> {
-        let place = POOLS.iter().position(|name| Some(*name) == pool);
-        place.ok_or_else(|| {
+        let index = POOLS.iter().position(|name| Some(*name) == pool);
+        index.ok_or_else(|| {
             let pools = POOLS.join(" and ");
             let accepted = format!("lean features are standardized only in the pools {pools}");
             FlockError::parameter("pool", pool.unwrap_or("without a name"), accepted)
@@ -178,8 +178,8 @@ impl WriteBlock for LeanFeatures {
 /// count with exp(-d²/2), leaders with exp(-d²/8), where d is their distance in 6 boat radii.
 fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
     let [radial, cos, sin, outward, clockwise, forward, spin] =
-        [0, 1, 2, 3, 4, 5, 6].map(|place| view[place]);
-    let [fw, bw, bw_duration] = [0, 2, 5].map(|place| view[OWN.len() + place]);
+        [0, 1, 2, 3, 4, 5, 6].map(|index| view[index]);
+    let [fw, bw, bw_duration] = [0, 2, 5].map(|index| view[OWN.len() + index]);
     let mut near = [0.0; 11];
     let mut leaders = [0.0; 3];
     for neighbor in view[NEIGHBORS..ORDERS].chunks_exact(NEIGHBOR.len()) {
