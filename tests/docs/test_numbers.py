@@ -170,14 +170,16 @@ def easy_branches() -> list[Number]:
 def gradients() -> list[Number]:
     """The squared gradient of the order at two policies."""
     page, file = "studies/policy_gradient/README.md", "studies/policy_gradient/results/gradient.csv"
+    lean, both = "lean features", "lean and flock features"
     lines = {
-        ("tuned law", "lean features"): ("tuned law | 29 lean features |", ".1f"),
-        ("learned", "lean features"): ("learned | 29 lean features |", ".0f"),
-        ("learned", "lean and flock features"): ("learned | with the whole flock's |", ".0f"),
+        ("wide", "tuned law", lean): ("| tuned law | 29 lean features |", ".1f"),
+        ("wide", "learned", lean): ("learned | 29 lean features |", ".0f"),
+        ("wide", "learned", both): ("learned | with the whole flock's |", ".0f"),
+        ("narrow", "tuned law", lean): ("in `narrow` | 29 lean features |", ".0f"),
     }
     found = []
-    for (policy, features), (words, form) in lines.items():
-        by_lean = {"policy": policy, "features": features, "metric": "lean"}
+    for (pool, policy, features), (words, form) in lines.items():
+        by_lean = {"pool": pool, "policy": policy, "features": features, "metric": "lean"}
         for column, shown in (("squared_gradient", "{} ± #"), ("spread", "# ± {}")):
             for row, before, digits in (
                 (by_lean, words, ".1f"),
