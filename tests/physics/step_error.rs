@@ -166,6 +166,28 @@ fn the_noise_is_the_same_function_of_time_whatever_the_step() {
 }
 
 #[test]
+fn without_noise_a_flock_whose_step_was_set_is_one_that_was_made_with_it() {
+    // Hulls that overlap part within a whole substep, so that its length shows.
+    let states = [
+        ([0.0, 0.0, 0.0], [0.0; 3]),
+        ([14.996, 0.0, 0.0], [0.0; 3]),
+        ([7.0, 9.997, 0.0], [0.0; 3]),
+    ];
+    for scheme in SCHEMES {
+        let made = changed(driven(scheme), |p| p.dt_s = 0.01);
+        let other = changed(driven(scheme), |p| p.dt_s = 0.1);
+        let mut made = flock_of(&made, &states);
+        let mut set = flock_of(&other, &states);
+        set.set_step(0.01).unwrap();
+        for _ in 0..20 {
+            made.advance(0.0063, None).unwrap();
+            set.advance(0.0063, None).unwrap();
+            assert_eq!(bits(&set), bits(&made), "{scheme:?}");
+        }
+    }
+}
+
+#[test]
 fn stating_an_error_changes_no_bit_of_the_motion() {
     for scheme in SCHEMES {
         let p = busy(scheme, Noise::White);
