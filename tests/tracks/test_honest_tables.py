@@ -858,7 +858,7 @@ def _rest(honest: Honest) -> dict[str, Any]:
 
 
 def test_unknown_columns_are_listed(tmp_path):
-    names = ["Bild", "Boot", "Rechts [px]", "Hoch [px]", "Winkel [deg]"]
+    names = ["Ruta", "Farkost", "Bort [px]", "Upp [px]", "Vinkel [deg]"]
     text = rows()[["frame", "id", "x", "y", "angle"]].to_csv(
         index=False, sep=";", decimal=",", header=names
     )
@@ -869,3 +869,15 @@ def test_unknown_columns_are_listed(tmp_path):
         "frame", "x", "y", "id", "pool",
     ]  # fmt: skip
     assert io.StringIO(text).readline().strip() == ";".join(names)
+
+
+def test_columns_of_a_german_export_are_guessed(tmp_path):
+    names = {"frame": "Zeit [s]", "id": "Boot", "x": "x", "y": "y", "heading": "Winkel [°]"}
+    table = rows()[["frame", "id", "x", "y", "angle"]].assign(frame=lambda t: t["frame"] / HZ)
+    table.to_csv(
+        tmp_path / "kamera.csv", index=False, sep=";", decimal=",", header=[*names.values()]
+    )
+    checks = guess_layout(tmp_path / "kamera.csv")
+    guessed = read_layout(tmp_path / "kamera.toml")
+    assert {name: getattr(guessed, name) for name in names} == names
+    assert not any("fill in" in line for line in checks)
