@@ -6,6 +6,7 @@ since.
 
 import csv
 import hashlib
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,10 +46,14 @@ _STYLE = {
 
 
 def smallest_letters(figure: Figure, dpi: float) -> str:
-    """Return the size of the smallest letters of a figure at these dots per inch, in pixels."""
+    """Return the size of the smallest letters of a figure at these dots per inch, in pixels.
+
+    Infinite without letters.
+    """
     figure.draw_without_rendering()  # Ticks have no text before.
     texts = figure.findobj(lambda each: isinstance(each, Text) and bool(each.get_text().strip()))
-    return f"{min(each.get_fontsize() for each in texts) * dpi / 72:.1f}"
+    sizes = (each.get_fontsize() for each in texts)
+    return f"{min(sizes, default=math.inf) * dpi / 72:.1f}"
 
 
 class TableError(Exception):
