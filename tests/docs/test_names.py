@@ -55,7 +55,7 @@ def _pages() -> dict[str, str]:
 
 
 def _files(folder: str, pattern: str) -> list[Path]:
-    skipped = {"target", "_build", "node_modules", ".venv", "__pycache__"}
+    skipped = {"target", "_build", "node_modules", ".venv", "__pycache__", ".pytest_cache"}
     names = {path: path.relative_to(REPOSITORY) for path in (REPOSITORY / folder).rglob(pattern)}
     copied = (DOCS / "studies", DOCS / "examples")  # by the build of the pages
     return [
