@@ -1,9 +1,7 @@
 """A flock that a program advances, with its contacts, order parameters and statistics."""
 
 import base64
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -11,184 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import as_bool, as_bytes, materialized
-from flockenv.errors import HintsAtNames, ParameterError
+from flockenv.errors import HintsAtNames
+from flockenv.flock.contacts import Contacts
+from flockenv.flock.statistics import Statistics
 from flockenv.order import OrderParameters
 from flockenv.parameters import FlockParameters
 
 _NOTEBOOK_PIXELS = 400
-
-
-class _Columns:
-    """Arrays that are equal if all of them are."""
-
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        columns = (each.name for each in fields(self))  # type: ignore[arg-type]
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in columns)
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-@dataclass(frozen=True, eq=False)
-class Contacts(_Columns):
-    """Contacts and near-contacts of a flock's last substep, c of them.
-
-    Snapshots do not hold them: a flock that was restored or unpickled has none until its next
-    substep, and continues from the same warm-start cache.
-
-    Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
-
-    Attributes
-    ----------
-    i : int64 array, shape (c,)
-        The boat that the normal pushes.
-    j : int64 array, shape (c,)
-        The other boat, or -1 for the outer wall, -2 for the inner wall, and from -3 downwards the
-        obstacles: the discs in their order, then the walls.
-    gap_cm : float64 array, shape (c,)
-        Distance between the hulls now in cm, negative for overlap.
-    normal : float64 array, shape (c, 2)
-        Unit vector along which boat i is pushed, world axes.
-    force : float64 array, shape (c,)
-        Mean force on boat i along the normal over the last substep in cm/s² (mass 1), at least 0;
-        boat j feels its opposite.
-    point_cm : float64 array, shape (c, 2)
-        Where boat i is pushed: a point of its hull, world axes.
-    along_cm : float64 array, shape (c,)
-        The same along its core, from its center to the bow.
-    """
-
-    i: NDArray[np.int64]
-    j: NDArray[np.int64]
-    gap_cm: NDArray[np.float64]
-    normal: NDArray[np.float64]
-    force: NDArray[np.float64]
-    point_cm: NDArray[np.float64]
-    along_cm: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.i)
-
-
-@dataclass(frozen=True, eq=False)
-class ContactSeries(_Columns):
-    """Contacts that carried a force, sample after sample: c of them in t samples.
-
-    Attributes
-    ----------
-    count : int64 array, shape (t,)
-        How many each sample has; they follow one another in the other arrays.
-    i, j : int32 array, shape (c,)
-        The boats, as in `Contacts`.
-    normal, force, point_cm, along_cm : float32 array, shapes (c, 2), (c,), (c, 2), (c,)
-        As in `Contacts`; the force, above 0, is the mean over the substep before the sample.
-    """
-
-    count: NDArray[np.int64]
-    i: NDArray[np.int32]
-    j: NDArray[np.int32]
-    normal: NDArray[np.float32]
-    force: NDArray[np.float32]
-    point_cm: NDArray[np.float32]
-    along_cm: NDArray[np.float32]
-
-    @classmethod
-    def from_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the series with these of its columns, by name; others are left out."""
-        return cls(*(columns[each.name] for each in fields(cls)))
-
-    def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":
-        """Return the contacts of some of the samples, shape (t,)."""
-        chosen = np.repeat(samples, self.count)
-        each = (getattr(self, field.name)[chosen] for field in fields(self)[1:])
-        return ContactSeries(self.count[samples], *each)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Statistics:
-    """Running sums and worst cases since the flock was made or reset; snapshots carry them.
-
-    Attributes
-    ----------
-    substeps : int
-        Substeps taken.
-    solves : int
-        Contact problems solved; substeps without a contact have none.
-    contacts : int
-        Contacts and near-contacts, summed over substeps.
-    islands : int
-        Islands (boats joined by contacts), summed over solves.
-    solver_iterations : int
-        Solver iterations, summed over solves and islands.
-    factored_rows : int
-        Rows of Cholesky factors computed.
-    most_factor_entries : int
-        Most numbers that the Cholesky factors of one solve held.
-    unsolved : int
-        Substeps that left overlaps deeper than the tolerance.
-    halved_substeps : int
-        Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have
-        driven boats, or a boat moved too far.
-    depenetration_passes : int
-        Passes that moved deeply overlapping hulls apart.
-    neighbor_builds : int
-        Substeps that had to rebuild the neighbor list.
-    worst_residual_cm_s : float
-        Largest natural residual of a solve in cm/s.
-    worst_overlap_cm : float
-        Deepest overlap at the start of a substep in cm, positive.
-    displaced_angular_momentum_cm2_s : float
-        Sum of the absolute changes of the angular momentum about the pool's center, in cm²/s for
-        boats of mass 1, when deeply overlapping hulls were moved apart.
-    worst_error_cm : float
-        Largest error that `Flock.advance_with_error` stated, in cm; 0 if it was not called.
-    """
-
-    substeps: int
-    solves: int
-    contacts: int
-    islands: int
-    solver_iterations: int
-    factored_rows: int
-    most_factor_entries: int
-    unsolved: int
-    halved_substeps: int
-    depenetration_passes: int
-    neighbor_builds: int
-    worst_residual_cm_s: float
-    worst_overlap_cm: float
-    displaced_angular_momentum_cm2_s: float
-    worst_error_cm: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class StepStatistics:
-    """Whether a run kept its tolerance; as in `Statistics`.
-
-    Attributes
-    ----------
-    worst_overlap_cm : float
-        Deepest overlap at the start of a substep in cm, positive.
-    unsolved : int
-        Substeps that left overlaps deeper than the tolerance.
-    halved_substeps : int
-        Halvings of substeps.
-    """
-
-    worst_overlap_cm: float
-    unsolved: int
-    halved_substeps: int
-
-    def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if not (math.isfinite(value) and value >= 0):
-                raise ParameterError(f"{each.name} = {value} is not accepted: at least 0")
-
-
-STEP_STATISTICS = tuple(each.name for each in fields(StepStatistics))
-"""Names of the `StepStatistics`, as in tables and summaries of episodes."""
 
 
 class Flock(HintsAtNames):
