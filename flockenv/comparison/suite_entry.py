@@ -50,7 +50,7 @@ class Training:
 
 @dataclass(frozen=True)
 class SuiteEntry:
-    """What a file enters into suite v3; `from_file` checks it."""
+    """An entry of suite v3; `from_file` reads and checks it."""
 
     #: Of the algorithm and its settings.
     name: str
@@ -85,52 +85,27 @@ class SuiteEntry:
         """
         values = read_toml_file(path, os.fspath(path))
         try:
-            return cls._of(values, Path(path).parent, trust)
+            return cls._from_values(values, Path(path).parent, trust)
         except (FlockError, TypeError) as error:
             raise ParameterError(f"{os.fspath(path)}: {error}") from error
 
     @classmethod
-    def _of(cls, values: Mapping[str, Any], folder: Path, trust: bool) -> Self:
+    def _from_values(cls, values: Mapping[str, Any], folder: Path, trust: bool) -> Self:
         refuse_unknown(values, _KEYS, "key of an entry")
         for key in (key for key in _KEYS if key not in values and key != "searched_hours"):
             raise ParameterError(f"{key} is missing")
-        if values["suite"] != SUITE:
-            raise ParameterError(
-                f"suite = {short_repr(values['suite'])} is not accepted: {SUITE!r}"
-            )
-        if values["results_version"] != RESULTS_VERSION:
-            raise ParameterError(
-                f"results_version = {short_repr(values['results_version'])} is not accepted: this "
-                f"flockenv has version {RESULTS_VERSION}, in which flocks move otherwise; train "
-                "again"
-            )
-        seeds = values["training_seeds"]
-        if not isinstance(seeds, list) or len(seeds) != 2:
-            raise ParameterError(
-                f"training_seeds = {short_repr(seeds)} is not accepted: the first and the last "
-                "seed of the flocks that made the policies"
-            )
-        first, last = (as_int(seed, "training_seeds") for seed in seeds)
-        _check_seeds(first, last, "training_seeds")
-        levels = values["levels"]
-        if not isinstance(levels, Mapping) or not levels:
-            raise ParameterError(
-                f"levels = {short_repr(levels)} is no table of levels and policies"
-            )
-        refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
+        _check_versions(values)
+        _check_training_seeds(values["training_seeds"])
+        searched = values.get("searched_hours")
         return cls(
             name=_text(values["name"], "name"),
             kind=_text(values["class"], "class"),
             link=_text(values["link"], "link"),
             flock_hours=_hours(values["flock_hours"], "flock_hours"),
-            searched_hours=(
-                _hours(values["searched_hours"], "searched_hours")
-                if "searched_hours" in values
-                else math.nan
-            ),
+            searched_hours=math.nan if searched is None else _hours(searched, "searched_hours"),
             trainings={
                 name: _trainings(given, LEVELS[name], folder, trust)
-                for name, given in levels.items()
+                for name, given in _levels(values["levels"]).items()
             },
         )
 
@@ -247,6 +222,35 @@ _KEYS = (
     *("suite", "results_version", "name", "class", "link"),
     *("flock_hours", "searched_hours", "training_seeds", "levels"),
 )
+
+
+def _check_versions(values: Mapping[str, Any]) -> None:
+    """Refuse entries of another suite, and of flocks that move otherwise."""
+    if values["suite"] != SUITE:
+        raise ParameterError(f"suite = {short_repr(values['suite'])} is not accepted: {SUITE!r}")
+    if values["results_version"] != RESULTS_VERSION:
+        raise ParameterError(
+            f"results_version = {short_repr(values['results_version'])} is not accepted: this "
+            f"flockenv has version {RESULTS_VERSION}, in which flocks move otherwise; train again"
+        )
+
+
+def _check_training_seeds(seeds: object) -> None:
+    if not isinstance(seeds, list) or len(seeds) != 2:
+        raise ParameterError(
+            f"training_seeds = {short_repr(seeds)} is not accepted: the first and the last seed of "
+            "the flocks that made the policies"
+        )
+    first, last = (as_int(seed, "training_seeds") for seed in seeds)
+    _check_seeds(first, last, "training_seeds")
+
+
+def _levels(levels: object) -> Mapping[str, object]:
+    """Return what an entry names for each level of the suite."""
+    if not isinstance(levels, Mapping) or not levels:
+        raise ParameterError(f"levels = {short_repr(levels)} is no table of levels and policies")
+    refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
+    return levels
 
 
 def _text(value: object, name: str) -> str:
