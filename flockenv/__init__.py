@@ -6,7 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
-from flockenv import _avx2
+from flockenv import _avx2, _built
 from flockenv._core import __version__
 
 if TYPE_CHECKING:
@@ -83,7 +83,9 @@ def _prints_help_alone() -> bool:
     return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
 
 
-_avx2.choose()  # Before anything uses the core.
+# Before anything uses the core.
+_built.check()
+_avx2.choose()
 # Gymnasium, which has no entry points for packages, and PettingZoo take as long to import as NumPy.
 if not _prints_help_alone():
     importlib.import_module("flockenv.envs.registration").register()

@@ -129,14 +129,23 @@ class FlockParameters:
         return _core.preset_sources(name)
 
     @classmethod
-    def critical_bw_s(cls, preset: str, pool: str | tuple[float, float]) -> float:
+    def critical_bw_s(
+        cls, preset: str | None = None, pool: str | tuple[float, float] | None = None
+    ) -> float:
         """Critical noise of 27 boats: the bw_s at which leaderless flocks lose their order.
 
         There the mean Ψ_o of leaderless runs falls through the middle between its ordered and its
         disordered level. ``studies/critical_noise`` measured it for Table 3's presets in both
         named pools, and for ``"experiment"`` in ``"narrow"``. A ParameterError refuses other
-        presets and pools.
+        presets and pools, and a call without them: parameters of your own have no stored value.
         """
+        if not isinstance(preset, str) or pool is None:
+            raise ParameterError(
+                "critical_bw_s takes a preset and a pool, as in FlockParameters.critical_bw_s("
+                "'simulation', 'wide'), and knows 27 boats with the preset's constants; for a "
+                "flock of your own `flockenv sweep FILE.toml` measures it, with bw_s in the grid "
+                "(docs/runs.md has the file)"
+            )
         bw_s = _core.critical_bw_s(preset, pool)
         if bw_s is None:
             raise ParameterError(

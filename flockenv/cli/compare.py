@@ -360,9 +360,15 @@ def _parameters(options: CompareOptions) -> list[FlockParameters]:
     base = base.replace(n_boats=given.get("n_boats", _BOATS))
     found = []
     pools: Sequence[Pool] = [*map(pool_of, options.pool or ())] or [base.pool]
+    levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
+    preset = str(given.get("preset", "simulation"))
+    if not levels and base.n_boats != _BOATS and not options.quiet:
+        echo(
+            f"{base.n_boats} boats at the critical noise of {_BOATS}, since theirs is not stored: "
+            "--bw-s names another one, and `flockenv sweep` measures it",
+            errors,
+        )
     for pool in pools:
-        levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
-        preset = str(given.get("preset", "simulation"))
         for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:
             found.append(base.replace(pool=pool, bw_s=bw_s))
     return found

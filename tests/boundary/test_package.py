@@ -86,3 +86,33 @@ def test_sources_without_the_compiled_simulator_say_so(tmp_path):
     )
     assert failed.returncode == 1
     assert "start Python in another folder than the clone's" in failed.stderr
+
+
+@pytest.mark.parametrize("kind", ["function", "class", "method"])
+def test_a_core_of_older_sources_is_named_with_the_command_that_builds_another(tmp_path, kind):
+    stub = {
+        "function": "def later(x: float) -> float: ...\n",
+        "class": "class Later:\n    def later(self) -> None: ...\n",
+        "method": "    def later(self) -> None: ...\n",
+    }[kind]
+    shutil.copytree(REPOSITORY / "flockenv", tmp_path / "flockenv")
+    stubs = tmp_path / "flockenv" / "_core.pyi"
+    text = stubs.read_text(encoding="utf-8")
+    own = "class Parameters:\n"
+    new = text.replace(own, own + stub) if kind == "method" else f"{text}\n{stub}"
+    assert new != text
+    stubs.write_text(new, encoding="utf-8")
+
+    def imported() -> subprocess.CompletedProcess:
+        command = [sys.executable, "-c", "import flockenv"]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+
+    assert imported().returncode == 0  # No clone: nothing to build there.
+    (tmp_path / "Cargo.toml").touch()
+    failed = imported()
+    assert failed.returncode == 1
+    name = "Later" if kind == "class" else "later"
+    ending = f"it has no {name}. Run `make build` in {tmp_path}\n"
+    assert failed.stderr.endswith(ending)
+    stubs.write_text(text, encoding="utf-8")
+    assert imported().returncode == 0

@@ -84,6 +84,13 @@ def test_values_that_are_no_numbers_are_type_errors_by_name(parameters, name, va
         parameters.replace(**{name: value})
 
 
+@pytest.mark.parametrize("given", [(), ("simulation",), (FlockParameters(n_boats=18), "wide")])
+def test_the_critical_noise_of_own_parameters_names_the_command_that_measures_it(given):
+    with pytest.raises(ParameterError, match=r"`flockenv sweep FILE\.toml` measures it"):
+        FlockParameters(n_boats=18).critical_bw_s(*given)
+    assert FlockParameters.critical_bw_s("simulation", "wide") == 0.31
+
+
 def test_a_resized_hull_has_a_radius_of_gyration_of_its_size():
     base = flockenv.FlockParameters()
     twice = pytest.approx(2 * base.gyration_radius_cm, rel=1e-12)

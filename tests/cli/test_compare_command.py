@@ -50,6 +50,16 @@ def test_a_table_of_five_rows_a_pool_and_the_files(cli, tmp_path: Path, colors_i
     assert {each.name for each in tmp_path.iterdir()} == {*tables, *toml, "leader_curve.png"}
 
 
+def test_the_default_noise_says_of_how_many_boats_it_is(cli, tmp_path: Path) -> None:
+    words = ["compare", *BRIEF, *UP_TO_ONE, "--only", "--policy", "straight ahead"]
+    words += ["--out", str(tmp_path)]
+    eight = ["--set", "n_boats=8"]
+    said = "8 boats at the critical noise of 27, since theirs is not stored"
+    assert said in cli.succeeds(*words, *eight).stderr.replace("\n", " ")
+    for others in ([], [*eight, "--bw-s", "0.2"], [*eight, "--quiet"]):
+        assert "critical noise" not in cli.succeeds(*words, *others).stderr
+
+
 def test_ones_own_policy_comes_first_and_has_a_card(cli, tmp_path: Path) -> None:
     arguments = ["--n-leaders", "1,2", "--bw-s", "0.2", "--bw-s", "0.4", "--out", str(tmp_path)]
     words = ["compare", "--policy", learned(tmp_path), "--name", "mine", *SHORT, *arguments]

@@ -1,0 +1,34 @@
+"""Whether the compiled simulator is that of the sources beside it, where they are a clone."""
+
+import re
+from pathlib import Path
+
+from flockenv import _core
+
+_HERE = Path(__file__).parent
+_DECLARED = re.compile(r"^(?:class (\w+)|( {4})?def (\w+)|(\w+): )", re.MULTILINE)
+
+
+def check() -> None:
+    """Refuse, by an ImportError, a core that lacks a name which the stubs beside it declare.
+
+    A clone keeps the core that was compiled last when its sources change.
+    """
+    if not (_HERE.parent / "Cargo.toml").exists():
+        return
+    if missing := _missing((_HERE / "_core.pyi").read_text(encoding="utf-8")):
+        raise ImportError(
+            f"{_core.__file__} was compiled from older sources than those beside it: it has no "
+            f"{missing}. Run `make build` in {_HERE.parent}"
+        )
+
+
+def _missing(stubs: str) -> str | None:
+    """Return the first name of the stubs that the core lacks."""
+    owner: object = _core
+    for of_class, is_method, function, constant in _DECLARED.findall(stubs):
+        owner = getattr(_core, of_class, None) if of_class else owner if is_method else _core
+        name: str = of_class or function or constant
+        if not name.startswith("_") and not hasattr(_core if of_class else owner, name):
+            return name
+    return None
