@@ -38,6 +38,15 @@ seed the flocks follow."""
 
 SCORES = STUDIES / "suite" / "results" / "v2.csv"
 PAGE = Template(Path(__file__).with_name("id_page.template").read_text(encoding="utf-8"))
+WORDS = {
+    name: Template(words)
+    for name, words in re.findall(
+        r"^# (\w+)\n\n(.+)$",
+        Path(__file__).with_name("reached.template").read_text(encoding="utf-8"),
+        re.MULTILINE,
+    )
+}
+"""What stands below the plot of what policies reach, by the data."""
 MEANS = STUDIES / "leaders" / "results" / "means.csv"
 
 
@@ -273,13 +282,7 @@ def _suite(task: str) -> tuple[Plot, str]:
         for row in found
     }
     own = float(found[0]["signed_order"]) - float(found[0]["score"])
-    words = (
-        "The number beside a policy is its mean signed order. The dot is its difference from the "
-        "tuned law in the same 256 episodes, with a 95 % interval "
-        "([v2.csv](../../studies/suite/results/v2.csv)). "
-        f"[The suite](../suite.md) scores this environment as its task `{task}`, and has "
-        "trained policies too."
-    )
+    words = WORDS["suite"].substitute(task=task)
     label = f"signed order minus the tuned law's {own:.2f}"
     return _plot([SCORES], intervals, label, 0.0), words
 
@@ -287,12 +290,7 @@ def _suite(task: str) -> tuple[Plot, str]:
 def _level(level: str) -> tuple[Plot, str]:
     file = STUDIES / "levels" / "results" / "laws.csv"
     found = rows(file, level=level)
-    words = (
-        f"Mean signed order of laws with 95 % intervals, in the {found[0]['flocks']} flocks of "
-        f"suite v3 ([laws.csv](../../studies/levels/results/laws.csv)). [The suite](../levels.md) "
-        f"scores what learns from nothing here, as its level `{level}`: 0 for `straight ahead`, 1 "
-        "for the damped law."
-    )
+    words = WORDS["level"].substitute(level=level, flocks=found[0]["flocks"])
     return _plot([file], {row["policy"]: _interval(row, "signed_order") for row in found}), words
 
 
@@ -305,13 +303,7 @@ def _leaders() -> tuple[Plot, str]:
         for row in rows(MEANS, **AT_THREE)
     }
     intervals = dict(sorted(found.items(), key=lambda named: named[1], reverse=True))
-    words = (
-        "Mean signed order with 95 % intervals, in 256 episodes with a little more noise than "
-        "here: bw = 0.31 s ([means.csv](../../studies/leaders/results/means.csv)). "
-        "[Leaders compared](../leaders.md) has other numbers of leaders and the pool `narrow`, and "
-        "[Train leaders](../train.md) has learning curves."
-    )
-    return _plot([MEANS], intervals), words
+    return _plot([MEANS], intervals), WORDS["leaders"].substitute()
 
 
 def _easy() -> tuple[Plot, str]:
@@ -326,13 +318,7 @@ def _easy() -> tuple[Plot, str]:
         for row in sorted(found, key=lambda row: not row["seed"])
         if row["samples"] in ("", str(trained))
     }
-    words = (
-        f"Mean signed order with 95 % intervals. PPO was trained for {trained / 1e6:.1f} million "
-        f"decisions of leaders, at most {most_s:.0f} s of processor time "
-        "([curve.csv](../../studies/easy/results/curve.csv), made by "
-        "`python baselines/learn_easy.py`). "
-        "[Train leaders](../train.md) has the learning curve."
-    )
+    words = WORDS["easy"].substitute(millions=f"{trained / 1e6:.1f}", most_s=f"{most_s:.0f}")
     return _plot([file], intervals), words
 
 
