@@ -92,6 +92,8 @@ myst_heading_anchors = 3
 
 # Pages with code cells run whole, at every build; a cell that fails, fails the build.
 nb_execution_mode = "force"
+# These need versions of their own: `make test-rllib` and `make test-benchmarl` run them.
+nb_execution_excludepatterns = ["examples/with_rllib.ipynb", "examples/with_benchmarl.ipynb"]
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_execution_show_tb = True

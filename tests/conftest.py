@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import hypothesis
@@ -69,6 +70,31 @@ def page_runs():
         return [(run["name"], run["seed"], run["samples"], run["boats"]) for run in runs]
 
     return read
+
+
+@pytest.fixture
+def run_notebook() -> Callable[..., dict[str, Any]]:
+    """Run a notebook of the examples, and return the names that it defines.
+
+    Names that are given have a smaller value than in the notebook.
+    """
+
+    def run(notebook: str, **smaller: str) -> dict[str, Any]:
+        path = Path(__file__).parents[1] / "examples" / notebook
+        names: dict[str, Any] = {}
+        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+            if cell["cell_type"] == "code":
+                assert cell["outputs"] == []
+                source = "".join(cell["source"])
+                for name, value in smaller.items():
+                    source = re.sub(
+                        rf"^{name} = [^#\n]*", f"{name} = {value}  ", source, flags=re.M
+                    )
+                exec(source, names)  # noqa: S102 - the notebook is ours
+        assert all(f"{names[name]!r}" == value for name, value in smaller.items())
+        return names
+
+    return run
 
 
 @pytest.fixture

@@ -157,3 +157,14 @@ def test_the_command_finds_the_tasks(tmp_path):
 def test_bad_configurations_are_named(config, error, message):
     with pytest.raises(error, match=message):
         LeadersTask.LEADERS.get_task(config)
+
+
+def test_the_notebook_trains_and_judges(run_notebook, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = run_notebook("with_benchmarl.ipynb", FLOCKS="16", ITERATIONS="1", JUDGED="4")
+    assert {name: each.shape for name, each in names["orders"].items()} == {
+        "no lean": (4,),
+        "learned": (4,),
+    }
+    assert (names["orders"]["learned"] != names["orders"]["no lean"]).any()
+    flockenv.policies.load(tmp_path / "policy.npz")

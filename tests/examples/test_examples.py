@@ -1,11 +1,8 @@
 """Every example that people copy runs as it stands, with a small budget."""
 
-import json
-import re
 import runpy
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 from PIL import Image
@@ -46,54 +43,39 @@ def test_an_example(name, monkeypatch, tmp_path, capsys):
     assert made or name == "own_reward.py"
 
 
-def _run(notebook: str, **smaller: str) -> dict[str, Any]:
-    """Return the names that a notebook defines if some of them have smaller values."""
-    cells = json.loads((EXAMPLES / notebook).read_text())["cells"]
-    names: dict[str, Any] = {}
-    for cell in cells:
-        if cell["cell_type"] == "code":
-            assert cell["outputs"] == []
-            source = "".join(cell["source"])
-            for name, value in smaller.items():
-                source = re.sub(rf"^{name} = [^#\n]*", f"{name} = {value}  ", source, flags=re.M)
-            exec(source, names)  # noqa: S102 - the notebook is ours
-    assert all(f"{names[name]!r}" == value for name, value in smaller.items())
-    return names
-
-
-def test_the_notebook_on_noise():
-    names = _run("order_against_noise.ipynb", MINUTES="0.5", SEEDS="range(0, 2)")
+def test_the_notebook_on_noise(run_notebook):
+    names = run_notebook("order_against_noise.ipynb", MINUTES="0.5", SEEDS="range(0, 2)")
     assert names["rotation"].shape == (len(names["NOISES_S"]), 2)
     assert (names["order"] <= 1.0).all()
 
 
-def test_the_notebook_on_training(tmp_path):
+def test_the_notebook_on_training(run_notebook, tmp_path):
     pytest.importorskip("stable_baselines3")
     pytest.importorskip("IPython")
-    names = _run("train_compare_film.ipynb", DECISIONS="1", FLOCKS="2")
+    names = run_notebook("train_compare_film.ipynb", DECISIONS="1", FLOCKS="2")
     assert names["model"].num_timesteps == 128 * 4 * 64
     assert [*names["means"].index] == ["mine", "damped law", "paper's law"]
     with Image.open(tmp_path / "film.gif") as film:
         assert (film.size, film.n_frames) == ((600, 300), len(names["times_s"]))
 
 
-def test_the_notebook_on_gymnasium():
-    names = _run("with_gymnasium.ipynb", FLOCKS="2")
+def test_the_notebook_on_gymnasium(run_notebook):
+    names = run_notebook("with_gymnasium.ipynb", FLOCKS="2")
     assert names["orders"].shape == (2,)
     assert names["orders"][0] == names["summary"]["signed_order"]
 
 
-def test_the_notebook_on_pettingzoo():
+def test_the_notebook_on_pettingzoo(run_notebook):
     """Rivals earn opposite signed orders; only the random one's rudder costs it something."""
-    rewards = _run("with_pettingzoo.ipynb")["rewards"]
+    rewards = run_notebook("with_pettingzoo.ipynb")["rewards"]
     left = rewards[:, 1] + rewards[:, 2]
     assert -0.05 - 1e-6 <= left.min() <= left.max() <= 1e-6
     assert left.mean() < -0.01
 
 
-def test_the_notebook_on_torchrl():
+def test_the_notebook_on_torchrl(run_notebook):
     pytest.importorskip("torchrl")
-    names = _run("with_torchrl.ipynb", FLOCKS="8", UPDATES="300")
+    names = run_notebook("with_torchrl.ipynb", FLOCKS="8", UPDATES="300")
     assert names["loss"].item() < 0.1 * names["shown"].var().item()
 
 
@@ -102,5 +84,7 @@ def test_every_example_is_run():
     elsewhere = {"train_leaders.py", "train_with_rllib.py"}
     assert found == {*SMALL, *elsewhere}
     notebooks = {path.name for path in EXAMPLES.glob("*.ipynb")}
-    interfaces = {f"with_{name}.ipynb" for name in ("gymnasium", "pettingzoo", "torchrl")}
+    # Those of RLlib and BenchMARL run beside their other tests, with the versions that they pin.
+    names = ("gymnasium", "pettingzoo", "torchrl", "rllib", "benchmarl")
+    interfaces = {f"with_{name}.ipynb" for name in names}
     assert notebooks == {"order_against_noise.ipynb", "train_compare_film.ipynb", *interfaces}

@@ -1,4 +1,4 @@
-"""Law: the example of RLlib trains leaders whom every command takes.
+"""Law: the example and the notebook of RLlib train leaders whom every command takes.
 
 It pins an older gymnasium: `make test-rllib`.
 """
@@ -28,3 +28,14 @@ def test_the_example_saves_a_policy(tmp_path, monkeypatch, capsys):
     runpy.run_path(str(EXAMPLE), run_name="__main__")
     assert "1 iterations" in capsys.readouterr().out
     flockenv.policies.load(tmp_path / "results/train_with_rllib/policy.npz")
+
+
+def test_the_notebook_trains_and_judges(run_notebook, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = run_notebook("with_rllib.ipynb", FLOCKS="16", ITERATIONS="1", JUDGED="4")
+    assert {name: each.shape for name, each in names["orders"].items()} == {
+        "no lean": (4,),
+        "learned": (4,),
+    }
+    assert (names["orders"]["learned"] != names["orders"]["no lean"]).any()
+    flockenv.policies.load(tmp_path / "policy.npz")
