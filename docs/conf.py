@@ -17,6 +17,7 @@ import flockenv
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parent / "extensions")]
 
 from docs.scripts import environment_pages  # noqa: E402
+from docs.scripts.plots import LETTERS, is_scrolled  # noqa: E402
 from flockenv.replay import write_replay  # noqa: E402
 from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 
@@ -152,7 +153,8 @@ def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
     )
     if docname.startswith("studies/"):
         link, here = "../../docs/", "../../"
-    source[0] = source[0].replace(f"]({link}", f"]({here}")
+    # Scripts are not copied.
+    source[0] = re.sub(rf"\]\({re.escape(link)}(?!\S*\.py\))", f"]({here}", source[0])
     source[0] = re.sub(r"\]\((?:\.\./)+(examples/\w+\.ipynb)\)", r"](/\1)", source[0])
 
 
@@ -172,13 +174,13 @@ def _shorten(
 
 
 def _mark_wide_pictures(app: Sphinx, doctree: nodes.document, docname: str) -> None:
-    # A phone scrolls these, whose letters it could not show otherwise.
     for node in doctree.findall(nodes.image):
         file = Path(app.srcdir, node["uri"])
         if file.suffix == ".png" and file.is_file():
             with Image.open(file) as picture:
-                if picture.width > (800 if file.parent.name == "pictures" else 1200):
-                    node["classes"].append("wide")
+                is_ours = LETTERS in picture.info  # and not the output of a cell
+            if is_ours and is_scrolled(file):
+                node["classes"].append("wide")
 
 
 def _plain_name(

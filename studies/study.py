@@ -29,13 +29,13 @@ from typing import Any, TextIO
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from cycler import cycler
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 from rich.progress import track
 
 import flockenv
-from docs.scripts.plots import LETTERS, smallest_letters
+from docs.scripts.plots import page_style, write_png
 from flockenv.rendering.palette import OKABE_ITO
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.runs.store import RESULTS_VERSION
@@ -419,16 +419,16 @@ def histograms(column: pd.Series) -> NDArray[np.float64]:
 
 COLORS = (*OKABE_ITO.values(),)
 
-_STYLE: dict[str, Any] = {
-    "font.size": 9,
-    "axes.titlesize": 9,
-    "legend.frameon": False,
-    "legend.fontsize": 8.5,
-    "axes.linewidth": 0.6,
-    "lines.linewidth": 1.1,
-    "lines.markersize": 3,
-    "axes.prop_cycle": cycler(color=COLORS),
+PAPERS_LINE: dict[str, Any] = {
+    "color": "0.1",
+    "linestyle": "--",
+    "path_effects": [withStroke(linewidth=3.0, foreground="w")],
 }
+"""How a picture marks what the paper says, visible on every ground."""
+
+DENSITIES = "YlGnBu"
+"""The map of densities: nothing is the color of the ground, so that `docs.scripts.dark` and the
+site's style sheet, which turn lightness around, make a map of it that begins at dark ground."""
 
 
 @contextmanager
@@ -436,12 +436,10 @@ def picture(
     options: Options, name: str, width_cm: float = 17.0, height_cm: float = 7.0
 ) -> Iterator[Figure]:
     """Yield an empty figure, and write it to ``pictures/<name>.png``."""
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(page_style(9.0)):
         figure = Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained")
         yield figure
-        file = io.BytesIO()
-        stamp = {"Software": None, LETTERS: smallest_letters(figure, 130)}
-        figure.savefig(file, format="png", dpi=130, metadata=stamp)
+        write_png(figure, file := io.BytesIO(), 130)
     write(path := options.folder / "pictures" / f"{name}.png", file.getvalue())
     print(f"Drawn: {path}")
 
@@ -463,8 +461,9 @@ def density_map(
     step = np.diff(centers).min() / 2
     sides = np.array([*(centers - step), centers[-1] + step])
     density = (len(edges) - 1) * np.array(shares).T
+    axes.grid(visible=False)
     return axes.pcolormesh(
-        sides, edges, density, cmap="cividis", vmin=0.0, vmax=most, rasterized=True
+        sides, edges, density, cmap=DENSITIES, vmin=0.0, vmax=most, rasterized=True
     )
 
 

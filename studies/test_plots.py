@@ -4,12 +4,22 @@ import importlib
 import re
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 from PIL import Image
 
 from docs.scripts import dark
+from docs.scripts.plots import (
+    DESK_PX,
+    LEAST_LETTERS_PX,
+    PHONE_PX,
+    SCROLLED_PX,
+    is_scrolled,
+    letters_px,
+)
 from studies import make
+from studies.study import DENSITIES
 
 STUDIES = Path(__file__).parent
 PLOTS = {
@@ -76,6 +86,32 @@ def test_the_letters_of_the_readmes_pictures_have_nine_pixels():
     shown |= {name: int(width) for name, width in sized}
     assert len(shown) > len(sized) > 0
     for name, width in shown.items():
-        with Image.open(STUDIES.parent / name) as file:
-            letters = float(file.info["Letters"]) * min(width / file.width, 1.0)
-        assert letters >= 9.0, name
+        assert letters_px(STUDIES.parent / name, width) >= LEAST_LETTERS_PX, name
+
+
+LIGHT = [path for path in sorted(STUDIES.glob("*/pictures/*.png")) if path not in DARK.values()]
+
+
+@pytest.mark.parametrize("path", LIGHT, ids=lambda path: path.stem)
+def test_letters_have_nine_pixels_on_a_desk_and_on_a_phone(path):
+    assert letters_px(path, DESK_PX) >= LEAST_LETTERS_PX
+    assert not is_scrolled(path) or letters_px(path, SCROLLED_PX) >= LEAST_LETTERS_PX
+
+
+def test_a_phone_scrolls_no_picture_of_the_first_page():
+    home = (STUDIES.parent / "docs" / "index.md").read_text(encoding="utf-8")
+    shown = re.findall(r"\.\./studies/([\w/]+\.png)", home)
+    assert len(shown) == 2
+    for name in shown:
+        assert letters_px(STUDIES / name, PHONE_PX) >= LEAST_LETTERS_PX, name
+
+
+def test_densities_begin_at_the_ground_in_light_and_in_dark(tmp_path):
+    shades = mpl.colormaps[DENSITIES](np.linspace(0.0, 1.0, 32))[:, :3]
+    file = tmp_path / "shades.png"
+    Image.fromarray((255 * shades[None]).round().astype(np.uint8)).save(file)
+    light, dark_ = (255 * shades).mean(axis=1), dark.darkened(file)[0].mean(axis=1)
+    assert light[0] > 220
+    assert dark_[0] < 45
+    assert (np.diff(light) < 0).all()
+    assert (np.diff(dark_) > 0).all()

@@ -96,6 +96,15 @@ def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Seri
     return rows.iloc[0]
 
 
+def in_words(engine: str, setting: str) -> str:
+    """Return an engine and its setting as the plots name them."""
+    if engine != "flockenv":
+        return f"{engine}, {setting.replace(' / unit ', ', unit ')}"
+    scheme, _, gaps = setting.split(" / ")
+    name = "paper's scheme" if scheme == "paper" else scheme
+    return f"{name}, gaps {'solved once' if gaps == 'linear' else f'to {gaps}'}"
+
+
 def ours(scheme: str, gaps: str) -> tuple[str, str]:
     """Our engine with the exact solver."""
     return "flockenv", f"{scheme} / block-pivoting / {gaps}"

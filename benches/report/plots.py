@@ -11,18 +11,19 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 import pandas as pd
-from measurements import BOX2D, RAPIER, Measurements, ours
+from measurements import BOX2D, RAPIER, Measurements, in_words, ours
 
+from docs.scripts.plots import page_style, write_png
 from flockenv.rendering.palette import OKABE_ITO
 
 # Name: engine and setting, color, marker, whether filled.
 SERIES = {
-    "flockenv leapfrog": (ours("leapfrog", "linear"), OKABE_ITO["blue"], "o", True),
-    "flockenv leapfrog, 1e-4 cm": (ours("leapfrog", "1e-4 cm"), "#7B5FB8", "o", False),
-    "flockenv leapfrog, 1e-6 cm": (ours("leapfrog", "1e-6 cm"), OKABE_ITO["sky blue"], "o", False),
-    "flockenv leapfrog, 1e-9 cm": (ours("leapfrog", "1e-9 cm"), OKABE_ITO["green"], "o", False),
-    "flockenv moreau": (ours("moreau", "linear"), OKABE_ITO["orange"], "s", True),
-    "flockenv paper": (ours("paper", "linear"), OKABE_ITO["purple"], "^", True),
+    "leapfrog, gaps solved once": (ours("leapfrog", "linear"), OKABE_ITO["blue"], "o", True),
+    "leapfrog, gaps to 1e-4 cm": (ours("leapfrog", "1e-4 cm"), "#7B5FB8", "o", False),
+    "leapfrog, gaps to 1e-6 cm": (ours("leapfrog", "1e-6 cm"), OKABE_ITO["sky blue"], "o", False),
+    "leapfrog, gaps to 1e-9 cm": (ours("leapfrog", "1e-9 cm"), OKABE_ITO["green"], "o", False),
+    "moreau, gaps solved once": (ours("moreau", "linear"), OKABE_ITO["orange"], "s", True),
+    "paper's scheme, gaps solved once": (ours("paper", "linear"), OKABE_ITO["purple"], "^", True),
     "rapier2d-f64": (RAPIER, OKABE_ITO["vermilion"], "D", True),
     "Box2D": (BOX2D, OKABE_ITO["black"], "v", True),
     "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),
@@ -32,8 +33,7 @@ SERIES = {
 
 def draw_all(m: Measurements, folder: Path) -> None:
     """Writes every figure into a folder."""
-    style = {"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "savefig.dpi": 150}
-    with mpl.rc_context(style):
+    with mpl.rc_context(page_style()):
         for name, draw in [
             ("pareto", _pareto),
             ("tolerance", _tolerance),
@@ -43,7 +43,7 @@ def draw_all(m: Measurements, folder: Path) -> None:
             ("parts", _parts),
         ]:
             figure = draw(m)
-            figure.savefig(folder / f"{name}.png")
+            write_png(figure, folder / f"{name}.png", 150)
             plt.close(figure)
 
 
@@ -52,7 +52,7 @@ def _rows(table: pd.DataFrame, who: tuple[str, str]) -> pd.DataFrame:
     return chosen.sort_values("dt_s")
 
 
-def _style(color: str, marker: str, filled: bool) -> dict:
+def _line(color: str, marker: str, filled: bool) -> dict:
     face = color if filled else "white"
     line = {"color": color, "linewidth": 1}
     return {**line, "marker": marker, "markerfacecolor": face, "markersize": 7}
@@ -71,15 +71,15 @@ def _pareto(m: Measurements) -> plt.Figure:
         for name, (who, *style) in SERIES.items():
             rows = _rows(settings, who)
             cost = rows[f"{scene}_us_per_step"] / rows.dt_s / 1000
-            axis.plot(cost, rows[column], label=name, **_style(*style))
+            if len(rows):
+                axis.plot(cost, rows[column], label=name, **_line(*style))
         axis.set(xscale="log", yscale="log", ylabel=label)
         axis.set_xlabel(f"computing [ms] for 1 s of the {scene}")
     handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
     figure.suptitle(
         "Lower left is better. From right to left each line goes through\n"
-        "dt = 0.005, 0.01, 0.02 s and, for flockenv, 0.05 and 0.1 s",
-        fontsize=11,
+        "dt = 0.005, 0.01, 0.02 s and, for flockenv, 0.05 and 0.1 s"
     )
     return figure
 
@@ -104,11 +104,11 @@ def _tolerance(m: Measurements) -> plt.Figure:
         for color, (dt_s, rows) in zip(colors, ours.groupby("dt_s"), strict=True):
             rows = rows.sort_values("tolerance_cm")
             at = rows.tolerance_cm.replace(math.inf, once_cm)
-            axis.plot(at, rows[column], label=f"{dt_s:g} s", **_style(OKABE_ITO[color], "o", True))
+            axis.plot(at, rows[column], label=f"{dt_s:g} s", **_line(OKABE_ITO[color], "o", True))
         axis.set(xscale="log", yscale="log", ylabel=label, xlabel="tolerance_cm")
         axis.set_xticks([*finite, once_cm], [*(f"{cm:.0e}" for cm in finite), "once"])
         axis.minorticks_off()
-    axes[0].legend(frameon=False, title="dt", fontsize=8)
+    axes[0].legend(title="dt")
     return figure
 
 
@@ -121,21 +121,25 @@ def _order_of_schemes(m: Measurements) -> plt.Figure:
     }
     for scheme, style in names.items():
         rows = _rows(m.slide, ours(scheme, "1e-9 cm"))
-        axis.plot(rows.dt_s, rows.slide_median_cm, label=scheme, **_style(*style, True))
+        axis.plot(
+            rows.dt_s,
+            rows.slide_median_cm,
+            label={"paper": "paper's scheme"}.get(scheme, scheme),
+            **_line(*style, True),
+        )
     for name in ("rapier2d-f64", "Box2D", "pymunk (Chipmunk)", "MuJoCo"):
         who, *style = SERIES[name]
         rows = _rows(m.slide, who)
-        axis.plot(rows.dt_s, rows.slide_median_cm, label=name, **_style(*style))
+        axis.plot(rows.dt_s, rows.slide_median_cm, label=name, **_line(*style))
     axis.set(xscale="log", yscale="log", xlabel="dt in s")
     axis.set_ylabel("error of one boat after sliding for 2 s, in cm")
-    axis.legend(frameon=False)
+    axis.legend()
     return figure
 
 
 def _order_parameters(m: Measurements) -> plt.Figure:
     rows = m.order[(m.order.first_seed == 1)].iloc[1:].iloc[::-1]
-    names = [f"{r.engine}, {r.setting}, {r.dt_s:g} s" for r in rows.itertuples()]
-    names = [name.replace(" / block-pivoting", "").replace("flockenv, ", "") for name in names]
+    names = [f"{in_words(r.engine, r.setting)}, dt {r.dt_s:g} s" for r in rows.itertuples()]
     figure, axes = plt.subplots(1, 2, figsize=(8.6, 5.2), layout="constrained", sharey=True)
     for axis, value, width, label in [
         (axes[0], "psi_o_error", "psi_o_half_width", "error of Ψ_o"),
@@ -150,14 +154,14 @@ def _order_parameters(m: Measurements) -> plt.Figure:
 
 
 def _growth(m: Measurements) -> plt.Figure:
-    figure, axes = plt.subplots(1, 2, figsize=(8.6, 3.9), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 5.2), layout="constrained")
     jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == 0.01)]
     for name, (who, *style) in SERIES.items():
         rows = jam[(jam.engine == who[0]) & (jam.setting == who[1])].sort_values("n")
         if len(rows) > 1:
-            axes[0].plot(rows.n, rows.us_per_step, label=name, **_style(*style))
+            axes[0].plot(rows.n, rows.us_per_step, label=name, **_line(*style))
     axes[0].set(ylabel="µs per step, jam, dt = 0.01 s")
-    axes[0].legend(frameon=False, fontsize=7)
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.45, -0.16))
     of_factor = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
         (m.growth.bytes_per_boat, "held, with room to grow", OKABE_ITO["black"], "s"),
@@ -169,9 +173,9 @@ def _growth(m: Measurements) -> plt.Figure:
         ),
         (of_factor, "in use, of the factor", OKABE_ITO["vermilion"], "D"),
     ]:
-        axes[1].plot(m.growth.n, values, label=label, **_style(color, marker, True))
+        axes[1].plot(m.growth.n, values, label=label, **_line(color, marker, True))
     axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, 5e3))
-    axes[1].legend(frameon=False, fontsize=8)
+    axes[1].legend(loc="upper center", bbox_to_anchor=(0.45, -0.16))
     for axis in axes:
         axis.set(xscale="log", yscale="log", xlabel="boats")
     return figure
@@ -182,5 +186,5 @@ def _parts(m: Measurements) -> plt.Figure:
     figure, axis = plt.subplots(figsize=(7.6, 4.2), layout="constrained")
     spread = [rows.us_per_step - rows.us_q1, rows.us_q3 - rows.us_per_step]
     axis.barh(rows.scene, rows.us_per_step, xerr=spread, color=OKABE_ITO["sky blue"], capsize=3)
-    axis.set_xlabel("µs per step: 27 boats, leapfrog, dt = 0.01 s, cycle of [2 1 2 1] s")
+    axis.set_xlabel("µs per step of 0.01 s: 27 boats, leapfrog, phases of 2, 1, 2, 1 s")
     return figure

@@ -12,13 +12,13 @@ STEP_CONTROL = DOCS / "speed_vs_error/step_control.csv"
 LEARNERS = DOCS / "throughput/learners.csv"
 MANY_AGENTS = DOCS / "throughput/many_agents.csv"
 SHOWN = {
-    "leapfrog, linear": "leapfrog / exact / linear",
-    "leapfrog, 1e-6 cm": "leapfrog / exact / 1e-6 cm",
-    "leapfrog, 1e-9 cm": "leapfrog / exact / 1e-9 cm",
-    "moreau": "moreau / exact / linear",
-    "paper": "paper / exact / linear",
-    "rapier, unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
-    "rapier, unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
+    "leapfrog, gaps solved once": "leapfrog / exact / linear",
+    "leapfrog, gaps to 1e-6 cm": "leapfrog / exact / 1e-6 cm",
+    "leapfrog, gaps to 1e-9 cm": "leapfrog / exact / 1e-9 cm",
+    "moreau, gaps solved once": "moreau / exact / linear",
+    "paper's scheme, gaps solved once": "paper / exact / linear",
+    "rapier, its unit 10 cm": "rapier2d-f64 4 iterations / unit 10 cm",
+    "rapier, its unit 1 cm": "rapier2d-f64 4 iterations / unit 1 cm",
     "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
     "pymunk": "pymunk 10 iterations",
     "MuJoCo": "MuJoCo Newton",
@@ -43,7 +43,8 @@ def engines(figure: Figure) -> None:
         axes.set(xscale="log", xlabel=label)
     panels[0].set_yticks(range(len(SHOWN)), [*SHOWN])
     panels[0].invert_yaxis()
-    panels[0].legend(loc="upper right", fontsize=9)
+    handles, words = panels[0].get_legend_handles_labels()
+    figure.legend(handles, words, title="27 boats", loc="outside lower center", ncols=2)
 
 
 def _points(axes: Axes, values: list[float], name: str) -> None:

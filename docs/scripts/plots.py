@@ -1,7 +1,8 @@
 """Committed tables and their plots: means with 95 % intervals, a policy always in one color.
 
 A plot carries the SHA-256 of the files that it was drawn from. A test fails if these have changed
-since.
+since. Pictures of pages, studies and benchmarks have the letters and lines of `page_style`. They
+carry the size of their smallest letters, which a test compares with the widths of pages.
 """
 
 import csv
@@ -10,14 +11,17 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO, Any
 
 import matplotlib as mpl
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
 from flockenv.comparison.figure import policy_colors
+from flockenv.rendering.palette import OKABE_ITO
 
 REPOSITORY = Path(__file__).parents[2]
 DOCS, STUDIES = REPOSITORY / "docs", REPOSITORY / "studies"
@@ -33,16 +37,50 @@ DATA = "Data"
 LETTERS = "Letters"
 """The key of a picture's metadata that holds the size of its smallest letters in pixels."""
 
-# Legible where a phone shows the picture 390 pixels wide.
-_STYLE = {
-    "font.size": 11,
-    "axes.titlesize": 11,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.alpha": 0.25,
-    "legend.frameon": False,
-}
+LEAST_LETTERS_PX = 9.0
+"""Letters of a picture are at least so large where a page shows it."""
+DESK_PX, PHONE_PX, SCROLLED_PX = 640, 358, 544
+"""Widths of the site's pictures on a desk, on a phone of 390 pixels, and of those that a phone
+scrolls (`docs/static/phones.css`)."""
+
+
+_LABELED = ("axes", "figure", "xtick", "ytick")
+_TITLED = ("axes.titlesize", "figure.titlesize", "legend.fontsize", "legend.title_fontsize")
+
+
+def page_style(letters_pt: float = 11.0) -> dict[str, Any]:
+    """Return Matplotlib's settings for every picture of the pages, with letters of one size."""
+    return {
+        "font.size": letters_pt,
+        **dict.fromkeys((*(f"{each}.labelsize" for each in _LABELED), *_TITLED), letters_pt),
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.linewidth": 0.6,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "axes.prop_cycle": cycler(color=OKABE_ITO.values()),
+        "grid.alpha": 0.25,
+        "legend.frameon": False,
+        "lines.linewidth": 1.2,
+        "lines.markersize": 4,
+    }
+
+
+def write_png(figure: Figure, file: Path | IO[bytes], dpi: float, **stamp: str) -> None:
+    """Write a picture that carries the size of its smallest letters, and what it was drawn from."""
+    own = {"Software": None, LETTERS: smallest_letters(figure, dpi), **stamp}
+    figure.savefig(file, format="png", dpi=dpi, metadata=own)
+
+
+def letters_px(path: Path, shown_px: float) -> float:
+    """Return the size of a picture's smallest letters if it is shown no wider than this."""
+    with Image.open(path) as picture:
+        return float(picture.info[LETTERS]) * min(shown_px / picture.width, 1.0)
+
+
+def is_scrolled(path: Path) -> bool:
+    """Return whether a phone scrolls a picture, since it could not show its letters otherwise."""
+    return letters_px(path, PHONE_PX) < LEAST_LETTERS_PX
 
 
 def smallest_letters(figure: Figure, dpi: float) -> str:
@@ -118,13 +156,11 @@ class Plot:
 
     def save(self, path: Path) -> None:
         """Draw into a file."""
-        with mpl.rc_context(_STYLE):
+        with mpl.rc_context(page_style()):
             figure = Figure(figsize=self.size, layout="constrained")
             self.draw(figure)
-            letters = smallest_letters(figure, 150)
-            stamp = {"Software": None, DATA: self.digest(), LETTERS: letters}
             path.parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path, format="png", dpi=150, metadata=stamp)
+            write_png(figure, path, 150, **{DATA: self.digest()})
 
 
 def listed(

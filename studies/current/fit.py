@@ -261,7 +261,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             row[0].set_ylabel("mean Ψ_o")
         for axes in panels[1]:
             axes.set_xlabel("bw (s)")
-        figure.supxlabel("shaded: Ψ_o falls through 0.3; dashed: loss in figure 9", fontsize=8)
+        figure.supxlabel("shaded: Ψ_o falls through 0.3; dashed: loss in figure 9")
         panels[0, 0].legend()
 
 

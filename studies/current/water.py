@@ -74,7 +74,7 @@ def judge(table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw both speeds against noise, beside the range of the paper."""
-    with picture(options, "water", width_cm=10.0, height_cm=6.0) as figure:
+    with picture(options, "water", width_cm=12.0, height_cm=7.0) as figure:
         axes = figure.subplots()
         axes.axhspan(3.0, 5.0, color="0.9", label="paper, largest net current")
         for color, column, label in (
@@ -86,7 +86,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
                 found = [mean(each) for _, each in groups]
                 curve(axes, groups.groups, found, color=color, label=label)
         axes.set(xlabel="bw (s)", ylabel="speed of the water (cm/s)", ylim=(0.0, 5.5))
-        axes.legend()
+        figure.legend(loc="outside lower center", ncols=3)
 
 
 script = judging("water", STUDY, judge, draw)

@@ -27,7 +27,7 @@ def easy(figure: Figure) -> None:
 
 
 PLOTS = {
-    "curve": Plot([EASY], easy),
+    "curve": Plot([EASY], easy, (6.0, 3.8)),
 }
 
 

@@ -217,7 +217,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
             axes.set_ylim(low, high)
             axes.set(xlim=(-0.6, len(CHANGES) - 0.4), xticks=[])
-            axes.set_title(words, fontsize=6)
+            axes.set_title(words)
         for axes in panels.flat[len(shown) :]:
             axes.set(frame_on=False, yticks=[])
         for axes in panels[-1]:

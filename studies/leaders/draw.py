@@ -59,7 +59,7 @@ def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") ->
 
 
 PLOTS = {
-    "leader_count": Plot([COUNT], leader_count),
+    "leader_count": Plot([COUNT], leader_count, (6.0, 3.8)),
     "both_pools": Plot([MEANS], both_pools, (8.4, 4.2)),
     "learned_minus_tuned": Plot([CLOSE, DIFFERENCES], learned_minus_tuned, (6.8, 2.4)),
 }

@@ -33,7 +33,8 @@ def motion(figure: Figure) -> None:
         }
         grouped(axes, found)
         axes.set(title=pool, xlabel="share of the time, or cosine", xlim=(0, 1))
-    panels[0].legend(loc="lower left", fontsize=9)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
 def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:

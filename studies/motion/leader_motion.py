@@ -6,12 +6,14 @@ leaders over 64 episodes of 8 minutes, seeds 0 to 63, without the first tenth of
 
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 import flockenv
+from docs.scripts.plots import page_style, write_png
 from flockenv import FlockParameters
 from flockenv.comparison.figure import policy_colors
 from flockenv.statistics import mean_interval
@@ -58,17 +60,22 @@ def motion(run: flockenv.Recording, outer_cm: float) -> dict[str, float]:
 
 def draw() -> None:
     """Draw the tracks of leaders over the same two minutes of one seed in `wide`."""
-    figure = Figure((9.0, 3.4), layout="constrained")
+    with mpl.rc_context(page_style()):
+        figure = Figure((9.0, 3.4), layout="constrained")
+        _draw_tracks(figure)
+        write_png(figure, FOLDER / "pictures" / "tracks-wide.png", 110)
+
+
+def _draw_tracks(figure: Figure) -> None:
     for axes, policy in zip(figure.subplots(1, 3), POLICIES, strict=True):
         pose = leaders("wide", policy, 7).pose[-round(120 * SAMPLE_HZ) :, :LEADERS]
         for radius_cm in FlockParameters(pool="wide").pool_radii_cm:
             axes.add_patch(Circle((0, 0), radius_cm, fill=False, color="0.6"))
-        for leader, style in enumerate(("-", "--", ":")):
-            axes.plot(*pose[:, leader, :2].T, style, color=policy_colors([policy])[policy])
+        for leader, line in enumerate(("-", "--", ":")):
+            axes.plot(*pose[:, leader, :2].T, line, color=policy_colors([policy])[policy])
         axes.plot(pose[0, :, 0], pose[0, :, 1], "k.")
         axes.set(title=policy, aspect="equal", xlim=(-185, 185), ylim=(-185, 185))
         axes.axis("off")
-    figure.savefig(FOLDER / "pictures" / "tracks-wide.png", dpi=110)
 
 
 def main() -> None:

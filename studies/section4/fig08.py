@@ -99,7 +99,7 @@ def judge(table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw the share of runs that have not ordered yet, by noise."""
-    with picture(options, "fig08", height_cm=6.5) as figure:
+    with picture(options, "fig08", height_cm=7.2) as figure:
         panels = figure.subplots(1, 2, sharey=True)
         for axes, name in zip(panels, (CW, FREE), strict=True):
             runs = setup(table, name)
@@ -113,7 +113,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             paper = f"paper: sooner with noise, p = {_PAPERS_P[name]}"
             axes.set(title=f"{title}\n{paper}", xlabel="time (min)")
         panels[0].set(ylabel="share of runs not yet ordered", ylim=(-0.03, 1.03))
-        figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=6)
+        figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 
 script = judging("fig08", STUDY, judge, draw)

@@ -28,7 +28,15 @@ from studies.section4.section4 import (
     within,
     words,
 )
-from studies.study import PHI_EDGES, Options, density_map, histograms, main, picture
+from studies.study import (
+    PAPERS_LINE,
+    PHI_EDGES,
+    Options,
+    density_map,
+    histograms,
+    main,
+    picture,
+)
 
 TIMES_UNIFORM = (2.0, 3.0)
 NEAR = 0.65
@@ -182,12 +190,12 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             runs = setup(table, name)
             found = [histograms(runs.loc[runs["bw_s"] == b, "phi_histogram"]) for b in noises]
             image = density_map(axes, noises, PHI_EDGES, found, 6.0)
-            axes.axvline(LOST_S[name], color="w", linestyle="--")
+            axes.axvline(LOST_S[name], **PAPERS_LINE)
             axes.set(title=name, yticks=[-np.pi / 2, 0, np.pi / 2])
             axes.set_yticklabels(["−π/2", "0", "π/2"])
         panels[0].set_ylabel("φ_o")
         each = f"{len(runs) // len(noises)} runs each"
-        figure.supxlabel(f"bw (s), {each}; dashed: lost in the paper", fontsize="medium")
+        figure.supxlabel(f"bw (s), {each}; dashed: lost in the paper")
         figure.colorbar(image, ax=list(panels), label="density over uniform", extend="max")
 
 

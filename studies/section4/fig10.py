@@ -21,7 +21,7 @@ from studies.section4.section4 import (
     setup,
     words,
 )
-from studies.study import COLORS, MOSTLY, Options, curve, main, picture
+from studies.study import COLORS, MOSTLY, PAPERS_LINE, Options, curve, main, picture
 
 _BANDS = {"low": LOW_S, "medium": MEDIUM_S, "high": HIGH_S}
 
@@ -119,13 +119,13 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             axes.plot(runs["bw_s"], runs["psi_o"], ".", color="0.7", markersize=2)
             groups = runs.groupby("bw_s")["psi_o"]
             curve(axes, groups.groups, [mean(each) for _, each in groups], color=color)
-            axes.axvline(LOST_S[name], color="0.4", linestyle="--")
+            axes.axvline(LOST_S[name], **PAPERS_LINE)
             axes.fill_between((LOST_S[name], runs["bw_s"].max()), 0.0, 0.3, color="0.9", zorder=0)
             axes.set(title=name, ylim=(0, 1.03))
         panels[0].set_ylabel("mean Ψ_o")
         words = "dashed: lost in the paper; shaded: its disorder"
         each = f"{runs['seed'].nunique()} runs each"
-        figure.supxlabel(f"bw (s), {each}; {words}", fontsize="medium")
+        figure.supxlabel(f"bw (s), {each}; {words}")
 
 
 script = judging("fig10", STUDY, judge, draw)

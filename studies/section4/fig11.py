@@ -7,6 +7,7 @@ from studies.claim import Claims, Interval, bca, judging, mean
 from studies.section4.section4 import (
     CW,
     FREE,
+    LOST_S,
     READING,
     SETUPS,
     STUDY,
@@ -15,7 +16,7 @@ from studies.section4.section4 import (
     setup,
     words,
 )
-from studies.study import COLORS, Options, curve, main, picture
+from studies.study import COLORS, PAPERS_LINE, Options, curve, main, picture
 
 
 def share_of_best(runs: pd.DataFrame, least: float, most: float = 9.0) -> Interval:
@@ -54,13 +55,16 @@ def judge(table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw means with intervals."""
-    with picture(options, "fig11", width_cm=8.5, height_cm=6.0) as figure:
+    with picture(options, "fig11", width_cm=12.0, height_cm=8.0) as figure:
         axes = figure.subplots()
         for color, marker, name in zip(COLORS, "osD", SETUPS, strict=False):
             groups = setup(table, name).groupby("bw_s")["c_v"]
             found = [mean(each) for _, each in groups]
             curve(axes, groups.groups, found, color=color, marker=marker, label=name)
-        axes.set(xlabel="bw (s)", ylabel="mean C_v (cm²/s²)")
+        for lost_s in sorted(set(LOST_S.values())):
+            axes.axvline(lost_s, **PAPERS_LINE)
+        words = "dashed: order is lost in the paper,\nwithout leaders and with three"
+        axes.set(xlabel=f"bw (s)\n{words}", ylabel="mean C_v (cm²/s²)")
         axes.legend(title=f"{table['seed'].nunique()} runs each")
 
 

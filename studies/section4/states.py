@@ -1,6 +1,7 @@
 """Figures 5 and 6 and Table 2: the states of a flock, how long they last, how it changes them."""
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -11,10 +12,28 @@ import flockenv
 from flockenv.statistics.structure import structure_series
 from studies.claim import Claims, judging, mean
 from studies.section4.section4 import LOW_S, MEDIUM_S, READING, over, within, words
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
+from studies.study import (
+    COLORS,
+    PAPERS_LINE,
+    SEEDS,
+    Options,
+    Row,
+    Study,
+    curve,
+    main,
+    picture,
+    simulated,
+)
 
 LEVELS_S = (1.4, 1.9, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8)
 STATES = ("jamming", "clustering", "ordered", "disordered", "between")
+_TYPICAL = {
+    "jamming": "low noise",
+    "clustering": "middle",
+    "ordered": "low to middle",
+    "disordered": "high",
+}
+"""The typical noise level of each state in the paper's Table 2."""
 _STAYS = 3
 """Cycles in a row for which a series stays above a level that it has reached."""
 
@@ -199,20 +218,60 @@ def judge(table: pd.DataFrame) -> Claims:
     return claims
 
 
-def median_run(table: pd.DataFrame, bw_s: float) -> pd.Series:
-    """Return the row of the run whose mean Ψ_o is the median of its level."""
-    runs = table[np.isclose(table["bw_s"], bw_s)].sort_values("psi_o")
-    return runs.iloc[len(runs) // 2]
+@dataclass(frozen=True)
+class Series:
+    """A figure of one run over time, and what the paper's caption says of its own run.
+
+    Attributes
+    ----------
+    bw_s
+        Its noise.
+    at_min
+        Minutes that the caption names.
+    ways
+        Angles φ_o that it names, each with the minutes from which and until which they hold.
+    words
+        The same in words.
+    """
+
+    bw_s: float
+    at_min: tuple[float, ...]
+    ways: tuple[tuple[float, float, float], ...]
+    words: str
+
+
+_SERIES = {
+    "fig05": Series(
+        1.4,
+        (2.5, 5.0),
+        ((0.0, 1.5, 3.5), (-np.pi / 2, 5.0, 16.0)),
+        "paper: its jam peaks at 2.5 min, and from 5 min on it circles counter-clockwise",
+    ),
+    "fig06": Series(
+        1.9,
+        (8.5,),
+        ((np.pi / 2, 0.0, 8.5), (-np.pi / 2, 8.5, 16.0)),
+        "paper: around 8.5 min it turns from clockwise to counter-clockwise",
+    ),
+}
+
+
+def median_run(table: pd.DataFrame, bw_s: float) -> pd.DataFrame:
+    """Return the cycles of the run whose mean Ψ_o is the median of its level.
+
+    All runs of the level are made again, so that the picture is of this code's version.
+    """
+    rows = table[np.isclose(table["bw_s"], bw_s)].to_dict("records")
+    found = [cycles(simulated(row | {"n_leaders": 0}, sample_hz=5.0)) for row in rows]
+    return sorted(found, key=lambda run: run["psi_o"].mean())[len(found) // 2]
 
 
 def draw_series(options: Options, table: pd.DataFrame) -> None:
     """Draw figures 5 and 6: order parameters over time, of the median run of a level."""
-    for name, bw_s in {"fig05": 1.4, "fig06": 1.9}.items():
-        row = median_run(table, bw_s).to_dict()
-        row["n_leaders"] = int(row["n_leaders"])
-        found = cycles(simulated(row, sample_hz=5.0))
+    for name, series in _SERIES.items():
+        found = median_run(table, series.bw_s)
         minutes = found["time_s"] / 60
-        with picture(options, name, height_cm=5.0) as figure:
+        with picture(options, name, height_cm=6.2) as figure:
             left, middle, right = figure.subplots(1, 3, sharex=True)
             left.plot(minutes, found["psi_o"], color=COLORS[0])
             left.set(ylabel="Ψ_o", ylim=(0, 1))
@@ -223,23 +282,29 @@ def draw_series(options: Options, table: pd.DataFrame) -> None:
             right.set(ylabel="Ψ_v (cm/s)", ylim=(0, None))
             for axes in (left, middle, right):
                 axes.set_xlabel("time (min)")
-            runs = int(np.isclose(table["bw_s"], bw_s).sum())
-            middle.set_title(f"bw = {bw_s:g} s, 27 boats, no leaders: the median of {runs} runs")
+                for at_min in series.at_min:
+                    axes.axvline(at_min, **PAPERS_LINE)
+            for angle, *ends in series.ways:
+                middle.plot(ends, [angle, angle], **PAPERS_LINE)
+            runs = int(np.isclose(table["bw_s"], series.bw_s).sum())
+            about = f"bw = {series.bw_s:g} s, 27 boats, no leaders: the median of {runs} runs"
+            figure.suptitle(f"{about}\ndashed, {series.words}")
 
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw Table 2 as shares of states against noise, and figures 5 and 6."""
     draw_series(options, table)
-    with picture(options, "table2", width_cm=12.0, height_cm=6.5) as figure:
+    with picture(options, "table2", width_cm=12.0, height_cm=8.5) as figure:
         axes = figure.subplots()
         for place, (state, marker) in enumerate(zip(STATES, "^vosD", strict=True)):
             groups = table.groupby("bw_s")[state]
             x = np.array(list(groups.groups)) + 0.015 * (place - 2)
             found = [mean(each) for _, each in groups]
-            curve(axes, x, found, color=COLORS[place], marker=marker, label=state)
+            label = f"{state} (paper: {_TYPICAL[state]})" if state in _TYPICAL else state
+            curve(axes, x, found, color=COLORS[place], marker=marker, label=label)
         axes.set(xlabel="bw (s)", ylabel="share of cycles", ylim=(-0.03, 1.03))
         axes.set_title(f"27 boats, no leaders, {table['seed'].nunique()} runs of 16 min per level")
-        axes.legend(loc="center right")
+        figure.legend(loc="outside lower center", ncols=2)
 
 
 script = judging("states", STUDY, judge, draw)

@@ -4,7 +4,15 @@ import numpy as np
 
 from studies.claim import Claims, mean
 from studies.section5.section5 import LOST_S, LOW_S, SERIES, Evidence, judging_presets, panel_title
-from studies.study import PHI_EDGES, Options, density_map, histograms, main, picture
+from studies.study import (
+    PAPERS_LINE,
+    PHI_EDGES,
+    Options,
+    density_map,
+    histograms,
+    main,
+    picture,
+)
 
 
 def judge(e: Evidence) -> Claims:
@@ -69,11 +77,11 @@ def draw(options: Options, evidence: list[Evidence]) -> None:
                 found = [histograms(each) for _, each in groups]
                 image = density_map(axes, list(groups.groups), PHI_EDGES, found, 8.0)
                 for bw_s in LOST_S:
-                    axes.axvline(bw_s, color="w", linestyle="--")
+                    axes.axvline(bw_s, **PAPERS_LINE)
                 axes.set(title=panel_title(n, k, runs), yticks=[-np.pi / 2, 0, np.pi / 2])
                 axes.set_yticklabels(["−π/2", "0", "π/2"])
             label = "bw (s); the paper's flocks lose their order between the dashed lines"
-            figure.supxlabel(label, fontsize="medium")
+            figure.supxlabel(label)
             for axes in panels[:, 0]:
                 axes.set_ylabel("φ_o")
             figure.colorbar(image, ax=panels, label="density over uniform", extend="max")

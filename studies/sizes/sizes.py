@@ -161,7 +161,7 @@ def judge(found: dict[int, Interval], table: pd.DataFrame) -> Claims:
 
 def draw(options: Options, found: dict[int, Interval], table: pd.DataFrame) -> None:
     """Draw the critical noise, and m with one leader and with one in 27, against the size."""
-    with picture(options, "sizes", height_cm=6.0) as figure:
+    with picture(options, "sizes", height_cm=7.0) as figure:
         left, middle, right = figure.subplots(1, 3)
         names = ["paper's law" if policy == LAW else policy for policy in LED]
         colors = policy_colors(names)
@@ -177,7 +177,8 @@ def draw(options: Options, found: dict[int, Interval], table: pd.DataFrame) -> N
         for axes in (left, middle, right):
             axes.set(xscale="log", xlabel="number of boats", xticks=BOATS, xticklabels=BOATS)
             axes.minorticks_off()
-        middle.legend()
+        handles, labels = middle.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
 def script(options: Options) -> None:

@@ -40,7 +40,7 @@ def scores(figure: Figure) -> None:
     grouped(left, found, reference=0.0)
     grouped(right, improved, reference=0.5)
     left.set(xlabel="signed order beyond the tuned law")
-    left.legend(loc="lower left", fontsize=9)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     right.set(title="all tasks", xlabel=IMPROVED.replace(" of ", "\nof "))
 
 
@@ -69,7 +69,7 @@ def grid(figure: Figure) -> None:
     panels[0].set(xlabel="interquartile mean beyond the tuned law")
     panels[1].set(xlabel=IMPROVED)
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=9)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
 
 
 def _ends(row: Row) -> Interval:

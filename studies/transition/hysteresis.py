@@ -108,7 +108,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             column[1].set_xlabel("c4 (rad/s^1.5)")
         panels[0, 0].set_ylabel("|m|")
         panels[1, 0].set_ylabel("share in jams")
-        panels[0, 0].legend()
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=2)
 
 
 script = judging("hysteresis", STUDY, judge, draw)

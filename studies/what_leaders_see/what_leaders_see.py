@@ -144,7 +144,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.invert_yaxis()
         axes.set_xlabel("signed order lost (0.02 is a constant lean's allowance)")
         blocks = table.groupby("case").size().min()
-        axes.set_title(f"{blocks * FLOCKS} flocks per case, 3 learned leaders of 27, wide, 0.31 s")
+        flocks = f"{blocks * FLOCKS} flocks for each row"
+        axes.set_title(f"{flocks}\n3 learned leaders of 27 boats in wide, bw = 0.31 s")
 
 
 script = judging("what_leaders_see", STUDY, judge, draw)
