@@ -24,13 +24,3 @@ def test_a_training_is_made_once_and_entered(script, algorithm, tmp_path) -> Non
     provenance = entry.trainings["order-easy"][1].provenance
     assert provenance["seed"] == "1"
     assert f"--algorithms {algorithm}" in provenance["command"]
-
-
-def test_trainings_with_another_seed_differ_and_with_one_do_not(script) -> None:
-    def weights(seed):
-        policy, _, seeds = script.evolution("order-easy", 2.2, seed)
-        return policy.weights[0].tolist(), seeds
-
-    (first, met), (again, _), (other, others) = weights(3), weights(3), weights(4)
-    assert first == again != other
-    assert met[-1] < others[0]
