@@ -8,9 +8,34 @@ pytest.importorskip("sb3_contrib")
 
 def test_trainings_with_another_seed_differ_and_with_one_do_not(script) -> None:
     def weights(seed):
-        policy, _, seeds = script.evolution("order-easy", 2.2, seed)
+        policy, _, seeds = script.evolution(
+            "order-easy", 2.2, seed, script.Curve("order-easy", 2.2)
+        )
         return policy.weights[0].tolist(), seeds
 
     (first, met), (again, _), (other, others) = weights(3), weights(3), weights(4)
     assert first == again != other
     assert met[-1] < others[0]
+
+
+def test_a_curve_has_five_points_of_what_was_learned_by_then(script) -> None:
+    curve = script.Curve("order-easy", 10.0, flocks=4)
+    for hours in (1.0, 2.5, 3.0, 7.0, 7.5, 9.9, 10.0, 10.1):
+        curve.look(hours, lambda: "straight ahead")
+    curve.add(10.1, "damped law")
+    hours, orders = zip(*curve.points, strict=True)
+    assert hours == (2.5, 7.0, 7.5, 9.9, 10.1)
+    assert len({*orders[:4]}) == 1
+    assert orders[4] > orders[0] + 0.1
+
+
+def test_looking_at_a_training_changes_nothing(script) -> None:
+    def weights(flocks: int) -> list[float]:
+        curve = script.Curve("order-easy", 1.1, flocks)
+        if not flocks:
+            curve.look = lambda hours, learned: None
+        policy, done, _ = script.baselines3("a2c", "order-easy", 1.1, 0, curve)
+        assert len(curve.points) == (4 if flocks else 0)
+        return [done, *policy.weights[0].ravel()]
+
+    assert weights(4) == weights(0)

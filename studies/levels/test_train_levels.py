@@ -8,7 +8,7 @@ pytest.importorskip("torch")
 pytest.importorskip("sb3_contrib")
 
 
-@pytest.mark.parametrize("algorithm", ["trpo", "a2c", "evolution", "branches"])
+@pytest.mark.parametrize("algorithm", ["trpo", "a2c", "sac", "evolution", "branches"])
 def test_a_training_is_made_once_and_entered(script, algorithm, tmp_path) -> None:
     hours = 1.1  # A generation of the evolution strategy.
     given = ["--algorithms", algorithm, "--flock-hours", f"{hours}", "--entries", str(tmp_path)]
@@ -23,4 +23,6 @@ def test_a_training_is_made_once_and_entered(script, algorithm, tmp_path) -> Non
     assert hours / 2 < entry.flock_hours < 2 * hours
     provenance = entry.trainings["order-easy"][1].provenance
     assert provenance["seed"] == "1"
+    for name in script.CURVE:
+        assert len(provenance[name].split()) == 5
     assert f"--algorithms {algorithm}" in provenance["command"]

@@ -2,30 +2,47 @@
 
     python -m studies.levels.train_levels                       # order-easy, 30 flock-hours
     python -m studies.levels.train_levels --levels order-noisy --flock-hours 100
+    make env-benchmarl
+    .venv-benchmarl/bin/python -m studies.levels.train_levels --algorithms ippo mappo
 
-Design, fixed before the runs:
+Design, fixed before the runs, but for those named at its end:
 
 - Levels. Those of `flockenv.comparison.levels`: leaders choose rudders, and no law is in their
   action, start or reward, which is the signed order. All see the level's default observation, but
   paired branches, which see the 29 lean features.
 - Algorithms, each with one setting. PPO has that of docs/train.md. TRPO and A2C have its network,
   discount, flocks and first exploration; TRPO a divergence of 0.01 per step, A2C rollouts of 16
-  decisions, and both the other defaults of their libraries. Linear evolution is that of
-  baselines/evolution_strategy.py: 16 antithetic pairs of an episode, weights that start at 0, a
-  spread of 0.1 and steps of 0.03. Paired branches are `flockenv train --algorithm branches --set
-  action_mode=rudder`. The settings of PPO and of paired branches were chosen in order-easy before,
-  in flock-hours that nobody recorded; the others are first guesses.
-- Trainings. Seeds 0 to 9, seed by seed, each for all algorithms, with 30 flock-hours; then 100 and
-  300. If the time ends early, all that were trained count.
+  decisions, and both the other defaults of their libraries. SAC has the network, discount and
+  flocks, and the defaults otherwise: a step of gradients for each decision of the 64 flocks. IPPO
+  and MAPPO of BenchMARL have the network, discount, flocks, rollouts, batches, passes and first
+  learning rate of PPO, and BenchMARL's exploration; the critic of MAPPO sees features of the whole
+  flock. Linear evolution is that of baselines/evolution_strategy.py: 16 antithetic pairs of an
+  episode, weights that start at 0, a spread of 0.1 and steps of 0.03. Paired branches are
+  `flockenv train --algorithm branches --set action_mode=rudder`. The settings of PPO and of paired
+  branches were chosen in order-easy before, in flock-hours that nobody recorded; the others are
+  first guesses. Recurrent PPO has none: its policy is a file that executes code when it is read,
+  and `make check-entries` reads no such file.
+- Trainings. Seeds 0 to 9 in order-easy with 30 flock-hours, seed by seed, each for all algorithms.
+  Then order-noisy, order-narrow and order-wide with 30 flock-hours, seed by seed, each for all
+  levels and algorithms; then order-easy with 100. If the time ends early, the seeds that all
+  algorithms of a level have count.
+- Curve. After a fifth of its budget, two fifths and so on, what a training has learned leads the
+  first 128 of the level's flocks. The area under the curve is the mean of these five scores. It
+  does not choose the policy, which is always the last one. Its processor time does not count.
 - Judgment. 512 common flocks of the level, by the policy's mean action (`score_levels.py`). The
   score is (order - no steering) / (damped law - no steering).
 - Answer. Two algorithms differ if the 95 % interval of the difference of their mean scores, over
   seeds and flocks, leaves out 0. Beside it stand the probability that a training of the one is
   better than one of the other, and p by permutation of the trainings, as it is and by Holm.
 
-Recurrent PPO, SAC, TQC, IPPO and MAPPO have no setting here yet. A policy that is there is not made
-again, so that an interrupted command goes on. ENTRIES/ALGORITHM-HOURS has the policies, and the
-file beside it is the entry for `flockenv compare --suite v3`.
+Before SAC, IPPO, MAPPO and the curves were added, 14 trainings in order-easy had been judged:
+evolution, paired branches and A2C with seeds 0 to 2 and 30 flock-hours, TRPO and PPO with seed 0,
+and paired branches with seeds 0 to 2 and 100. They are trained again with the same seeds, for their
+curves. SAC, IPPO and MAPPO had trained 3 flock-hours with seed 100, to see what a training takes.
+
+A policy that is there is not made again, so that an interrupted command goes on.
+ENTRIES/ALGORITHM-HOURS has the policies, and the file beside it is the entry for
+`flockenv compare --suite v3`.
 """
 
 import argparse
@@ -41,10 +58,12 @@ from flockenv.comparison.levels import LEVELS, SUITE
 from flockenv.policies import load
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.store import RESULTS_VERSION
-from studies.levels.level_learners import LEARNERS
+from studies.levels.level_learners import LEARNERS, Curve
 from studies.study import StudyError, run, write
 
 ENTRIES = Path("studies/levels/entries")
+CURVE = ("curve_flock_hours", "curve_signed_order")
+"""Texts of a policy's provenance."""
 
 
 def made(folder: Path, level: str) -> dict[int, Path]:
@@ -59,8 +78,10 @@ def make(algorithm: str, level: str, hours: float, seed: int, folder: Path) -> N
         return
     start = time.process_time()
     torch.manual_seed(seed)
-    policy, done, seeds = LEARNERS[algorithm][2](level, hours, seed)
-    cpu_s = time.process_time() - start
+    curve = Curve(level, hours)
+    policy, done, seeds = LEARNERS[algorithm][2](level, hours, seed, curve)
+    curve.add(done, policy({}) if callable(policy) else policy)
+    cpu_s = time.process_time() - start - curve.cpu_s
     command = (
         f"python -m studies.levels.train_levels --levels {level} --algorithms {algorithm} "
         f"--flock-hours {hours:g} --seeds {seed}"
@@ -69,6 +90,8 @@ def make(algorithm: str, level: str, hours: float, seed: int, folder: Path) -> N
     origin = provenance_of(command, seed=seed, samples=samples, cpu_s=cpu_s, flock_hours=done)
     origin |= {"results_version": str(RESULTS_VERSION)}
     origin |= {"training_seeds": f"{seeds[0]}-{seeds[-1]}"}
+    for name, each, form in zip(CURVE, zip(*curve.points, strict=True), ("g", ".5f"), strict=True):
+        origin[name] = " ".join(f"{value:{form}}" for value in each)
     folder.mkdir(parents=True, exist_ok=True)
     if callable(policy):
         policy(origin).save(folder / f"{level}-{seed}.json")

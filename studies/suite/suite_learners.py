@@ -20,6 +20,7 @@ from baselines.evolution_strategy import next_generation
 from flockenv.policies import NetworkPolicy
 from flockenv.runs.seeds import POLICY_SEEDS
 from studies.flocks import lean
+from studies.suite.multi_agent import MultiAgent
 
 TASK: dict[str, Any] = {
     **lean("wide", 480.0),
@@ -140,36 +141,27 @@ def evolution(given: Training) -> NetworkPolicy:
 
 def benchmarl(given: Training) -> NetworkPolicy:
     """Learn by IPPO or MAPPO of BenchMARL."""
-    from benchmarl.algorithms import IppoConfig, MappoConfig
-    from benchmarl.experiment import Experiment, ExperimentConfig
-    from benchmarl.models import MlpConfig
-
-    from flockenv.benchmarl import LeadersTask, network_policy
+    from flockenv.benchmarl import network_policy
 
     observation, hidden = INPUTS[given.input]
-    config, rollout = ExperimentConfig.get_from_yaml(), given.flocks * 240
-    config.max_n_frames = -(-round(3600 * given.flock_hours) // rollout) * rollout
-    config.on_policy_collected_frames_per_batch = rollout
-    config.on_policy_n_envs_per_worker = given.flocks
-    config.on_policy_minibatch_size, config.on_policy_n_minibatch_iters = rollout // 8, 4
-    config.gamma, config.lr = 0.995, given.setting
-    config.evaluation, config.loggers, config.render = False, [], False
-    kind = {"ippo": IppoConfig, "mappo": MappoConfig}[given.algorithm]
-    algorithm, task = kind.get_from_yaml(), LeadersTask.LEADERS.get_from_yaml()
-    algorithm.lmbda, algorithm.entropy_coef = 0.9875, 0.0
-    task.config = {**TASK, "observation": observation, "state": "features"}
-    actor, critic = MlpConfig.get_from_yaml(), MlpConfig.get_from_yaml()
-    actor.num_cells, actor.activation_class = hidden, nn.Tanh
-    critic.num_cells, critic.activation_class = [64, 64], nn.Tanh
-    with tempfile.TemporaryDirectory() as config.save_folder:
-        experiment = Experiment(
-            algorithm_config=algorithm,
-            model_config=actor,
-            critic_model_config=critic,
-            task=task,
-            seed=given.seed,
-            config=config,
-        )
+    steps, hours = 240, given.flock_hours
+    rollout = given.flocks * steps
+    training = MultiAgent(
+        given.algorithm,
+        given.seed,
+        frames=-(-round(3600 * hours) // rollout) * rollout,
+        flocks=given.flocks,
+        steps=steps,
+        minibatch=rollout // 8,
+        epochs=4,
+        learning_rate=given.setting,
+        gamma=0.995,
+        lmbda=0.9875,
+        hidden=hidden,
+        critic=[64, 64],
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        experiment = training.experiment({**TASK, "observation": observation}, folder)
         experiment.run()
         return network_policy(experiment)
 
