@@ -6,9 +6,7 @@ Each function takes a level, its flock-hours, a seed and the `Curve` of the trai
 
 import argparse
 import tempfile
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any
 
 import gymnasium
@@ -20,15 +18,14 @@ import flockenv
 from baselines.evolution_strategy import first_state, next_generation
 from flockenv.comparison.levels import LEVEL_IDS, LEVELS
 from flockenv.policies import LeaningLaw, NetworkPolicy
-from flockenv.policies.base import Policy
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
 from flockenv.training.branches import BranchTraining
+from studies.levels.level_curves import Curve
 
 FLOCKS, GAMMA = 64, 0.99
 NETWORK = {"log_std_init": -0.5, "net_arch": [32, 32]}
 PAIRS, SIGMA, STEP = 16, 0.1, 0.03
-CURVE_POINTS = 5
 Trained = tuple[NetworkPolicy | Callable[[dict[str, str]], LeaningLaw], float, range]
 """A policy, or what makes it of its provenance; its flock-hours; the seeds that it may have met."""
 
@@ -36,34 +33,6 @@ Trained = tuple[NetworkPolicy | Callable[[dict[str, str]], LeaningLaw], float, r
 def options_of(level: str) -> dict[str, Any]:
     """Return the options of a level's environment."""
     return dict(gymnasium.spec(LEVEL_IDS[level]).kwargs)
-
-
-@dataclass
-class Curve:
-    """The mean order of what a training has learned, at a fifth of its budget, two fifths, ..."""
-
-    level: str
-    #: Flock-hours of the whole training.
-    budget: float
-    #: Of the level, the first ones.
-    flocks: int = 128
-    #: Flock-hours and mean signed order.
-    points: list[tuple[float, float]] = field(default_factory=list)
-    #: Processor seconds of looking, which are not the training's.
-    cpu_s: float = 0.0
-
-    def look(self, hours: float, learned: Callable[[], Policy]) -> None:
-        """Add what is learned after these flock-hours, if a point is due before the last."""
-        place = len(self.points) + 1
-        if place < CURVE_POINTS and hours >= place * self.budget / CURVE_POINTS:
-            self.add(hours, learned())
-
-    def add(self, hours: float, learned: Policy) -> None:
-        """Add a point."""
-        start = time.process_time()
-        order = float(LEVELS[self.level].orders(learned, self.flocks).mean())
-        self.points.append((hours, order))
-        self.cpu_s += time.process_time() - start
 
 
 def shared(layers: list[Any], venv: LeaderVecEnv, *, squashed: bool = False) -> NetworkPolicy:

@@ -4,8 +4,9 @@
     python -m studies.levels.score_levels --check    # fails if a committed row differs by a digit
 
 The folder results has entries.csv (the rows of `flockenv compare --suite v3`), orders.csv (the
-signed order of every flock) and pairs.csv. For each pair of entries with a level and a budget in
-common, pairs.csv has:
+signed order of every flock), curves.csv and areas.csv (what was learned during the trainings, as
+their files say) and pairs.csv. For each pair of entries with a level and a budget in common,
+pairs.csv has:
 
 - difference: of the mean scores, with its 95 % interval over trainings and flocks. Trainings are
   paired by their place, so that those that only one of both has do not count here.
@@ -30,6 +31,7 @@ from scipy import stats
 from flockenv.comparison.levels import LEVELS
 from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.statistics import bootstrap_interval, two_way_interval
+from studies.levels import level_curves
 from studies.study import StudyError, existing, run, write, write_table
 from studies.suite.compare_grid import holm
 
@@ -159,6 +161,9 @@ def main(arguments: list[str] | None = None) -> None:
         return
     write_table(options.out / "entries.csv", rows, FORM)
     write_table(options.out / "orders.csv", orders, FORM)
+    during = level_curves.points(given, orders)
+    write_table(options.out / "curves.csv", during, FORM)
+    write_table(options.out / "areas.csv", level_curves.areas(during), "%.4g")
     compared = pairs(rows, orders)
     write_table(options.out / "pairs.csv", compared, "%.4g")
     stored = pd.read_csv(existing(options.out / "entries.csv"))

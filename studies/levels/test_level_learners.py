@@ -18,17 +18,6 @@ def test_trainings_with_another_seed_differ_and_with_one_do_not(script) -> None:
     assert met[-1] < others[0]
 
 
-def test_a_curve_has_five_points_of_what_was_learned_by_then(script) -> None:
-    curve = script.Curve("order-easy", 10.0, flocks=4)
-    for hours in (1.0, 2.5, 3.0, 7.0, 7.5, 9.9, 10.0, 10.1):
-        curve.look(hours, lambda: "straight ahead")
-    curve.add(10.1, "damped law")
-    hours, orders = zip(*curve.points, strict=True)
-    assert hours == (2.5, 7.0, 7.5, 9.9, 10.1)
-    assert len({*orders[:4]}) == 1
-    assert orders[4] > orders[0] + 0.1
-
-
 def test_looking_at_a_training_changes_nothing(script) -> None:
     def weights(flocks: int) -> list[float]:
         curve = script.Curve("order-easy", 1.1, flocks)

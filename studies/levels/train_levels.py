@@ -58,12 +58,11 @@ from flockenv.comparison.levels import LEVELS, SUITE
 from flockenv.policies import load
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.store import RESULTS_VERSION
-from studies.levels.level_learners import LEARNERS, Curve
+from studies.levels.level_curves import Curve
+from studies.levels.level_learners import LEARNERS
 from studies.study import StudyError, run, write
 
 ENTRIES = Path("studies/levels/entries")
-CURVE = ("curve_flock_hours", "curve_signed_order")
-"""Texts of a policy's provenance."""
 
 
 def made(folder: Path, level: str) -> dict[int, Path]:
@@ -90,8 +89,7 @@ def make(algorithm: str, level: str, hours: float, seed: int, folder: Path) -> N
     origin = provenance_of(command, seed=seed, samples=samples, cpu_s=cpu_s, flock_hours=done)
     origin |= {"results_version": str(RESULTS_VERSION)}
     origin |= {"training_seeds": f"{seeds[0]}-{seeds[-1]}"}
-    for name, each, form in zip(CURVE, zip(*curve.points, strict=True), ("g", ".5f"), strict=True):
-        origin[name] = " ".join(f"{value:{form}}" for value in each)
+    origin |= curve.texts()
     folder.mkdir(parents=True, exist_ok=True)
     if callable(policy):
         policy(origin).save(folder / f"{level}-{seed}.json")

@@ -1,0 +1,100 @@
+"""Curves of the trainings in suite v3: what has been learned after parts of a budget.
+
+A policy's file has its curve in two texts of its provenance. What an entry says of its curve cannot
+be scored again, unlike its policies.
+"""
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+import pandas as pd
+
+from flockenv.comparison.levels import BUDGETS, LEVELS, NO_STEERING, REFERENCE
+from flockenv.comparison.suite_entry import SuiteEntry
+from flockenv.policies.base import Policy
+from flockenv.statistics import mean_interval
+
+POINTS, FLOCKS = 5, 128
+HOURS, ORDER = "curve_flock_hours", "curve_signed_order"
+"""Texts of a policy's provenance."""
+KEY, ENDS = ["level", "budget", "entry"], ("area", "area_low", "area_high")
+
+
+@dataclass
+class Curve:
+    """The mean order of what a training has learned, at a fifth of its budget, two fifths, ..."""
+
+    level: str
+    #: Flock-hours of the whole training.
+    budget: float
+    #: Of the level, the first ones.
+    flocks: int = FLOCKS
+    #: Flock-hours and mean signed order.
+    points: list[tuple[float, float]] = field(default_factory=list)
+    #: Processor seconds of looking, which are not the training's.
+    cpu_s: float = 0.0
+
+    def look(self, hours: float, learned: Callable[[], Policy]) -> None:
+        """Add what is learned after these flock-hours, if a point is due before the last."""
+        place = len(self.points) + 1
+        if place < POINTS and hours >= place * self.budget / POINTS:
+            self.add(hours, learned())
+
+    def add(self, hours: float, learned: Policy) -> None:
+        """Add a point."""
+        start = time.process_time()
+        order = float(LEVELS[self.level].orders(learned, self.flocks).mean())
+        self.points.append((hours, order))
+        self.cpu_s += time.process_time() - start
+
+    def texts(self) -> dict[str, str]:
+        """Return the curve as texts of a provenance."""
+        hours, orders = zip(*self.points, strict=True)
+        return {
+            HOURS: " ".join(f"{each:g}" for each in hours),
+            ORDER: " ".join(f"{each:.5f}" for each in orders),
+        }
+
+
+def points(entries: Iterable[SuiteEntry], orders: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each point of each training that has a curve, with its score.
+
+    `orders` has the references' signed order in each flock of the levels.
+    """
+    ends = orders[(orders["entry"] == "reference") & (orders["flock"] < FLOCKS)]
+    scales = ends.groupby(["level", "policy"])["signed_order"].mean()
+    rows = []
+    for entry, level, given, hours, order in _points(entries):
+        none, law = scales[level, NO_STEERING], scales[level, REFERENCE]
+        row = {"level": level, "budget": entry.budget, "entry": entry.name, "policy": given}
+        score = (order - none) / (law - none)
+        rows.append({**row, "flock_hours": hours, "signed_order": order, "score": score})
+    return pd.DataFrame(rows, columns=[*KEY, "policy", "flock_hours", "signed_order", "score"])
+
+
+def _points(
+    entries: Iterable[SuiteEntry],
+) -> Iterator[tuple[SuiteEntry, str, str, float, float]]:
+    for entry in entries:
+        for level, trainings in entry.trainings.items():
+            for each in trainings:
+                texts = (each.provenance.get(name, "").split() for name in (HOURS, ORDER))
+                for hours, order in zip(*texts, strict=True):
+                    yield entry, level, each.given, float(hours), float(order)
+
+
+def areas(curves: pd.DataFrame) -> pd.DataFrame:
+    """Return the mean area under the curves of each entry, the mean of a curve's scores.
+
+    Its 95 % interval is over trainings, and NaN for a single one.
+    """
+    rows = []
+    for key, own in curves.groupby(KEY, sort=False):
+        each = own.groupby("policy")["score"].mean()
+        rows.append([*key, len(each), *mean_interval(each)])
+    found = pd.DataFrame(rows, columns=[*KEY, "trainings", *ENDS]).sort_values(
+        "area", ascending=False, kind="stable"
+    )
+    places = {name: place for place, name in enumerate([*LEVELS, *map(str, BUDGETS), "more"])}
+    return found.sort_values(["level", "budget"], key=lambda each: each.map(places), kind="stable")
