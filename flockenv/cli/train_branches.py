@@ -47,7 +47,8 @@ def train_branches(
         if (out / CHECKPOINT).exists():
             raise ParameterError(f"{out} holds a run already: resume it, or name another folder")
     policy = train(training, out, command, _lines(printing.shows_nothing))
-    orders = compare_with_laws(policy, training.parameters, flocks)
+    compared = compare_with_laws(policy, training.parameters, flocks)
+    orders = {name: each["signed_order"] for name, each in compared.items()}
     _write(out, training, orders)
     gain, error = _mean(orders[TRAINED] - orders[TUNED_LAW])
     if printing.as_json:
@@ -58,7 +59,8 @@ def train_branches(
         mean, own = _mean(each)
         echo(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
     echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
-    for line in overlap_note(*training.overlaps, "branches of the training"):
+    lines = overlap_note(*training.overlaps, "branches of the training")
+    for line in lines + overlap_note(*_overlaps(compared), "episodes"):
         echo(line)
     echo(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
 
@@ -93,6 +95,16 @@ def _lines(is_quiet: bool) -> Callable[[Progress], None]:
 def _mean(values: Any) -> tuple[float, float]:
     """Return a mean and its standard error."""
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
+
+
+def _overlaps(compared: Mapping[str, Mapping[str, Any]]) -> tuple[int, int, float]:
+    """Return the episodes, those that left overlaps beyond the tolerance, and the deepest in cm."""
+    unsolved, worst_cm = (
+        np.concatenate([each[name] for each in compared.values()])
+        for name in ("unsolved", "worst_overlap_cm")
+    )
+    deep = unsolved > 0
+    return len(deep), int(deep.sum()), float(worst_cm[deep].max(initial=0.0))
 
 
 def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:

@@ -242,8 +242,8 @@ def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTra
 
 def compare_with_laws(
     policy: LeaningLaw, parameters: FlockParameters, flocks: int
-) -> dict[str, NDArray[np.float64]]:
-    """Return the signed order of each of some fresh flocks, by what leads them for 8 minutes.
+) -> dict[str, dict[str, NDArray[np.float64]]]:
+    """Return what `run_episodes` measures in some fresh flocks, by what leads them for 8 minutes.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def compare_with_laws(
     seeds = range(flocks)
     options = {"target": "random"}
     return {
-        name: run_episodes(parameters, each, seeds, _EPISODE_S, options=options)["signed_order"]
+        name: run_episodes(parameters, each, seeds, _EPISODE_S, options=options)
         for name, each in led.items()
     }
 

@@ -5,7 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from flockenv.cli import train_branches
 
 TINY = [
     *("--algorithm", "branches", "--pool", "narrow", "--n-boats", "6", "--n-leaders", "2"),
@@ -65,6 +68,24 @@ def test_overlaps_beyond_the_tolerance_are_said_in_one_line(
     assert said[-2] == (
         "1 of 2 branches of the training left overlaps deeper than tolerance_cm; the deepest is "
         "0.031 cm"
+    )
+
+
+def test_overlaps_of_the_comparison_are_said_in_one_line(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def compared(*given: object) -> dict[str, dict[str, np.ndarray]]:
+        found = compare_with_laws(*given)
+        # A deep overlap that the solver knows of, and a deeper one that it was allowed.
+        found["trained"]["unsolved"][:] = [3, 0]
+        found["trained"]["worst_overlap_cm"][:] = [0.0314, 1.0]
+        return found
+
+    compare_with_laws = train_branches.compare_with_laws
+    monkeypatch.setattr(train_branches, "compare_with_laws", compared)
+    said = cli.succeeds("train", *TINY, "--flock-hours", "0.03", "--out", tmp_path / "some").stdout
+    assert said.splitlines()[-2] == (
+        "1 of 6 episodes left overlaps deeper than tolerance_cm; the deepest is 0.031 cm"
     )
 
 

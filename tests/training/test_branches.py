@@ -149,7 +149,8 @@ def test_all_are_compared_in_the_same_flocks(monkeypatch):
     """Leans of zero are the tuned law, so that its flocks and theirs are the same."""
     monkeypatch.setattr("flockenv.training.branches._EPISODE_S", 30.0)
     training = tiny()
-    orders = compare_with_laws(training.policy(), training.parameters, 2)
+    compared = compare_with_laws(training.policy(), training.parameters, 2)
+    orders = {name: each["signed_order"] for name, each in compared.items()}
     assert list(orders) == ["paper's law", "tuned law", "trained"]
     assert np.array_equal(orders["trained"], orders["tuned law"])
     assert not np.array_equal(orders["trained"], orders["paper's law"])
