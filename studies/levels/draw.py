@@ -1,17 +1,19 @@
-"""Draw the scores of entries, and how many of their trainings reach a score."""
+"""Draw the scores of entries, their pairs, their curves, and how many trainings reach a score."""
 
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
-from docs.scripts.plots import Interval, Plot, listed
+from docs.scripts.plots import Interval, Plot, draw_intervals, name_heights
 from flockenv.comparison.levels import NO_STEERING, REFERENCE
 from studies.plots import OWN, drawing
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
+PAIRS, CURVES, AREAS = (RESULTS / f"{name}.csv" for name in ("pairs", "curves", "areas"))
 ENTRIES, ORDERS, LAWS = RESULTS / "entries.csv", RESULTS / "orders.csv.gz", RESULTS / "laws.csv"
 KEY = ["level", "budget", "entry"]
 SHADES = ("-", "--", ":", "-.")
@@ -38,22 +40,26 @@ def scores(figure: Figure) -> None:
     """Draw a panel for each level and budget: means with intervals, and each training as a dot."""
     rows, every = pd.read_csv(ENTRIES), trainings()
     laws = pd.read_csv(LAWS).pivot(index="level", columns="policy", values="signed_order")
-    found = list(rows.groupby(["level", "budget"], sort=False))
-    heights = [len(own) for _, own in found]
-    panels = figure.subplots(len(found), 1, sharex=True, squeeze=False, height_ratios=heights)
-    for axes, ((level, budget), own) in zip(panels[:, 0], found, strict=True):
-        intervals: dict[str, Interval] = {
-            row["entry"]: (row["score"], row["score_low"], row["score_high"])
-            for row in own.to_dict("records")
-        }
-        listed(axes, intervals, dict.fromkeys(intervals, OWN), 1.0)
+    found, names = list(rows.groupby(["level", "budget"], sort=False)), [*rows["entry"].unique()]
+    across = min(len(found), 2)
+    panels = figure.subplots(
+        -(-len(found) // across), across, sharex=True, sharey=True, squeeze=False
+    )
+    for axes in panels.flat[len(found) :]:
+        axes.set_visible(False)
+    for axes, ((level, budget), own) in zip(panels.flat, found, strict=False):
+        axes.axvline(1.0, color="0.4", lw=1)
+        for row in own.to_dict("records"):
+            ends: Interval = (row["score"], row["score_low"], row["score_high"])
+            draw_intervals(axes, [names.index(row["entry"])], [ends], OWN)
         there = every[(every["level"] == level) & (every["budget"] == budget)]
-        at = [[*intervals].index(name) + 0.22 for name in there["entry"]]
+        at = [names.index(name) + 0.25 for name in there["entry"]]
         axes.plot(there["score"], at, ".", ms=4, color="0.4")
         none, law = laws.loc[level, NO_STEERING], laws.loc[level, REFERENCE]
         axes.axvline((laws.loc[level, "paper's law"] - none) / (law - none), color="0.4", ls=":")
         axes.set_title(title(level, budget), loc="left")
-    panels[-1, 0].set_xlabel("score: 0 no steering, dotted the paper's law, 1 the damped law")
+        name_heights(axes, names)
+    figure.supxlabel("score: 0 no steering, dotted the paper's law, 1 the damped law")
 
 
 def profile(figure: Figure) -> None:
@@ -72,6 +78,58 @@ def profile(figure: Figure) -> None:
     axes.set(xlabel="score", ylabel="share of trainings that reach it")
     axes.set_title(title(level, budget), loc="left")
     axes.legend()
+
+
+def matrix(figure: Figure) -> None:
+    """Draw how far each entry is above each other one, for the first level and budget."""
+    table = pd.read_csv(PAIRS)
+    level, budget = table.loc[0, ["level", "budget"]]
+    own = table[(table["level"] == level) & (table["budget"] == budget)]
+    names = [*dict.fromkeys([*own["better"], *own["worse"]])]
+    axes = figure.subplots()
+    for row in own.to_dict("records"):
+        # As in the table of scores the best stands first.
+        above, below = names.index(row["better"]), names.index(row["worse"])
+        is_told = row["difference_low"] > 0.0 or row["difference_high"] < 0.0
+        ends = f"{row['difference_low']:.2f} to\n{row['difference_high']:.2f}"
+        improved = f"{100.0 * row['improvement']:.0f} %"
+        for at, words in (((below, above), f"{row['difference']:+.2f}\n{ends}"),
+                          ((above, below), improved)):  # fmt: skip
+            axes.add_patch(_cell(at, is_told))
+            axes.text(*at, words, ha="center", va="center", fontsize=9)
+    axes.set_xticks(range(len(names)), [name.replace(" ", "\n") for name in names])
+    axes.set_yticks(range(len(names)), names)
+    axes.set(xlim=(-0.5, len(names) - 0.5), ylim=(len(names) - 0.5, -0.5), aspect="equal")
+    axes.grid(visible=False)
+    axes.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
+    for side in axes.spines.values():
+        side.set_visible(False)
+
+
+def _cell(at: tuple[int, int], is_told: bool) -> Rectangle:
+    corner = at[0] - 0.47, at[1] - 0.47
+    return Rectangle(corner, 0.94, 0.94, color=OWN if is_told else "0.9", alpha=0.35, lw=0)
+
+
+def curves(figure: Figure) -> None:
+    """Draw what trainings have learned during them, a panel for each entry of the first level."""
+    every, areas = pd.read_csv(CURVES), pd.read_csv(AREAS)
+    level, budget = areas.loc[0, ["level", "budget"]]
+    first = areas[(areas["level"] == level) & (areas["budget"] == budget)]
+    panels = figure.subplots(-(-len(first) // 4), 4, sharex=True, sharey=True, squeeze=False)
+    for axes in panels.flat[len(first) :]:
+        axes.set_visible(False)
+    for axes, name in zip(panels.flat, first["entry"], strict=False):
+        here = (every["level"] == level) & (every["budget"] == budget) & (every["entry"] == name)
+        lines = [own for _, own in every[here].groupby("policy")]
+        for own in lines:
+            axes.plot(own["flock_hours"], own["score"], color="0.7", lw=0.8)
+        mean = np.mean([own[["flock_hours", "score"]] for own in lines], axis=0)
+        axes.plot(*mean.T, "o-", ms=4, color=OWN)
+        axes.axhline(1.0, color="0.4", lw=1)
+        axes.set_title(name)
+    figure.supxlabel("flock-hours of training")
+    figure.supylabel("score, 1: the damped law")
 
 
 PLOTS = {

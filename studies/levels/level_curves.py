@@ -15,10 +15,17 @@ from flockenv.comparison.suite_entry import SuiteEntry
 from flockenv.policies.base import Policy
 from flockenv.statistics import mean_interval
 
-POINTS, FLOCKS = 5, 128
+POINTS, POINT_S = 5, 256 * 60.0
+"""Of a curve, and simulated time of the flocks of a point."""
+
 HOURS, ORDER = "curve_flock_hours", "curve_signed_order"
 """Texts of a policy's provenance."""
 KEY, ENDS = ["level", "budget", "entry"], ("area", "area_low", "area_high")
+
+
+def flocks_of(level: str) -> int:
+    """Return how many of a level's flocks, the first ones, a point has."""
+    return round(POINT_S / LEVELS[level].episode_s)
 
 
 @dataclass
@@ -28,8 +35,6 @@ class Curve:
     level: str
     #: Flock-hours of the whole training.
     budget: float
-    #: Of the level, the first ones.
-    flocks: int = FLOCKS
     #: Flock-hours and mean signed order.
     points: list[tuple[float, float]] = field(default_factory=list)
     #: Processor seconds of looking, which are not the training's.
@@ -44,7 +49,7 @@ class Curve:
     def add(self, hours: float, learned: Policy) -> None:
         """Add a point."""
         start = time.process_time()
-        order = float(LEVELS[self.level].orders(learned, self.flocks).mean())
+        order = float(LEVELS[self.level].orders(learned, flocks_of(self.level)).mean())
         self.points.append((hours, order))
         self.cpu_s += time.process_time() - start
 
@@ -62,7 +67,8 @@ def points(entries: Iterable[SuiteEntry], orders: pd.DataFrame) -> pd.DataFrame:
 
     `orders` has the references' signed order in each flock of the levels.
     """
-    ends = orders[(orders["entry"] == "reference") & (orders["flock"] < FLOCKS)]
+    first = orders["flock"] < orders["level"].map(flocks_of)
+    ends = orders[(orders["entry"] == "reference") & first]
     scales = ends.groupby(["level", "policy"])["signed_order"].mean()
     rows = []
     for entry, level, given, hours, order in _points(entries):

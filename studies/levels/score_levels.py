@@ -121,6 +121,21 @@ def pairs(rows: pd.DataFrame, orders: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
 
+def told_apart(compared: pd.DataFrame) -> list[str]:
+    """Return the most entries of a level and budget of which each two differ.
+
+    Two differ if the interval of their difference leaves out 0.
+    """
+    differ = (compared["difference_low"] > 0.0) | (compared["difference_high"] < 0.0)
+    told = {frozenset(each) for each in compared[differ][["better", "worse"]].to_numpy()}
+    names = [*dict.fromkeys(compared[["better", "worse"]].to_numpy().ravel())]
+    for size in range(len(names), 1, -1):
+        for some in itertools.combinations(names, size):
+            if all(frozenset(two) in told for two in itertools.combinations(some, 2)):
+                return [*some]
+    return []
+
+
 # --- the table ------------------------------------------------------------------------------------
 
 
@@ -169,6 +184,8 @@ def main(arguments: list[str] | None = None) -> None:
     stored = pd.read_csv(existing(options.out / "entries.csv"))
     write(options.page, page(stored, options.page.read_text("utf-8")).encode())
     print(compared.round(3).to_string(index=False))
+    for key, own in compared.groupby(KEY[:2], sort=False) if len(compared) else ():
+        print(f"{', '.join(key)}: each two differ of {', '.join(told_apart(own)) or 'none'}")
 
 
 if __name__ == "__main__":

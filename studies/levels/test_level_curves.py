@@ -4,8 +4,9 @@ import pandas as pd
 import pytest
 
 
-def test_a_curve_has_five_points_of_what_was_learned_by_then(script) -> None:
-    curve = script.Curve("order-easy", 10.0, flocks=4)
+def test_a_curve_has_five_points_of_what_was_learned_by_then(script, monkeypatch) -> None:
+    monkeypatch.setattr(script, "POINT_S", 480.0)
+    curve = script.Curve("order-easy", 10.0)
     for hours in (1.0, 2.5, 3.0, 7.0, 7.5, 9.9, 10.0, 10.1):
         curve.look(hours, lambda: "straight ahead")
     curve.add(10.1, "damped law")
@@ -15,7 +16,7 @@ def test_a_curve_has_five_points_of_what_was_learned_by_then(script) -> None:
     assert orders[4] > orders[0] + 0.1
 
 
-def test_an_area_is_the_mean_of_a_curves_scores(script, monkeypatch) -> None:
+def test_an_area_is_the_mean_of_a_curves_scores(script) -> None:
     curve = script.Curve("order-easy", 10.0, points=[(5.0, 0.1), (10.1, 0.3)])
 
     class Training:
@@ -31,7 +32,7 @@ def test_an_area_is_the_mean_of_a_curves_scores(script, monkeypatch) -> None:
     reference = pd.DataFrame({"policy": ends.keys(), "signed_order": ends.values()})
     reference = reference.assign(level="order-easy", entry="reference")
     # Flocks that no curve met have another scale.
-    others = reference.assign(flock=script.FLOCKS, signed_order=[0.0, 9.0])
+    others = reference.assign(flock=script.flocks_of("order-easy"), signed_order=[0.0, 9.0])
     found = script.points([Entry], pd.concat([reference.assign(flock=0), others]))
     assert found["policy"].tolist() == ["a.npz", "a.npz"]
     assert found["flock_hours"].tolist() == [5.0, 10.1]
@@ -49,3 +50,7 @@ def test_areas_stand_by_level_and_budget_the_best_first(script) -> None:
     curves = pd.DataFrame(rows, columns=["level", "budget", "entry", "score"]).assign(policy="0")
     found = script.areas(curves)
     assert found["area"].tolist() == [0.3, 0.2, 0.1, 0.9]
+
+
+def test_points_of_all_levels_take_as_long(script) -> None:
+    assert [script.flocks_of(level) for level in script.LEVELS] == [128, 128, 64, 32]

@@ -54,6 +54,18 @@ def test_how_often_one_is_better_is_known_on_paper(script) -> None:
     assert both.tolist() == [0.5, 0.5]
 
 
+def test_the_most_entries_of_which_each_two_differ(script) -> None:
+    """A chain: c is told from none of its neighbors, but a, d and e are told from each other."""
+    rows = [
+        ("a", "c", -0.1, 0.2), ("a", "d", 0.1, 0.3), ("a", "e", 0.1, 0.3),
+        ("c", "d", -0.1, 0.2), ("c", "e", 0.1, 0.2), ("e", "d", -0.3, -0.1),
+    ]  # fmt: skip
+    columns = ["better", "worse", "difference_low", "difference_high"]
+    pairs = pd.DataFrame(rows, columns=columns)
+    assert script.told_apart(pairs) == ["a", "d", "e"]
+    assert script.told_apart(pairs[3:4]) == []
+
+
 def test_a_digit_is_a_difference(script) -> None:
     rows = pd.DataFrame({"level": ["a", "a"], "budget": ["30", "30"], "entry": ["x", "y"]})
     rows["score"], rows["searched_hours"] = [0.123456, 0.5], np.nan

@@ -27,8 +27,9 @@ Design, fixed before the runs, but for those named at its end:
   levels and algorithms; then order-easy with 100. If the time ends early, the seeds that all
   algorithms of a level have count.
 - Curve. After a fifth of its budget, two fifths and so on, what a training has learned leads the
-  first 128 of the level's flocks. The area under the curve is the mean of these five scores. It
-  does not choose the policy, which is always the last one. Its processor time does not count.
+  level's first flocks for 4.3 flock-hours: 128 in order-easy, 32 in order-wide. The area under the
+  curve is the mean of these five scores. It does not choose the policy, which is always the last
+  one. Its processor time does not count.
 - Judgment. 512 common flocks of the level, by the policy's mean action (`score_levels.py`). The
   score is (order - no steering) / (damped law - no steering).
 - Answer. Two algorithms differ if the 95 % interval of the difference of their mean scores, over
