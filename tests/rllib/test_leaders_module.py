@@ -142,7 +142,7 @@ def test_bad_configurations_are_named(model_config, options, message):
 
 
 def test_other_environments_are_refused():
-    with pytest.raises(ParameterError, match="those of flockenv/Leaders-v0"):
+    with pytest.raises(ParameterError, match="take flockenv/Leaders-v0 with continuous"):
         RLModuleSpec(
             LeadersModule,
             observation_space=flockenv.LeadersVectorEnv(1).flock_feature_space,
