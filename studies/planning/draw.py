@@ -1,16 +1,18 @@
-"""Draw what the learned leaders and both planners reach."""
+"""Draw what the learned leaders and both planners reach, and what one step of planning adds."""
 
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 
 from docs.scripts.plots import Plot, listed, rows
-from flockenv.statistics import student_interval
-from studies.plots import drawing
+from flockenv.statistics import mean_interval, student_interval
+from studies.plots import OWN, drawing
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
+OFFSETS = RESULTS / "best_of_offsets.csv"
 LEARNED = "learned"
 PLANS = {"planner, noise known": "known", "planner, noise unknown": "fresh"}
 
@@ -36,7 +38,21 @@ def plans(figure: Figure) -> None:
     right.set(xlabel="minus learned")
 
 
+def offsets(figure: Figure) -> None:
+    """Draw what the best of 16 offsets adds by each horizon: the mean, and each state as a dot."""
+    table = pd.read_csv(OFFSETS)
+    named = {f"to {horizon} s": own["gain"] for horizon, own in table.groupby("horizon_s")}
+    axes = figure.subplots()
+    means = {name: mean_interval(own) for name, own in named.items()}
+    listed(axes, means, dict.fromkeys(means, OWN), 0.0)
+    for place, own in enumerate(named.values()):
+        spread = np.linspace(0.2, 0.4, len(own))
+        axes.plot(own, place + spread, ".", ms=3, color="0.6")
+    axes.set(xlabel="mean order with the best offset minus without")
+
+
 PLOTS = {
+    "offsets": Plot([OFFSETS], offsets, (6.8, 2.4)),
     "plans": Plot([RESULTS / "plan_known.csv", RESULTS / "plan_fresh.csv"], plans, (8.4, 2.2)),
 }
 

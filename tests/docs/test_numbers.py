@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from flockenv.statistics import student_interval
+from flockenv.statistics import mean_interval, student_interval
 
 pd = pytest.importorskip("pandas")
 
@@ -334,6 +334,28 @@ def plans(page: str) -> list[Number]:
     ]
 
 
+def offsets() -> list[Number]:
+    """What one step of planning without foresight adds."""
+    study, table = "studies/planning/README.md", "studies/planning/results/best_of_offsets.csv"
+    sentences = (
+        (study, "best of 16 leans, adds {}", 96),
+        (study, "The chosen offset adds {} to the mean order between 8 and 64 s", 64),
+        (study, "after the branch, and {} between 8 and 96 s", 96),
+        ("docs/leaders.md", "one such step adds {} to the mean order of the next 96 s", 96),
+    )
+    found = []
+    for page, words, horizon in sentences:
+        for place, form in enumerate(("{} (# to #)", "# ({} to #)", "# (# to {})")):
+            text = words.replace("{}", form)
+            found.append(Number(page, text, table, {"horizon_s": horizon}, gain_of(place), ".3f"))
+    return found
+
+
+def gain_of(place: int) -> Callable[[Any], float]:
+    """The mean gain of the states, or an end of its interval."""
+    return lambda rows: mean_interval(rows["gain"])[place]
+
+
 def trainings() -> list[Number]:
     """What the trainings of `make pretrained` reached."""
     found = []
@@ -463,6 +485,7 @@ NUMBERS = [
     *leaders("docs/leaders.md"),
     *plans("docs/leaders.md"),
     *plans("studies/planning/README.md"),
+    *offsets(),
     *trainings(),
     *headlines(),
     *studies(),
