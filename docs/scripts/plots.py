@@ -39,7 +39,7 @@ LETTERS = "Letters"
 
 LEAST_LETTERS_PX = 9.0
 """Letters of a picture are at least so large where a page shows it."""
-DESK_PX, PHONE_PX, SCROLLED_PX = 640, 358, 544
+DESK_PX, PHONE_PX, SCROLLED_PX = 736, 358, 544
 """Widths of the site's pictures on a desk, on a phone of 390 pixels, and of those that a phone
 scrolls (`docs/static/phones.css`)."""
 

@@ -264,7 +264,6 @@ def _panels(
         panels = figure.subplots(2, len(columns), sharex=True, sharey=True, squeeze=False)
         for column, (title, group) in zip(panels.T, columns, strict=True):
             column[0].set_title(title)
-            column[1].set_xlabel(across)
             for axes, start in zip(column, STARTED, strict=True):
                 sizes = group[group["start"] == start].groupby("n_boats")
                 for place, (n, runs) in enumerate(sizes):
@@ -272,8 +271,9 @@ def _panels(
                 axes.set_ylim(-0.05, 1.05)
         for axes, words in zip(panels[:, 0], STARTED.values(), strict=True):
             axes.set_ylabel(up.format(words))
+        figure.supxlabel(across)
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4)
+        figure.legend(handles, labels, loc="outside upper center", ncols=4)
 
 
 def script(options: Options) -> None:
