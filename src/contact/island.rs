@@ -79,7 +79,12 @@ impl Islands {
 }
 
 /// Joins the sets of two boats. A set's first boat is the last of its parents.
+#[inline]
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
+    // As for the second touch of two boats.
+    if parent[a as usize] == parent[b as usize] {
+        return;
+    }
     let (a, b) = (root(parent, a), root(parent, b));
     parent[a.max(b) as usize] = a.min(b);
 }

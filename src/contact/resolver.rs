@@ -253,10 +253,29 @@ impl ContactResolver {
         if self.solver.is_exhausted() {
             return Err(NotTaken::Exhausted);
         }
-        let mut is_unsolved = self.is_deep;
+        let is_unsolved = self.settle(motion, divisibility, statistics)?;
+        let velocities = &self.solver.velocities;
+        if self.detector.moves_too_far(velocities, motion.dt) {
+            return Err(NotTaken::TooLong);
+        }
+        statistics.unsolved += u64::from(is_unsolved || self.is_deep);
+        let impulses = self.solver.impulses.iter();
+        let entries = self.contacts.iter().zip(impulses);
+        self.warm_start_cache
+            .replace(entries.map(|(contact, &impulse)| CachedImpulse::new(contact, impulse)));
+        Ok(())
+    }
+
+    /// Solves until a solution stands, with fewer and fewer contacts skipped; returns whether it leaves overlaps.
+    fn settle(
+        &mut self,
+        motion: &Motion,
+        divisibility: Divisibility,
+        statistics: &mut Statistics,
+    ) -> Result<bool, NotTaken> {
         loop {
             match self.solve_and_check(motion, statistics) {
-                Solution::Solved => break,
+                Solution::Solved => return Ok(false),
                 Solution::Closing => self.restore_skipped(statistics),
                 Solution::Exhausted | Solution::Driven if divisibility.if_driven => {
                     return Err(NotTaken::TooLong);
@@ -275,27 +294,11 @@ impl ContactResolver {
                     if is_overlapping && divisibility.if_overlapping {
                         return Err(NotTaken::TooLong);
                     }
-                    is_unsolved |= is_overlapping;
-                    break;
+                    return Ok(is_overlapping);
                 }
-                Solution::Overlapping => {
-                    is_unsolved = true;
-                    break;
-                }
+                Solution::Overlapping => return Ok(true),
             }
         }
-        if self
-            .detector
-            .moves_too_far(&self.solver.velocities, motion.dt)
-        {
-            return Err(NotTaken::TooLong);
-        }
-        statistics.unsolved += u64::from(is_unsolved);
-        let impulses = self.solver.impulses.iter();
-        let entries = self.contacts.iter().zip(impulses);
-        self.warm_start_cache
-            .replace(entries.map(|(contact, &impulse)| CachedImpulse::new(contact, impulse)));
-        Ok(())
     }
 
     /// Adds the skipped contacts to the problem again.

@@ -45,10 +45,8 @@ impl ContactResolver {
         first: Solution,
         statistics: &mut Statistics,
     ) -> Solution {
-        let hull = self.detector.hull();
-        let (poses, dt) = (motion.poses, motion.dt);
-        self.predicted
-            .place(poses, &self.solver.velocities, dt, hull);
+        let dt = motion.dt;
+        self.predict(motion);
         let mut left = std::mem::take(&mut self.relinearization.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
@@ -59,39 +57,48 @@ impl ContactResolver {
                 break;
             }
             passes += 1;
-            for &(k, end_gap) in &self.relinearization.end_gaps {
-                let rate = self.contacts[k as usize].gap_rate(&self.solver.velocities);
-                self.biases[k as usize] = end_gap / dt - rate;
-            }
+            self.aim_at_end_gaps(dt);
             solution = self.solve(Some(&left), motion, statistics);
-            let (contacts, solver) = (&self.contacts, &self.solver);
             match solution {
                 Solution::Exhausted => break,
-                Solution::Solved if solver.has_islands() => {
-                    let islands = left
-                        .iter()
-                        .map(|&island| solver.islands().contacts(island as usize));
-                    self.predicted.move_islands(
-                        contacts,
-                        islands,
-                        poses,
-                        &solver.velocities,
-                        dt,
-                        hull,
-                    );
-                }
-                _ => self.predicted.place(poses, &solver.velocities, dt, hull),
+                Solution::Solved if self.solver.has_islands() => self.predict_again(&left, motion),
+                _ => self.predict(motion),
             }
         }
         self.relinearization.overlapping = left;
         solution
     }
 
+    /// Computes biases for which the gaps noted at the substep's end open to zero.
+    fn aim_at_end_gaps(&mut self, dt: f64) {
+        for &(k, end_gap) in &self.relinearization.end_gaps {
+            let rate = self.contacts[k as usize].gap_rate(&self.solver.velocities);
+            self.biases[k as usize] = end_gap / dt - rate;
+        }
+    }
+
+    /// Predicts where the last solve moves all boats.
+    fn predict(&mut self, motion: &Motion) {
+        let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
+        self.predicted
+            .place(motion.poses, velocities, motion.dt, hull);
+    }
+
+    /// Predicts where the last solve moves the boats of some islands; the others stay where they are predicted.
+    fn predict_again(&mut self, islands: &[u32], motion: &Motion) {
+        let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
+        let found = self.solver.islands();
+        let islands = islands
+            .iter()
+            .map(|&island| found.contacts(island as usize));
+        let contacts = &self.contacts;
+        self.predicted
+            .move_islands(contacts, islands, motion.poses, velocities, motion.dt, hull);
+    }
+
     /// Whether the last solve leaves overlaps deeper than the tolerance.
     pub(super) fn leaves_overlaps(&mut self, motion: &Motion) -> bool {
-        let velocities = &self.solver.velocities;
-        self.predicted
-            .place(motion.poses, velocities, motion.dt, self.detector.hull());
+        self.predict(motion);
         let mut islands = (0..self.solver.islands().count() as u32).collect();
         self.is_overlapping(&mut islands, motion.dt)
     }

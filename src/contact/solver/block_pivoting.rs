@@ -23,6 +23,8 @@ pub(super) struct BlockPivoting {
     /// in the processor's cache.
     pub keeps_factors: bool,
     islands: Vec<IslandSolver>,
+    /// Whether any of them is built.
+    is_any_built: bool,
     /// Multiplications that are left; negative if an island was given up.
     pub budget: i64,
     /// J·v_free and b, contact by contact.
@@ -53,6 +55,7 @@ impl BlockPivoting {
         for island in &mut self.islands {
             island.is_built = false;
         }
+        self.is_any_built = false;
         self.indices.resize(boats, NONE);
     }
 
@@ -62,9 +65,14 @@ impl BlockPivoting {
         self.rates.clear();
         self.rates
             .extend(contacts.map(|contact| contact.gap_rate(problem.free)));
+        if self.is_any_built {
+            for island in self.islands.iter_mut().filter(|island| island.is_built) {
+                island.set_free(problem);
+            }
+        }
     }
 
-    /// Solves some islands, whose boats have their free velocities; [`Self::set_free`] comes first.
+    /// Solves some islands; [`Self::set_free`] comes first. Boats with one or two contacts have their free velocities.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
@@ -119,6 +127,9 @@ impl BlockPivoting {
             .all(|&k| !active[k as usize] && self.rights[k as usize] >= 0.0);
         if is_idle {
             contacts.iter().for_each(|&k| impulses[k as usize] = 0.0);
+            if contacts.len() > 2 {
+                problem.release(contacts, velocities);
+            }
             return true;
         }
         let &[k, l] = contacts else { return false };
@@ -138,6 +149,7 @@ impl BlockPivoting {
         velocities: &mut [Velocity],
         report: &mut SolveReport,
     ) {
+        self.is_any_built |= !self.left.is_empty();
         let indices = &mut self.indices;
         for &number in &self.left {
             let number = number as usize;

@@ -155,13 +155,9 @@ impl ContactSolver {
             return self.solve(problem);
         }
         for &island in which {
-            for &k in self.islands.contacts(island as usize) {
-                let contact = &problem.contacts[k as usize];
-                let first = contact.boat as usize;
-                self.velocities[first] = problem.free[first];
-                if let Some(second) = contact.second() {
-                    self.velocities[second] = problem.free[second];
-                }
+            let contacts = self.islands.contacts(island as usize);
+            if contacts.len() <= 2 {
+                problem.release(contacts, &mut self.velocities);
             }
         }
         let report = self.pivoting.solve(

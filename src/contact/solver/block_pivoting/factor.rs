@@ -78,7 +78,7 @@ pub(super) struct Factor {
     pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
-    /// A row that is being computed; zero between two rows, and always zero beyond the rows.
+    /// A row that is being computed; zero between two rows, of other islands too, and always zero beyond the rows.
     work: Vec<f64>,
 }
 
@@ -90,7 +90,6 @@ impl Factor {
         self.used = 0;
         self.is_stale = true;
         self.active.clear();
-        self.work.clear();
         self.work.resize(rows + 1, 0.0);
     }
 

@@ -1,7 +1,7 @@
 //! Block principal pivoting on one island.
 
 use super::factor::Factor;
-use super::rows::{Row, Rows, TOLERANCE, residual};
+use super::rows::{Body, Row, Rows, TOLERANCE, residual};
 use crate::contact::ContactProblem;
 use crate::contact::solver::{EXACT, SolveReport};
 use crate::geometry::Velocity;
@@ -36,7 +36,7 @@ pub(super) struct IslandSolver {
 }
 
 impl IslandSolver {
-    /// Lays out the rows of some contacts, unless they are.
+    /// Lays out the rows of some contacts with the free velocities of their boats, unless they are.
     pub(super) fn build(
         &mut self,
         problem: &ContactProblem,
@@ -51,7 +51,6 @@ impl IslandSolver {
         self.is_built = true;
         self.is_guess_old = true;
         self.rows.build(problem, contacts, indices);
-        self.solution.clear();
         self.solution.resize(self.rows.rows.len() + 1, 0.0);
         for row in &mut self.rows.rows {
             row.is_active = active[row.contact as usize];
@@ -60,13 +59,17 @@ impl IslandSolver {
         self.factor.reset(self.rows.rows.len());
     }
 
-    /// Takes on biases, free velocities and right-hand sides.
-    pub(super) fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
-        for body in &mut self.rows.bodies {
-            if let Some(free) = problem.free.get(body.boat as usize) {
-                body.free = [free.linear.x, free.linear.y, free.angular];
-            }
+    /// Takes on the free velocities of boats.
+    // Bodies have theirs as they are built, and few solves come with others.
+    #[cold]
+    pub(super) fn set_free(&mut self, problem: &ContactProblem) {
+        for body in &mut self.rows.bodies[1..] {
+            *body = Body::new(body.boat, &problem.free[body.boat as usize]);
         }
+    }
+
+    /// Takes on biases and right-hand sides.
+    pub(super) fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
         for row in &mut self.rows.rows {
             row.bias = problem.biases[row.contact as usize];
             row.right = rights[row.contact as usize];

@@ -1,7 +1,7 @@
 //! The contact problem of one island in numbers of its own: rows of J, and the boats they join.
 
 use crate::contact::{ContactProblem, InverseInertia};
-use crate::geometry::smaller;
+use crate::geometry::{Velocity, smaller};
 
 /// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
 pub(super) const TOLERANCE: f64 = 1e-11;
@@ -74,11 +74,20 @@ fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
 }
 
 impl Body {
-    /// A body at rest, with its index in the flock.
-    fn new(boat: u32) -> Self {
+    /// The walls, which rest.
+    fn walls() -> Self {
+        Self {
+            boat: NONE,
+            ..Self::default()
+        }
+    }
+
+    /// A boat with its velocity without contacts.
+    pub(super) fn new(boat: u32, free: &Velocity) -> Self {
         Self {
             boat,
-            ..Self::default()
+            free: [free.linear.x, free.linear.y, free.angular],
+            velocity: Motion::default(),
         }
     }
 }
@@ -147,17 +156,17 @@ impl Rows {
         indices: &mut [u32],
     ) {
         self.bodies.clear();
-        self.bodies.push(Body::new(NONE));
+        self.bodies.push(Body::walls());
         self.rows.resize(contacts.len(), Row::default());
         for (number, &k) in contacts.iter().enumerate() {
             let contact = &problem.contacts[k as usize];
-            let first = self.body(contact.boat, indices);
+            let first = self.body(contact.boat, problem, indices);
             // A contact with a wall has its boat twice, the second time with zeros.
             let (sign, second) = match contact.second() {
                 Some(second) => (-1.0, second),
                 None => (0.0, contact.boat as usize),
             };
-            let index = self.body(second as u32, indices);
+            let index = self.body(second as u32, problem, indices);
             let row = &mut self.rows[number];
             row.contact = k;
             row.bodies = [first, if sign == 0.0 { WALLS } else { index }];
@@ -173,11 +182,12 @@ impl Rows {
     }
 
     /// Index of a boat in the island, which is added if it is new.
-    fn body(&mut self, boat: u32, indices: &mut [u32]) -> u32 {
+    fn body(&mut self, boat: u32, problem: &ContactProblem, indices: &mut [u32]) -> u32 {
         let index = &mut indices[boat as usize];
         if *index == NONE {
             *index = self.bodies.len() as u32;
-            self.bodies.push(Body::new(boat));
+            let free = &problem.free[boat as usize];
+            self.bodies.push(Body::new(boat, free));
         }
         *index
     }
