@@ -49,6 +49,40 @@ def control_step_us(pool: str, seconds: float) -> float:
     return (time.perf_counter() - start) / (steps * 64) * 1e6
 
 
+def single_step_ratio(pool: str, seconds: float) -> float:
+    """Return the time of a step of single environments over that of a flock in a batch of 64.
+
+    Both take turns on one thread, from 30 s into their episodes on. Processor time, which others
+    on the machine do not add to.
+    """
+    import flockenv
+
+    singles = [flockenv.LeadersEnv(pool=pool, bw_s=POOLS[pool], **SCENE) for _ in range(8)]
+    batch = vector_env(64, pool)
+    for seed, env in enumerate(singles):
+        env.reset(seed=seed)
+    batch.reset(seed=0)
+    actions = np.random.default_rng(0).uniform(-1, 1, (300, *batch.action_space.shape))
+
+    def turn(steps: int) -> tuple[float, float]:
+        start = time.process_time()
+        for k in range(steps):
+            for env, action in zip(singles, actions[k], strict=False):
+                env.step(action)
+        middle = time.process_time()
+        for k in range(steps):
+            batch.step(actions[k])
+        return (middle - start) / 8, (time.process_time() - middle) / 64
+
+    turn(300)
+    ratios: list[float] = []
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        alone, together = turn(20)
+        ratios.append(alone / together)
+    return statistics.median(ratios)
+
+
 def batch_steps_per_s(pool: str, seconds: float) -> float:
     """Return flock control steps per second by Gymnasium's benchmark: 64 flocks, all threads."""
     from gymnasium.utils.performance import benchmark_vector_step
@@ -121,6 +155,8 @@ def ppo_environment_share(seconds: float) -> float:
 OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
     "step wide": (lambda seconds: control_step_us("wide", seconds), "1"),
     "step narrow": (lambda seconds: control_step_us("narrow", seconds), "1"),
+    "single wide": (lambda seconds: single_step_ratio("wide", seconds), "1"),
+    "single narrow": (lambda seconds: single_step_ratio("narrow", seconds), "1"),
     "batch wide": (lambda seconds: batch_steps_per_s("wide", seconds), None),
     "batch narrow": (lambda seconds: batch_steps_per_s("narrow", seconds), None),
     "vec env overhead": (vec_env_overhead_us, "1"),
@@ -132,6 +168,11 @@ OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
 NAMES = {
     "step wide": ("control step of a flock, one core, wide, bw 0.3 s", "µs"),
     "step narrow": ("control step of a flock, one core, narrow, bw 0.4 s", "µs"),
+    "single wide": ("step of a single environment over a flock's in a batch of 64, wide", "times"),
+    "single narrow": (
+        "step of a single environment over a flock's in a batch of 64, narrow",
+        "times",
+    ),
     "batch wide": ("64 flocks, wide", "flock steps/s"),
     "batch narrow": ("64 flocks, narrow", "flock steps/s"),
     "vec env overhead": ("overhead of LeaderVecEnv at 64 slots", "µs per sample"),
@@ -194,6 +235,7 @@ def four_digits(value: float) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--row", choices=OWN, help="measure one row and print it as JSON")
+    parser.add_argument("--rows", nargs="+", choices=NAMES, help="measure these alone again")
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "throughput")
@@ -201,20 +243,32 @@ def main() -> None:
     if options.row:
         print(json.dumps({"value": OWN[options.row][0](options.seconds)}))
         return
-    found: dict[str, list[float]] = {row: [] for row in NAMES}
+    rows = options.rows or list(NAMES)
+    found: dict[str, list[float]] = {row: [] for row in rows}
     for _ in range(options.rounds):
         for row, values in found.items():
             values.append(measure(row, options.seconds))
             print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
     options.out.mkdir(parents=True, exist_ok=True)
-    with (options.out / "environments.csv").open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["row", "unit", "median", "least", "most"])
-        for row, values in found.items():
-            numbers = (statistics.median(values), min(values), max(values))
-            table.writerow([*NAMES[row], *map(four_digits, numbers)])
-    written = {**made(options.rounds, options.seconds), **{n: peer_version(n) for n in PEERS}}
-    (options.out / "environments.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
+    write_table(options.out / "environments.csv", found)
+    if not options.rows:
+        written = {**made(options.rounds, options.seconds), **{n: peer_version(n) for n in PEERS}}
+        (options.out / "environments.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
+
+
+def write_table(path: Path, found: dict[str, list[float]]) -> None:
+    """Write the rows that were measured; others stay as they are."""
+    table = {}
+    if path.exists():
+        with path.open(encoding="utf-8", newline="") as file:
+            table = {line[0]: line for line in csv.reader(file)}
+    for row, values in found.items():
+        numbers = (statistics.median(values), min(values), max(values))
+        table[NAMES[row][0]] = [*NAMES[row], *map(four_digits, numbers)]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["row", "unit", "median", "least", "most"])
+        writer.writerows(table[name] for name, _ in NAMES.values() if name in table)
 
 
 if __name__ == "__main__":

@@ -121,7 +121,11 @@ def throughput() -> list[Number]:
         leaders = 4
         return leaders * rows["median"].iloc[0] / 1e6
 
+    single = "step of a single environment over a flock's in a batch of 64, "
+    wide, narrow = ({"row": f"{single}{pool}"} for pool in ("wide", "narrow"))
     return [
+        Number(page, "environment takes {} times as long", table, wide, "median", ".1f"),
+        Number(page, "in `wide` and {} times in `narrow`, by", table, narrow, "median", ".1f"),
         Number(page, "That is {} and # million agent steps", table, rows["wide"], agent_steps),
         Number(page, "That is # and {} million agent steps", table, rows["narrow"], agent_steps),
     ]
