@@ -262,7 +262,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         for axes in panels[1]:
             axes.set_xlabel("bw (s)")
         figure.supxlabel("shaded: Ψ_o falls through 0.3; dashed: loss in figure 9")
-        panels[0, 0].legend()
+        panels[0, 0].legend(title="current")
 
 
 def script(options: Options) -> None:

@@ -138,7 +138,7 @@ def draw_density(options: Options, found: dict[tuple[str, str, int], pd.DataFram
         right.set(ylabel="mean |m| at bw = 0")
         for axes in (left, right):
             axes.set_xlabel("boats over room on the wall\n(wide: 0.19, 0.25, 0.47)")
-        right.legend()
+        right.legend(title="constants")
 
 
 def judge(table: pd.DataFrame) -> Claims:

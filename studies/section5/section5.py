@@ -158,7 +158,7 @@ def draw_means(
             axes.set_xlabel("bw (s); shaded: where the paper has order lost")
         for axes in panels[:, 0]:
             axes.set_ylabel(label)
-        panels[0, 0].legend()
+        panels[0, 0].legend(title="preset")
 
 
 def panel_title(n: int, k: int, runs: pd.DataFrame) -> str:
