@@ -36,14 +36,14 @@ pub(super) struct Pair {
     pub episode: u64,
 }
 
-/// What a branch has shown.
+/// Outcome of a branch for the regression.
 #[derive(Debug, Clone)]
-pub(super) struct Shown {
-    /// Sum over what was tried of its offset times the features there, in both flocks.
+pub(super) struct Outcome {
+    /// Sum over offsets of the offset times the features of its decisions, in both flocks.
     pub tried: Features,
     /// Order of the flock with the offsets less that of the one with the opposite ones, summed over decisions.
     pub difference: f64,
-    /// Features where something was tried, mean of both flocks.
+    /// Features of each offset's decisions, mean of both flocks.
     pub features: Vec<Features>,
     /// Mean order of both.
     pub order: f64,
@@ -78,8 +78,8 @@ impl Task {
         }
     }
 
-    /// A branch of a pair in a round: what it has shown, and the pair after it. It depends on nothing else, and changes
-    /// nothing.
+    /// Runs a branch of a pair in a round; returns its outcome and the pair after it. Both depend on nothing but the
+    /// arguments.
     ///
     /// # Errors
     /// [`FlockError::Placement`], [`FlockError::Solver`], [`FlockError::Snapshot`] and [`FlockError::Interrupted`].
@@ -89,7 +89,7 @@ impl Task {
         law: &LeaningLaw,
         (round, number): (usize, usize),
         pair: &Pair,
-    ) -> Result<(Shown, Pair)> {
+    ) -> Result<(Outcome, Pair)> {
         let mut random = Stream::TRAINING.rng(self.seed);
         random.set_stream((round * self.settings.pairs + number) as u64);
         let tries = self.decisions.trial / self.decisions.hold * self.parameters.n_leaders;
@@ -104,18 +104,14 @@ impl Task {
             .collect();
         let request = self.request(number, pair);
         let [plus, minus] = [1.0, -1.0].map(|sign| {
-            self.lead(
-                keep_going,
-                law,
-                &request,
-                offsets.iter().map(|x| sign * x).collect(),
-            )
+            let tried: Vec<f64> = offsets.iter().map(|x| sign * x).collect();
+            self.lead(keep_going, law, &request, &tried)
         });
         let (plus, minus) = (plus?, minus?);
-        let shown = self.shown(&offsets, &plus, &minus);
+        let outcome = self.outcome(&offsets, &plus, &minus);
         let continued = if coin(&mut random) { plus } else { minus };
         let next = self.next(pair, &continued, coin(&mut random))?;
-        Ok((shown, next))
+        Ok((outcome, next))
     }
 
     /// Checks that pairs can start their next branches.
@@ -159,49 +155,31 @@ impl Task {
         keep_going: KeepGoing,
         law: &LeaningLaw,
         request: &ResetRequest,
-        offsets: Vec<f64>,
+        offsets: &[f64],
     ) -> Result<Side> {
-        let leaders = self.parameters.n_leaders;
-        let Decisions {
-            branch,
-            hold,
-            seen: seen_for,
-            blind,
-            ..
-        } = self.decisions;
-        let mut env = FlockEnv::new(&self.env_settings, self.parameters.clone());
+        let (leaders, settings) = (self.parameters.n_leaders, &self.env_settings);
+        let mut env = FlockEnv::new(settings, self.parameters.clone());
         let mut seen = vec![0.0; leaders * LEAN_FEATURES];
-        env.start(
-            env.prepare(&self.env_settings, request, keep_going)?,
-            &mut seen,
-        );
+        env.start(env.prepare(settings, request, keep_going)?, &mut seen);
         let unsolved = flock_of(&env)?.statistics().unsolved;
-        let mut features = vec![[0.0; SIZE]; offsets.len()];
         let (mut actions, mut rewards) = (vec![0.0; leaders], vec![0.0; leaders]);
-        let (mut order, mut judged) = (0.0, 0.0);
-        for decision in 0..branch {
+        let (mut features, mut order, mut judged) = (vec![[0.0; SIZE]; offsets.len()], 0.0, 0.0);
+        for decision in 0..self.decisions.branch {
             if !keep_going() {
                 return Err(FlockError::Interrupted);
             }
-            let first = decision / hold * leaders;
-            for (leader, row) in seen.chunks_exact(LEAN_FEATURES).enumerate() {
-                let action = f64::from(law.action(row));
-                let offset = offsets.get(first + leader);
-                let is_seen = decision % hold < seen_for;
-                if let Some(felt) = features.get_mut(first + leader).filter(|_| is_seen) {
-                    add(felt, row, (1.0 - action * action) / seen_for as f64);
-                }
-                actions[leader] = action + offset.copied().unwrap_or(0.0);
-            }
+            self.decide(law, decision, &seen, offsets, &mut features, &mut actions);
             env.step(
                 keep_going,
-                &self.env_settings,
+                settings,
                 Some(&actions),
                 &mut seen,
                 &mut rewards,
             )?;
             order += rewards[0];
-            judged += if decision >= blind { rewards[0] } else { 0.0 };
+            if decision >= self.decisions.blind {
+                judged += rewards[0];
+            }
         }
         let flock = flock_of(&env)?.clone();
         Ok(Side {
@@ -213,7 +191,35 @@ impl Task {
         })
     }
 
-    fn shown(&self, offsets: &[f64], plus: &Side, minus: &Side) -> Shown {
+    /// Writes the actions of a decision, the law's and the offsets tried then, and adds what leaders see to the
+    /// features of these offsets.
+    fn decide(
+        &self,
+        law: &LeaningLaw,
+        decision: usize,
+        seen: &[f32],
+        offsets: &[f64],
+        features: &mut [Features],
+        actions: &mut [f64],
+    ) {
+        let Decisions {
+            hold,
+            seen: seen_for,
+            ..
+        } = self.decisions;
+        let first = decision / hold * actions.len();
+        for (leader, row) in seen.chunks_exact(LEAN_FEATURES).enumerate() {
+            let action = f64::from(law.action(row));
+            let offset = offsets.get(first + leader);
+            let is_seen = decision % hold < seen_for;
+            if let Some(felt) = features.get_mut(first + leader).filter(|_| is_seen) {
+                add(felt, row, (1.0 - action * action) / seen_for as f64);
+            }
+            actions[leader] = action + offset.copied().unwrap_or(0.0);
+        }
+    }
+
+    fn outcome(&self, offsets: &[f64], plus: &Side, minus: &Side) -> Outcome {
         let both = plus.features.iter().zip(&minus.features);
         let features: Vec<Features> = both
             .map(|(a, b)| std::array::from_fn(|k| 0.5 * (a[k] + b[k])))
@@ -225,7 +231,7 @@ impl Task {
                 *sum += 2.0 * offset * value;
             }
         }
-        Shown {
+        Outcome {
             tried,
             difference: plus.judged - minus.judged,
             features,

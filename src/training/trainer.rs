@@ -1,7 +1,7 @@
 //! A training, round after round.
 
 use super::BranchSettings;
-use super::branch::{Pair, Shown, Task};
+use super::branch::{Outcome, Pair, Task};
 use super::regression::{Features, Matrix, SIZE, add_square, dot, product, ridge};
 use crate::boat::DampedLaw;
 use crate::contact::KeepGoing;
@@ -14,7 +14,7 @@ use crate::sealed_bytes::{Magic, seal, unseal};
 
 const MAGIC: Magic = *b"flocktr2";
 
-/// What a training remembers between two rounds.
+/// State of a training between two rounds.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 struct Memory {
     /// Weights before the first round and after each.
@@ -63,7 +63,7 @@ pub struct Trainer {
     task: Task,
     memory: Memory,
     /// Branches of the round under way.
-    under_way: Vec<(Shown, Pair)>,
+    under_way: Vec<(Outcome, Pair)>,
 }
 
 impl Trainer {
@@ -177,10 +177,10 @@ impl Trainer {
                 &self.memory.pairs[number],
             )
         };
-        let shown: Result<Vec<_>> = parallel::map((first..last).collect(), work)
+        let outcomes: Result<Vec<_>> = parallel::map((first..last).collect(), work)
             .into_iter()
             .collect();
-        self.under_way.extend(shown?);
+        self.under_way.extend(outcomes?);
         if self.under_way.len() == self.memory.pairs.len() {
             self.take_step();
         }
@@ -196,18 +196,18 @@ impl Trainer {
         }
         memory.rounds = settings.memory * memory.rounds + 1.0;
         let mut order = 0.0;
-        for ((shown, next), pair) in self.under_way.drain(..).zip(&mut memory.pairs) {
-            add_square(&mut memory.tried, 1.0, &shown.tried);
-            for (sum, tried) in memory.differences.iter_mut().zip(&shown.tried) {
-                *sum += tried * shown.difference;
+        for ((outcome, next), pair) in self.under_way.drain(..).zip(&mut memory.pairs) {
+            add_square(&mut memory.tried, 1.0, &outcome.tried);
+            for (sum, tried) in memory.differences.iter_mut().zip(&outcome.tried) {
+                *sum += tried * outcome.difference;
             }
-            let share = 1.0 / (settings.pairs * shown.features.len()) as f64;
-            for each in &shown.features {
-                add_square(&mut memory.features, share, each);
+            let share = 1.0 / (settings.pairs * outcome.features.len()) as f64;
+            for features in &outcome.features {
+                add_square(&mut memory.features, share, features);
             }
-            order += shown.order / settings.pairs as f64;
-            memory.unsolved += u64::from(shown.is_unsolved);
-            memory.worst_overlap_cm = memory.worst_overlap_cm.max(shown.worst_overlap_cm);
+            order += outcome.order / settings.pairs as f64;
+            memory.unsolved += u64::from(outcome.is_unsolved);
+            memory.worst_overlap_cm = memory.worst_overlap_cm.max(outcome.worst_overlap_cm);
             *pair = next;
         }
         let gradient = ridge(&memory.tried, settings.ridge, &memory.differences);

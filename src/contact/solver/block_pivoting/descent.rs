@@ -13,8 +13,8 @@ use crate::contact::solver::{EXACT, SolveReport};
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
-    /// Solves the island again: where it is large from the impulses of the last round that push, and where it is
-    /// small, or that fails, from no impulses at all.
+    /// Solves the island again: a large one from the pushing impulses of the last round, and a small one, or one
+    /// that this fails to solve, from no impulses at all.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let rows = &self.rows.rows;
         let mut pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
@@ -25,8 +25,8 @@ impl IslandSolver {
         }
     }
 
-    /// Descends from impulses that push, or from none; returns whether that solves it. Contacts enter
-    /// together where some push already, and one by one otherwise.
+    /// Descends from impulses that push, or from none; returns whether that solves the island. Contacts enter
+    /// together if some push already, and one by one otherwise.
     fn descend_from(
         &mut self,
         mut held: Vec<f64>,
@@ -34,12 +34,7 @@ impl IslandSolver {
         report: &mut SolveReport,
     ) -> bool {
         let count = held.len();
-        for (k, &impulse) in held.iter().enumerate() {
-            self.rows.rows[k].impulse = impulse;
-            self.set_active(k, impulse > 0.0);
-        }
-        self.rows.update();
-        let is_warm = held.iter().any(|&impulse| impulse > 0.0);
+        let is_warm = self.start_from(&held);
         if is_warm {
             self.approach(&mut held, regularization, report);
         }
@@ -70,6 +65,16 @@ impl IslandSolver {
             }
         }
         false
+    }
+
+    /// Takes impulses and activates the contacts that push; returns whether any does.
+    fn start_from(&mut self, held: &[f64]) -> bool {
+        for (k, &impulse) in held.iter().enumerate() {
+            self.rows.rows[k].impulse = impulse;
+            self.set_active(k, impulse > 0.0);
+        }
+        self.rows.update();
+        held.iter().any(|&impulse| impulse > 0.0)
     }
 
     /// Of more impulses than can be independent of each other, keeps the strongest.
