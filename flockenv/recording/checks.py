@@ -1,7 +1,7 @@
 """Checks of a recording's arrays."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import number, real_numbers
+from flockenv._io.arguments import number
 from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries
-from flockenv.order import QUANTITIES, RECORDED, OrderSeries
+from flockenv.order import RECORDED, OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
 
 PHASES = np.array(_core.PHASES)
@@ -136,59 +136,6 @@ def check_ids(ids: object, boats: int) -> None:
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
     if len(set(ids.tolist())) != boats:
         raise ParameterError("ids must differ from each other")
-
-
-def check_names(quantities: object, of: str) -> None:
-    """Refuse quantities of a user's own that are not by name, or whose names are taken."""
-    if not isinstance(quantities, Mapping):
-        raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
-    taken = {each.name for each in QUANTITIES} | {*TIMES, *MOTION, "boat", "id", "is_leader"}
-    for name in quantities:
-        if not isinstance(name, str) or not name.isidentifier() or name in taken:
-            raise ParameterError(
-                f"quantity {short_repr(name)} is not accepted: an identifier that no quantity or "
-                "column of recordings has"
-            )
-
-
-def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
-    """Return a user's functions by name, checked before the run that they are for."""
-    check_names(functions, "functions")
-    for name, function in functions.items():
-        if not callable(function):
-            raise ParameterError(
-                f"quantity {name!r} = {short_repr(function)} is not accepted: a function of a "
-                "recording"
-            )
-    return dict(functions)
-
-
-def own_series(name: str, function: Callable[[Any], Any], recording: object) -> NDArray[np.float64]:
-    """Return the values of a user's function of a recording, a number for each sample."""
-    try:
-        values = function(recording)
-    except Exception as error:  # It is the user's.
-        raise ParameterError(
-            f"quantity {name!r} failed: {type(error).__name__}: {error}"
-        ) from error
-    found = real_numbers(values, f"quantity {name!r}")
-    with np.errstate(over="ignore"):
-        doubles = np.ma.asarray(found.astype(np.float64))
-    # Masked values are missing.
-    series = np.ma.filled(doubles, np.nan).copy()
-    if (np.isinf(series) & np.isfinite(np.ma.filled(found, 0))).any():
-        raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")
-    return series
-
-
-def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
-    """Refuse quantities of a user's own that are no series, or whose names are taken."""
-    check_names(quantities, "arrays")
-    for name, values in quantities.items():
-        if not isinstance(values, np.ndarray) or values.dtype != np.float64:
-            raise ParameterError(f"quantity {name!r} must be an array of float64")
-        if values.shape != times:
-            raise ParameterError(f"quantity {name!r} has shape {values.shape}, expected {times}")
 
 
 def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParameters) -> None:

@@ -27,14 +27,12 @@ from flockenv.recording.checks import (
     check_ids,
     check_order,
     check_origin,
-    check_quantities,
     check_seed,
     check_share,
     check_times,
-    checked_functions,
-    own_series,
 )
-from flockenv.recording.stored import ARRAYS, OPTIONAL, LayoutError, arrays_of, fields_from
+from flockenv.recording.quantities import check_quantities, own_series, read_only
+from flockenv.recording.stored import ARRAYS, LayoutError, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
 if TYPE_CHECKING:
@@ -329,40 +327,12 @@ class Recording(HintsAtNames):
             and names that are no identifiers or are taken. Its attribute ``recording`` is this
             recording.
         """
-        seen = self._read_only()
         try:
-            found = {
-                name: own_series(name, function, seen)
-                for name, function in checked_functions(functions).items()
-            }
+            found = own_series(functions, replace(self, **read_only(self._fields())))
             return replace(self, quantities={**self.quantities, **found})
         except ParameterError as error:
             vars(error)["recording"] = self
             raise
-
-    def _read_only(self) -> Self:
-        """Return the recording with arrays that cannot be written to."""
-
-        def sealed(array: NDArray[Any]) -> NDArray[Any]:
-            view = array.view()
-            view.flags.writeable = False
-            return view
-
-        arrays = {name: getattr(self, name) for name in (*ARRAYS, *OPTIONAL)}
-        contacts = self.contacts
-        if contacts is not None:
-            columns = (sealed(getattr(contacts, each.name)) for each in fields(contacts))
-            contacts = type(contacts)(*columns)
-        seen: dict[str, Any] = {
-            name: sealed(array) for name, array in arrays.items() if array is not None
-        }
-        return replace(
-            self,
-            **seen,
-            order=OrderSeries(*map(sealed, self.order.columns())),
-            contacts=contacts,
-            quantities={name: sealed(values) for name, values in self.quantities.items()},
-        )
 
     def without_poses(self) -> Self:
         """Return the recording without its poses and velocities."""
