@@ -11,7 +11,8 @@ import flockenv
 from flockenv.tracks import TrackLayout, read_tracks
 
 from .conftest import but
-from .test_honest_tables import PLACE, boxes, movement
+from .honest import PLACE
+from .program_tables import boxes, movement
 
 LAYOUT = TrackLayout(**PLACE)
 

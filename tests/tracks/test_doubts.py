@@ -13,18 +13,10 @@ from flockenv.tracks import TrackLayout, guess_layout, read_tracks
 from flockenv.tracks import table as tables
 
 from .conftest import LAYOUT, but, read_and_counted
-from .test_honest_tables import (
-    CORPUS,
-    METERS,
-    ORDERS,
-    PLACE,
-    PLAIN,
-    PROGRAMS,
-    motive,
-    quaternions,
-    ros,
-    rows,
-)
+from .corpus import CORPUS, ORDERS, PLAIN
+from .honest import PLACE, rows
+from .program_tables import METERS, motive, quaternions, ros
+from .programs import PROGRAMS
 
 SMALL = TrackLayout(**PLAIN)
 
