@@ -125,7 +125,7 @@ def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray
         chosen = np.einsum("tfls,fs->tfl", features, weights + changes).ravel()
         advantage = np.broadcast_to(advantages(orders, settings)[:, None], seen.shape[:-1]).ravel()
         features = features.reshape(len(chosen), -1)
-        # A decision's own distribution, whatever the others of its branch.
+        # Each decision has a distribution of its own, independent of the others of its branch.
         spread = settings.sigma * np.linalg.norm(features, axis=1)
         start, rate = weights.copy(), settings.learning_rate * (1 - number / rounds)
         for _ in range(settings.epochs):

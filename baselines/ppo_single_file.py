@@ -4,7 +4,7 @@
     flockenv compare --policy results/ppo_single_file/policy.npz --pool narrow --set n_boats=9
 
 After 102 400 samples, 8 s of one core, seed 0 leads 9 boats with an order of 0.177, where its start
-has 0.147: no gain that 64 flocks show. The file is there to be read.
+has 0.147: no gain that 64 flocks show. The file is meant to be read.
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is

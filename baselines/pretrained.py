@@ -197,7 +197,7 @@ def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.Data
 
 
 def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, LeaningLaw]:
-    """Train what is missing, and return the policy of each seed."""
+    """Make the missing trainings, and return the policy of each seed."""
     laws = {}
     for seed in given.seeds:
         folder = out / pool / str(seed)

@@ -124,7 +124,7 @@ SHORT = {
     r"type\[~typing\.Any\] \| ~numpy\.dtype\[.*?_DTypeDict \| str": "DTypeLike",
     r"(~numpy\.ndarray)\[tuple\[[^\]]*\], ~numpy\.dtype\[[^\[\]]*(?:\[[^\]]*\])?\]\]": r"\1",
 }
-"""What signatures show of types that are evaluated, in this order."""
+"""Replacements in signatures with evaluated types, made in this order."""
 
 
 def setup(app: Sphinx) -> None:

@@ -32,7 +32,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Task:
-    """The flocks, and what their leaders do: options of LeaderVecEnv."""
+    """The flocks and their leaders' task: options of LeaderVecEnv."""
 
     num_flocks: int = 128  # stepped together
     pool: str = "wide"

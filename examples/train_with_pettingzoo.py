@@ -66,7 +66,7 @@ optimizer = torch.optim.Adam(parameters, settings.learning_rate, eps=1e-5)
 
 
 def stacked(by_agent: dict[str, np.ndarray]) -> torch.Tensor:
-    """Return what agents have, a row for each."""
+    """Return the arrays of all agents, a row for each agent."""
     return torch.tensor(np.array([by_agent[agent] for agent in agents]), dtype=torch.float32)
 
 

@@ -55,7 +55,7 @@ class LeadersTaskClass(TaskClass):
 
     def __init__(self, name: str, config: dict[str, Any] | None) -> None:
         super().__init__(name, config)
-        options = {each: value for each, value in self.config.items() if each != "state"}
+        options = {key: value for key, value in self.config.items() if key != "state"}
         refuse_unknown((self.config.get("state", "none"),), STATES, "state")
         EnvOptions.parse(options)
 
@@ -190,7 +190,7 @@ def network_policy(
         )
     algorithm = experiment.algorithm
     actor = algorithm.get_policy_for_loss(GROUP)
-    networks = [each for each in actor.modules() if isinstance(each, Mlp)]
+    networks = [module for module in actor.modules() if isinstance(module, Mlp)]
     shared = experiment.config.share_policy_params or env.num_leaders == 1
     if len(networks) != 1 or not shared:
         raise ParameterError(

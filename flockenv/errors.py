@@ -22,7 +22,7 @@ __all__ = [
 
 
 class UnknownOptionError(ParameterError, TypeError):
-    """An environment was given a keyword argument that is none of its options.
+    """An environment was given a keyword argument that is not one of its options.
 
     It is a `TypeError`, too, because libraries try out optional arguments and leave out those that
     raise one (TorchRL's ``GymEnv``: ``frameskip``).
@@ -40,7 +40,7 @@ def short_repr(value: object) -> str:
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """Return the known name that is most like another one, None if none is at least `cutoff`."""
-    plain = {each.casefold(): each for each in known}
+    plain = {word.casefold(): word for word in known}
     near = difflib.get_close_matches(str(name).casefold(), plain, n=1, cutoff=cutoff)
     return plain[near[0]] if near else None
 
@@ -53,7 +53,7 @@ def hint(name: object, known: Iterable[str]) -> str:
 
 
 def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> None:
-    """Refuse names that are none of those that are known: each is to be a `what`."""
+    """Refuse unknown names; the error calls them `what`."""
     known = list(known)
     for name in names:
         if name not in known:
@@ -61,7 +61,7 @@ def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> 
 
 
 class HintsAtNames:
-    """An object whose error for an attribute that it does not have names the one that is meant."""
+    """An object whose error for a missing attribute suggests the right name."""
 
     __slots__ = ()
     #: Meanings of other words, as an error says them.
@@ -74,7 +74,7 @@ class HintsAtNames:
             words = f"{type(self).__name__!r} object has no attribute {name!r}"
             # Libraries look for private names, which have no other word.
             if not name.startswith("_"):
-                near = nearest(name, (each for each in dir(type(self)) if each[0] != "_"))
+                near = nearest(name, (word for word in dir(type(self)) if word[0] != "_"))
                 if meant := self._meanings.get(name, near and repr(near)):
                     words += f": did you mean {meant}?"
             raise AttributeError(words)

@@ -56,10 +56,10 @@ class Quantity:
 QUANTITIES = tuple(Quantity(**entry) for entry in _core.QUANTITIES)
 """The table of quantities."""
 
-RECORDED = tuple(each for each in QUANTITIES if each.kind == "recorded")
+RECORDED = tuple(quantity for quantity in QUANTITIES if quantity.kind == "recorded")
 """The quantities that are recorded with every sample."""
 
-ORDER = tuple(each.name for each in RECORDED)
+ORDER = tuple(quantity.name for quantity in RECORDED)
 """Their names."""
 
 _MEANINGS = {
@@ -180,7 +180,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         ParameterError
             For an unknown name or target.
         """
-        known = {each.name: each for each in QUANTITIES if each.kind != "structure"}
+        known = {quantity.name: quantity for quantity in QUANTITIES if quantity.kind != "structure"}
         if name not in known:
             raise ParameterError(
                 f"quantity = {short_repr(name)} is not accepted: {', '.join(known)}"
@@ -197,7 +197,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        With a list of targets the first counts. Raises what `series` raises.
+        With a list of targets the first counts. Raises the errors of `series`.
         """
         return self.series("signed_order", target)
 
@@ -292,10 +292,12 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         if self.time_s is None:
             raise ParameterError("this series has no times: plot a recording's order")
         if not names:
-            names = tuple(each.name for each in RECORDED if each.range and not each.unit)
+            names = tuple(
+                quantity.name for quantity in RECORDED if quantity.range and not quantity.unit
+            )
         columns = {name: self.series(name, target) for name in names}
         axes: Axes = pyplot.subplots()[1] if ax is None else ax
-        titles = {each.name: each.title for each in QUANTITIES}
+        titles = {quantity.name: quantity.title for quantity in QUANTITIES}
         for name, values in columns.items():
             axes.plot(self.time_s, values, label=titles[name], linewidth=1.0)
         axes.set_xlabel("time [s]")
@@ -326,7 +328,7 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
         For other shapes, and for values that are no numbers.
     """
     states = {"pose": with_gaps(pose, "pose"), "velocity": with_gaps(velocity, "velocity")}
-    for name, each in states.items():
-        if each.ndim != 3:
-            raise ParameterError(f"{name} has shape {each.shape}, expected (t, n, 3)")
+    for name, shares in states.items():
+        if shares.ndim != 3:
+            raise ParameterError(f"{name} has shape {shares.shape}, expected (t, n, 3)")
     return OrderSeries(**_core.order_columns(**states))

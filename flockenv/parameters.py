@@ -11,9 +11,11 @@ from flockenv._io.arguments import materialized
 from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 
-_TABLE = {each["name"]: each for each in _core.PARAMETERS}
+_TABLE = {parameter["name"]: parameter for parameter in _core.PARAMETERS}
 
-OBSTACLES = tuple(name for name, each in _TABLE.items() if each["kind"].startswith("tuple of "))
+OBSTACLES = tuple(
+    name for name, declared in _TABLE.items() if declared["kind"].startswith("tuple of ")
+)
 """Fields with a row for each obstacle, in the order in which contacts number them."""
 
 
@@ -208,7 +210,7 @@ class FlockParameters:
         return cls.from_dict(read_toml(text, "the text of parameters"))
 
 
-_NAMES = tuple(each.name for each in fields(FlockParameters))
+_NAMES = tuple(parameter.name for parameter in fields(FlockParameters))
 
 
 def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.Parameters:
@@ -227,10 +229,10 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
             f'target = "{target}" is not accepted: "cw" or "ccw"; environments take it, as in '
             f'gymnasium.make("flockenv/Leaders-v0", target="{target}")'
         )
-    return _core.Parameters(base, {name: _stored(each) for name, each in changes.items()})
+    return _core.Parameters(base, {name: _stored(value) for name, value in changes.items()})
 
 
 def _stored(value: object) -> Any:
     """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
     held = materialized(value)
-    return held if held is value else tuple(materialized(each) for each in held)
+    return held if held is value else tuple(materialized(name) for name in held)

@@ -49,7 +49,7 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         """Make the networks."""
         given = dict(self.model_config or {})
         # RLlib adds entries of its own, which say how it makes its networks.
-        of_rllib = {each.name for each in fields(DefaultModelConfig)}
+        of_rllib = {option.name for option in fields(DefaultModelConfig)}
         refuse_unknown(given.keys() - of_rllib, _DEFAULTS, "entry of model_config")
         config = {**_DEFAULTS, **given}
         refuse_unknown((config["activation"],), _LAYERS, "activation")

@@ -132,7 +132,7 @@ def simulate(
     leaders = Leaders.from_policies(policy, parameters)
     start = _state_of(start)
     changes = _changes(parameters, schedule, seed)
-    for pool in {each.pool for _, each in changes if isinstance(each, FlockParameters)}:
+    for pool in {change.pool for _, change in changes if isinstance(change, FlockParameters)}:
         leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
     flock = _started(parameters, seed, start, noise_seed)
@@ -221,7 +221,7 @@ def _changes(parameters: FlockParameters, schedule: Schedule, seed: int) -> Chan
     entries = [(*_change(entry), entry) for entry in items(schedule, "schedule")]
     changes: Changes = []
     now, times = parameters, dict[float, set[str]]()
-    for time_s, fields, entry in sorted(entries, key=lambda each: each[0]):
+    for time_s, fields, entry in sorted(entries, key=lambda parsed: parsed[0]):
         try:
             if twice := times.setdefault(time_s, set()) & fields.keys():
                 raise ParameterError(f"{twice.pop()} changes twice at this time")
@@ -267,12 +267,12 @@ def _is_single(dtype: DTypeLike) -> bool:
 def _schedule_digest(
     now: FlockParameters, changes: Changes, times_s: NDArray[np.float64]
 ) -> str | None:
-    """Return the SHA-256 of what changed when, from these parameters; None if nothing did."""
+    """Return the SHA-256 of all changes and their times; None if nothing changed."""
     before, length_s = now, round(times_s[-1] - times_s[0], 9)
-    after: dict[float, FlockParameters] = {}  # Of changes at one time the last.
+    after: dict[float, FlockParameters] = {}  # The last of several changes at one time counts.
     # A change acts after the sample at its time: a run that ended early has not seen it.
-    for time_s, each in ((time_s, each) for time_s, each in changes if time_s < length_s):
-        now = each if isinstance(each, FlockParameters) else now.replace(target=each)
+    for time_s, change in ((time_s, change) for time_s, change in changes if time_s < length_s):
+        now = change if isinstance(change, FlockParameters) else now.replace(target=change)
         after[time_s] = now
     named = []
     for time_s, now in after.items():
@@ -283,7 +283,7 @@ def _schedule_digest(
 
 
 def _state_of(start: Start | None) -> bytes | Mapping[str, object] | None:
-    """Return the last sample of a recording, and any other start as it is."""
+    """Return the last sample of a recording, and any other start unchanged."""
     if not isinstance(start, Recording):
         return start
     return start.state_at(start.duration_s if len(start) == 0 else float(start.time_s[-1]))
@@ -296,7 +296,7 @@ def _start_digest(start: bytes | Mapping[str, object] | None, flock: Flock) -> s
     if isinstance(start, bytes):
         return hashlib.sha256(start).hexdigest()
     state = (flock.pose, flock.velocity, np.float64(flock.time_s))
-    return hashlib.sha256(b"".join(each.tobytes() for each in state)).hexdigest()
+    return hashlib.sha256(b"".join(key.tobytes() for key in state)).hexdigest()
 
 
 def _started(

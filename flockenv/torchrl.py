@@ -122,7 +122,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
 
     def _make_specs(self) -> None:
         flocks, device = self.batch_size, self.device
-        each = torch.Size([*flocks, self.num_leaders])
+        per_leader = torch.Size([*flocks, self.num_leaders])
 
         def bounded(space: gymnasium.spaces.Box, *shape: int) -> Bounded:
             low, high = (torch.from_numpy(bound) for bound in (space.low, space.high))
@@ -130,17 +130,19 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
             return Bounded(low.expand(size), high.expand(size), size, device, torch.float32)
 
         def grouped(**entries: object) -> Composite:
-            return Composite({GROUP: Composite(entries, shape=each)}, shape=flocks)
+            return Composite({GROUP: Composite(entries, shape=per_leader)}, shape=flocks)
 
-        self.observation_spec = grouped(observation=bounded(self.observation_space, *each))
+        self.observation_spec = grouped(observation=bounded(self.observation_space, *per_leader))
         if self._state != "none":
             self.observation_spec["state"] = bounded(self._state_space(), *flocks)
         if self.rudder_levels is None:
-            action = Bounded(-1.0, 1.0, torch.Size([*each, 1]), device, torch.float32)
+            action = Bounded(-1.0, 1.0, torch.Size([*per_leader, 1]), device, torch.float32)
         else:
-            action = Categorical(self.rudder_levels, each, device, torch.int64)
+            action = Categorical(self.rudder_levels, per_leader, device, torch.int64)
         self.action_spec = grouped(action=action)
-        self.reward_spec = grouped(reward=Unbounded(torch.Size([*each, 1]), device, torch.float32))
+        self.reward_spec = grouped(
+            reward=Unbounded(torch.Size([*per_leader, 1]), device, torch.float32)
+        )
         ends = ("done", "terminated", "truncated")
         one = torch.Size([*flocks, 1])
         self.done_spec = Composite(
@@ -155,7 +157,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     def set_seed(self, seed: int | None = None, static_seed: bool = False) -> int | None:
         """Seed the flocks at the next reset: flock i with ``seed + i``; return TorchRL's next seed.
 
-        A ParameterError refuses what is no seed.
+        A ParameterError refuses anything but a seed.
         """
         given = None if seed is None else as_int(seed, "seed")
         following: int | None = super().set_seed(given, static_seed)
@@ -191,8 +193,8 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
         actions = tensordict[GROUP, "action"].detach().cpu().numpy()
         shape = (self.num_flocks, self.num_leaders)
-        each = shape if self.rudder_levels is not None else (*shape, 1)
-        flat = _core.flat_actions(actions, each, self.rudder_levels, "the leaders' action")
+        expected = shape if self.rudder_levels is not None else (*shape, 1)
+        flat = _core.flat_actions(actions, expected, self.rudder_levels, "the leaders' action")
         observations, rewards, ended = self._batch.step(self, flat)
         result = self._seen(observations)
         reward = self._tensor(rewards.astype(np.float32)).reshape(*shape, 1)
@@ -204,9 +206,9 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         return result
 
     def _seen(self, rows: NDArray[np.float32]) -> TensorDict:
-        each = [self.num_flocks, self.num_leaders]
-        observation = self._tensor(rows).reshape(*each, -1)
-        leaders = TensorDict({"observation": observation}, each, device=self.device)
+        shape = [self.num_flocks, self.num_leaders]
+        observation = self._tensor(rows).reshape(*shape, -1)
+        leaders = TensorDict({"observation": observation}, shape, device=self.device)
         seen: dict[str, Any] = {GROUP: leaders}
         if self._state != "none":
             seen["state"] = self._tensor(self._state_now())

@@ -15,10 +15,10 @@ _MOST_ITEMS = 1_000_000
 
 
 def items(values: object, name: str) -> Any:
-    """Return what a sequence holds: a list, an array, a generator, a `zip`, a view of a dictionary.
+    """Return the items of a sequence: a list, an array, a generator or a view of a dictionary.
 
-    A range stays what it is. Texts, dictionaries and sets are a TypeError, and sequences without
-    end a ParameterError.
+    A range is returned unchanged. Texts, dictionaries and sets are a TypeError, and sequences
+    without end a ParameterError.
     """
     if isinstance(values, range):
         return values
@@ -59,8 +59,8 @@ def materialized(values: object) -> Any:
 def listed(value: object) -> Any:
     """Return an array as a list or a number, and any other value as `materialized` does.
 
-    Arrays of other libraries are arrays too. What is masked, a table and what is larger than any
-    option stay as they are, for the refusal that names them.
+    Arrays of other libraries are arrays too. Masked arrays, tables, and arrays larger than any
+    option are returned unchanged: a later check refuses them by name.
     """
     if not hasattr(value, "__array__") or hasattr(value, "columns") or np.ma.is_masked(value):
         return materialized(value)

@@ -73,7 +73,8 @@ def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
             raise ValueError(f"it holds {name!r} twice")
         # The whole entry, whose checksum is compared; NumPy alone may stop before its end.
         with archive.open(entry) as stream:
-            # As many bytes as it says that there are: without a number all would be unpacked.
+            # Reads only as many bytes as the entry declares; without a number the whole entry would
+            # be unpacked.
             data = stream.read(entry.file_size)
         arrays[name] = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
         if arrays[name].dtype.kind not in "biufU":

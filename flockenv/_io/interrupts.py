@@ -73,6 +73,6 @@ def _note(number: int, frame: object) -> None:
 
 
 def _write(text: bytes) -> None:
-    # Python's own streams may be what was interrupted.
+    # The interruption may have hit Python's own streams.
     with suppress(OSError):
         os.write(2, text)

@@ -26,8 +26,7 @@ def _is_special(mode: int) -> bool:
 def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
     """Open a file to read its bytes.
 
-    A ParameterError names what is no file but a device, a pipe or a socket; a folder is an OSError,
-    as what is not there.
+    A ParameterError names a device, a pipe or a socket. A folder or a missing file is an OSError.
     """
     words = f"{os.fspath(path)} is no file but a device, a pipe or a socket"
     if is_special(path):

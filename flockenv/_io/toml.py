@@ -1,4 +1,4 @@
-"""TOML as a dictionary, with one kind of error for text that is none."""
+"""TOML as a dictionary, with one kind of error for text that is no TOML."""
 
 import os
 import tomllib
@@ -20,7 +20,7 @@ def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
 
 
 def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
-    """Return the values in a TOML file of at most 1 MiB, which ParameterErrors call `what`."""
+    """Return the values in a TOML file of at most 1 MiB; ParameterErrors call the file `what`."""
     try:
         return read_toml(read_limited(path, f"{what} is no TOML").decode("utf-8-sig"), what)
     except OSError as error:
@@ -30,7 +30,7 @@ def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
 
 
 def read_toml(text: str, what: str) -> dict[str, Any]:
-    """Return the values in a TOML text, which errors call `what`.
+    """Return the values in a TOML text; errors call the text `what`.
 
     Numbers and nesting that nothing here could take are refused too, as a ParameterError.
     """

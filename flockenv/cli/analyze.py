@@ -18,7 +18,7 @@ from flockenv.rendering.palette import PALETTE
 
 def _pictures() -> list[str]:
     kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes
-    return [f".{each}" for each in kinds]
+    return [f".{kind}" for kind in kinds]
 
 
 def _written() -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from flockenv.errors import ParameterError, nearest
 from flockenv.parameters import FlockParameters
 
 _COMMA = r"[+-]?\d*,\d+"
-_FIELDS = tuple(each.name for each in fields(FlockParameters))
+_FIELDS = tuple(parameter.name for parameter in fields(FlockParameters))
 
 
 class Command(typer.core.TyperCommand):
@@ -36,7 +36,7 @@ class Command(typer.core.TyperCommand):
                 name = getattr(error, "option_name", "")
                 if type(error).__name__ != "NoSuchOption" or not name.startswith("--"):
                     raise
-                known = [each for parameter in self.params for each in parameter.opts]
+                known = [spelling for parameter in self.params for spelling in parameter.opts]
                 raise ParameterError(_answer(words, name, known)) from None
             _refuse_repeated(order, {word.partition("=")[0] for word in args})
         try:
@@ -62,11 +62,13 @@ def _refuse_repeated(order: Sequence[Any], given: Set[str]) -> None:
 
     The same flag may be repeated, but not contradicted.
     """
-    for each, times in Counter(order).items():
-        if each.multiple or times == 1 or each.param_type_name == "argument":
+    for parameter, times in Counter(order).items():
+        if parameter.multiple or times == 1 or parameter.param_type_name == "argument":
             continue
-        if not each.is_flag or (given & {*each.opts} and given & {*each.secondary_opts}):
-            raise ParameterError(f"{each.opts[0]} is given twice: give it once")
+        if not parameter.is_flag or (
+            given & {*parameter.opts} and given & {*parameter.secondary_opts}
+        ):
+            raise ParameterError(f"{parameter.opts[0]} is given twice: give it once")
 
 
 def _answer(words: Sequence[str], unknown: str, known: list[str]) -> str:

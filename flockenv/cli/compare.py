@@ -181,7 +181,7 @@ class Plan:
     @property
     def names(self) -> list[str]:
         """The names of all policies, the user's first."""
-        return list(dict.fromkeys(name for each in self.policies.values() for name in each))
+        return list(dict.fromkeys(name for policies in self.policies.values() for name in policies))
 
     @property
     def flock_hours(self) -> float:
@@ -250,7 +250,7 @@ def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float
         name: [*given.values()] if isinstance(given, Mapping) else [given]
         for name, given in own.items()
     }
-    files = [name for name, each in parts.items() if any(map(_is_made, each))]
+    files = [name for name, names in parts.items() if any(map(_is_made, names))]
     if len(hours) != len(files):
         raise ParameterError(
             f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
@@ -283,22 +283,22 @@ def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> 
 
 def _read(given: Given, pool: Pool, trust: bool) -> Steers:
     if isinstance(given, Mapping):
-        return {leader: policy(each, pool, trust=trust) for leader, each in given.items()}
+        return {leader: policy(own, pool, trust=trust) for leader, own in given.items()}
     return policy(given, pool, trust=trust)
 
 
 def _tasks(options: CompareOptions) -> list[Case]:
     """Return the tasks of a suite; refuse options that would make another task of one."""
-    _refuse_all_but((each.name for each in fields(options) if each.name not in _OF_FLOCKS), options)
+    _refuse_all_but({field.name for field in fields(options)} - {*_OF_FLOCKS}, options)
     return tasks_named(str(options.suite), options.task or ())
 
 
 def _refuse_all_but(names: Iterable[str], options: CompareOptions) -> None:
     """Refuse options that a suite does not take."""
     taken = {*names}
-    for each in fields(options):
-        if each.name not in taken and getattr(options, each.name) != each.default:
-            name = {"changes": "--set"}.get(each.name, option_of(each.name))
+    for field in fields(options):
+        if field.name not in taken and getattr(options, field.name) != field.default:
+            name = {"changes": "--set"}.get(field.name, option_of(field.name))
             raise ParameterError(
                 f"{name} is not accepted with --suite {options.suite}, which fixes it: there is no "
                 "score of an altered task"
@@ -332,9 +332,9 @@ def _numbers(text: str) -> tuple[int, ...]:
     """Return the numbers of leaders that a text such as ``0-2,4`` names."""
     found: set[int] = set()
     for part in text.split(","):
-        first, _, last = (each.strip() for each in part.partition("-"))
+        first, _, last = (end.strip() for end in part.partition("-"))
         ends = (first, last or first)
-        if not all(each.isdecimal() for each in ends) or int(ends[0]) > int(ends[1]):
+        if not all(end.isdecimal() for end in ends) or int(ends[0]) > int(ends[1]):
             raise ParameterError(f"--n-leaders {text} is not accepted: numbers, as in 0-4 or 1,3")
         if int(ends[1]) > _MOST_LEADERS:
             raise ParameterError(f"--n-leaders {text} is not accepted: at most {_MOST_LEADERS}")
@@ -397,7 +397,7 @@ def _own_policies(options: CompareOptions) -> dict[str, Given]:
         if name in own:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")
         own[name] = text
-        if is_each:  # What reads like a number is the name of no policy, and refused as one.
-            each = changed_fields(text.split(","), "--policy").items()
-            own[name] = {leader: str(one) for leader, one in each}
+        if is_each:  # A number is no name of a policy, and is refused like an unknown name.
+            by_leader = changed_fields(text.split(","), "--policy").items()
+            own[name] = {leader: str(given) for leader, given in by_leader}
     return own

@@ -33,14 +33,14 @@ def compare_entries(
         raise ParameterError(f"--trial-flocks {flocks} is not accepted: at most {FLOCKS}")
     entries = [SuiteEntry.from_file(path, trust=trust) for path in files]
     _check_names(entries)
-    levels = [level for level in levels if any(level in each.trainings for each in entries)]
+    levels = [level for level in levels if any(level in entry.trainings for entry in entries)]
     if not levels:
         raise ParameterError("no entry has a policy for a level that --task names")
     table = out / "entries.csv"
     prepare(table)
     if flocks < FLOCKS:
         echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
-    policies = [len(each.trainings.get(level, ())) for each in entries for level in levels]
+    policies = [len(entry.trainings.get(level, ())) for entry in entries for level in levels]
     led = [LEVELS[level].flock_hours(flocks) for _ in entries for level in levels]
     hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
     kept = f"{table} holds the rows of entries that were finished."
@@ -64,8 +64,8 @@ def _levels(tasks: Sequence[str]) -> list[str]:
 
 
 def _check_names(entries: list[SuiteEntry]) -> None:
-    """Refuse two entries of one name and budget, whose rows nobody could tell apart."""
-    names = [f"{each.name}, {each.budget} flock-hours" for each in entries]
+    """Refuse two entries of one name and budget: their rows would look the same."""
+    names = [f"{entry.name}, {entry.budget} flock-hours" for entry in entries]
     for name in names:
         if names.count(name) > 1:
             raise ParameterError(f"two entries are called {name}: give one another name")

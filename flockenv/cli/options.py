@@ -27,7 +27,7 @@ def option(
     endings: Endings | None = None,
     **settings: Any,
 ) -> Any:
-    """Return a field that is an option: its default, and what `typer.Option` takes.
+    """Return a field that is an option, from its default and the arguments of `typer.Option`.
 
     The name of a file that is given may be asked to end in one of some ways.
     """
@@ -41,16 +41,16 @@ def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa
 
 
 def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:
-    """Let a command take a dataclass whose fields are each an `option` or an `argument`."""
+    """Let a command take a dataclass of options and arguments."""
     hints = get_type_hints(options)
     parameters = [
         inspect.Parameter(
-            each.name,
+            option_.name,
             inspect.Parameter.KEYWORD_ONLY,
-            default=inspect.Parameter.empty if each.default is MISSING else each.default,
-            annotation=Annotated[hints[each.name], each.metadata["typer"]],
+            default=inspect.Parameter.empty if option_.default is MISSING else option_.default,
+            annotation=Annotated[hints[option_.name], option_.metadata["typer"]],
         )
-        for each in fields(options)  # type: ignore[arg-type]
+        for option_ in fields(options)  # type: ignore[arg-type]
     ]
 
     def taking(command: Callable[[Options], None]) -> Callable[..., None]:
@@ -61,7 +61,7 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
             command(checked)
 
         called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-        called.__annotations__ = {each.name: each.annotation for each in parameters}
+        called.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
         return called
 
     return taking
@@ -74,21 +74,21 @@ def option_of(name: str) -> str:
 
 def _check_endings(options: object) -> None:
     """Refuse names of files that end in another way than their options are declared with."""
-    for each in fields(options):  # type: ignore[arg-type]
-        path, endings = getattr(options, each.name), each.metadata.get("endings")
+    for option_ in fields(options):  # type: ignore[arg-type]
+        path, endings = getattr(options, option_.name), option_.metadata.get("endings")
         if path is None or endings is None:
             continue
         accepted = list(endings())
         if path.suffix.lower() not in accepted:
             raise ParameterError(
-                f"{option_of(each.name)} {path} is not accepted: a name that ends in "
+                f"{option_of(option_.name)} {path} is not accepted: a name that ends in "
                 f"{', '.join(accepted)}"
             )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Overwriting:
-    """Whether files that are there may be written over."""
+    """Whether existing files may be overwritten."""
 
     force: bool = option(False, "Overwrite existing files.", "--force")
 

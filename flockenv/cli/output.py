@@ -72,7 +72,8 @@ def load_recording(
 def prepare(*paths: Path, overwrites: bool = True) -> None:
     """Make the folders of files that will be written, before long work.
 
-    A ParameterError names one that cannot be written, or is there already and is to stay.
+    A ParameterError names a file that cannot be written, or one that exists and may not be
+    overwritten.
     """
     for path in paths:
         try:
@@ -107,9 +108,17 @@ def in_words(recording: Recording) -> str:
     """Return the means of a recording's quantities without a unit, in one line."""
     means, words = summary_of(recording), []
     has_target = recording.parameters.common_target is not None
-    for each in QUANTITIES:
-        if each.is_averaged and not each.unit and (has_target or each.name != "signed_order"):
-            mean = means[f"{each.name}_mean"]
-            called = f"mean {each.symbol}" if "_" in each.symbol else each.label.partition(",")[0]
+    for quantity in QUANTITIES:
+        if (
+            quantity.is_averaged
+            and not quantity.unit
+            and (has_target or quantity.name != "signed_order")
+        ):
+            mean = means[f"{quantity.name}_mean"]
+            called = (
+                f"mean {quantity.symbol}"
+                if "_" in quantity.symbol
+                else quantity.label.partition(",")[0]
+            )
             words.append(f"{called} {'undefined' if mean is None else f'{mean:.3f}'}")
     return ", ".join(words)

@@ -36,13 +36,13 @@ def presets(options: PresetsOptions) -> None:
         values = FlockParameters.preset(name).to_dict()
         sources = FlockParameters.preset_sources(name)
         declared = {
-            each.name: {
-                "value": values[each.name],
-                "unit": each.metadata["unit"],
-                "meaning": each.metadata["doc"],
-                "source": sources[each.name],
+            parameter.name: {
+                "value": values[parameter.name],
+                "unit": parameter.metadata["unit"],
+                "meaning": parameter.metadata["doc"],
+                "source": sources[parameter.name],
             }
-            for each in dataclasses.fields(FlockParameters)
+            for parameter in dataclasses.fields(FlockParameters)
         }
         found[name] = {"about": ABOUT[name], "fields": declared}
     if options.as_json:

@@ -22,7 +22,8 @@ def progress(
     """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
 
     Yields a function that moves it on by an amount of work, and may change what it says is done;
-    with `ends`, work ends there if Ctrl-C was noted. Then `kept` says what of the work is stored.
+    with `ends`, work ends there if Ctrl-C was noted. Then `kept` says how much of the work is
+    stored.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:

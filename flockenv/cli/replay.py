@@ -39,11 +39,11 @@ class ReplayOptions(Printing):
     show: bool = option(False, "Open the page in a browser.", "--open")
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            given = getattr(self, each.name) != each.default
-            if given and each.name in (("show",) if self.pictures else _OF_PICTURES):
+        for option_ in fields(self):
+            given = getattr(self, option_.name) != option_.default
+            if given and option_.name in (("show",) if self.pictures else _OF_PICTURES):
                 where = "--gif and --mp4" if self.pictures else "a page, which has it itself"
-                name = "open" if each.name == "show" else each.name
+                name = "open" if option_.name == "show" else option_.name
                 raise ParameterError(f"--{name} is not accepted with {where}")
         if self.pictures and self.html is not None:
             raise ParameterError("--html is not accepted with --gif or --mp4")

@@ -123,7 +123,7 @@ def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "Trai
 
 
 def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
-    """Print what the trained leaders reach beside the laws."""
+    """Print the order of the trained leaders beside that of the laws."""
     from flockenv.comparison.report import overlap_notes
     from flockenv.training import ppo
 

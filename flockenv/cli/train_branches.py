@@ -52,12 +52,12 @@ def train_branches(
     _write(out, training, orders)
     gain, error = _mean(orders[TRAINED] - orders[TUNED_LAW])
     if printing.as_json:
-        means = {name: _mean(each)[0] for name, each in orders.items()}
+        means = {name: _mean(own)[0] for name, own in orders.items()}
         print_json({"signed_order": means, "gain": [gain, error], "policy": str(out / POLICY)})
         return
-    for name, each in orders.items():
-        mean, own = _mean(each)
-        echo(f"{name}: signed order {mean:.3f} ± {own:.3f} in {len(each)} fresh flocks")
+    for name, of_flocks in orders.items():
+        mean, own_error = _mean(of_flocks)
+        echo(f"{name}: signed order {mean:.3f} ± {own_error:.3f} in {len(of_flocks)} fresh flocks")
     echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
     lines = overlap_note(*training.overlaps, "branches of the training")
     for line in lines + overlap_note(*_overlaps(compared), "episodes"):
@@ -70,7 +70,7 @@ def _training(given: dict[str, Any]) -> BranchTraining:
     if "ppo" in given:
         raise ParameterError("--ppo is for --algorithm ppo")
     changes = dict(given.get("environment", {}))
-    names = [each.name for each in fields(FlockParameters)]
+    names = [parameter.name for parameter in fields(FlockParameters)]
     refuse_unknown(changes, [*OPTIONS, *names], "option of the training")
     own = {name: changes.pop(name) for name in OPTIONS if name in changes}
     own |= {name: given[name] for name in ("flock_hours", "seed") if name in given}
@@ -116,7 +116,7 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
     if find_spec("matplotlib") is not None:
         from flockenv.training.learning_curve import draw_curve
 
-        laws = {name: float(each.mean()) for name, each in orders.items() if name != TRAINED}
+        laws = {name: float(own.mean()) for name, own in orders.items() if name != TRAINED}
         draw_curve(training.curve, laws, out / "curve.png")
 
 

@@ -21,7 +21,7 @@ class Case:
 
     #: That of its file of parameters.
     name: str
-    #: Of the flock, except for the number of leaders.
+    #: Parameters of the flock, except for the number of leaders.
     parameters: FlockParameters
     #: Numbers of leaders.
     leaders: tuple[int, ...]
@@ -52,8 +52,8 @@ class Case:
     ) -> "pd.DataFrame":
         """Run every policy; return a row per episode, as `compare_leaders` with a column ``case``.
 
-        Calls `finished` with the rows of a policy and number of leaders as soon as they are there,
-        and raises what `compare_leaders` raises.
+        Calls `finished` with the rows of each policy and number of leaders when they are complete,
+        and raises the errors of `compare_leaders`.
         """
         targets = self.targets or (self.parameters.target,)
         parts = [

@@ -26,7 +26,9 @@ Finished = Callable[["pd.DataFrame"], object]
 """Called with the rows of a policy and a number of leaders."""
 
 _SAID_BY = {
-    **dict.fromkeys({each.name for each in fields(FlockParameters)} - {"target"}, "the flock"),
+    **dict.fromkeys(
+        {parameter.name for parameter in fields(FlockParameters)} - {"target"}, "the flock"
+    ),
     **dict.fromkeys(("preset", "params"), "the flock"),
     **dict.fromkeys(("observation", "mirror_to_target"), "a policy"),
     "episode_s": "duration_s",
@@ -37,7 +39,7 @@ _SAID_BY = {
 
 
 def nothing_finished(rows: "pd.DataFrame") -> None:
-    """Do nothing with rows that are there."""
+    """Do nothing with finished rows."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Comparison:
         duration_s: float,
         environment: Mapping[str, object],
     ) -> Self:
-        """Return the comparison that `compare_leaders` describes, and raise what it raises."""
+        """Return the comparison that `compare_leaders` describes, or raise its errors."""
         options = _environment(environment)
         seeds = _evaluation_seeds(seeds)
         steers = _policies(policies)
@@ -87,9 +89,9 @@ class Comparison:
         """Run all episodes; return what `compare_leaders` returns."""
         pandas = require("pandas", "plot")
         tables = []
-        for each in self.entries:
-            measured = each.episodes.measure(progress)
-            names = {"policy": each.policy, "leaders": each.leaders, "seed": each.episodes.seeds}
+        for entry in self.entries:
+            measured = entry.episodes.measure(progress)
+            names = {"policy": entry.policy, "leaders": entry.leaders, "seed": entry.episodes.seeds}
             tables.append(pandas.DataFrame(names | measured))
             finished(tables[-1])
         runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
@@ -187,7 +189,7 @@ def compare_leaders(
         decide nothing in it: with other options than ``target``, ``bw_s`` and ``physics`` they are
         refused.
     finished
-        Called with the rows of each policy and number of leaders, as soon as they are there.
+        Called with the rows of each policy and number of leaders, as soon as they are complete.
 
     Returns
     -------

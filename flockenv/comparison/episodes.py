@@ -65,7 +65,7 @@ class Episodes:
         duration_s: float,
         options: Mapping[str, object],
     ) -> Self:
-        """Return the episodes that `run_episodes` describes, and raise what it raises."""
+        """Return the episodes that `run_episodes` describes, or raise its errors."""
         if not isinstance(parameters, FlockParameters):
             raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
         k, options = parameters.n_leaders, by_name(options, "options")
@@ -73,7 +73,7 @@ class Episodes:
         given = {
             "target": parameters.target,
             **options,
-            # An environment asks for a leader, of whom the batch has none then.
+            # An environment needs at least one leader; the batch then has none.
             "params": parameters.replace(n_leaders=max(1, k)),
             "episode_s": duration_s,
             **_layout(leaders, options),
@@ -99,7 +99,7 @@ class Episodes:
         summaries = [batch.core.finished(flock) or {} for flock in range(count)]
         # A summary lacks unknown values.
         return {
-            name: np.array([each.get(name, np.nan) for each in summaries])
+            name: np.array([summary.get(name, np.nan) for summary in summaries])
             for name in (*QUANTITIES, *ORDERING_TIMES, *STEP_STATISTICS)
         }
 

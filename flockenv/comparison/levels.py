@@ -51,9 +51,9 @@ class Level:
     parameters: FlockParameters
     #: Length of an episode in s.
     episode_s: float
-    #: Options of the environment that hold for whatever steers.
+    #: Options of the environment that hold for every policy.
     environment: Mapping[str, object]
-    #: What leaders observe in the level's environment.
+    #: The observation of leaders in the level's environment.
     observation: Mapping[str, object]
 
     @classmethod
@@ -92,7 +92,7 @@ class Level:
         self, flocks: int = FLOCKS, progress: Progress = no_progress
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the orders of flocks that nobody steers, and of those under the damped law."""
-        none, law = (self.orders(each, flocks, progress) for each in (NO_STEERING, REFERENCE))
+        none, law = (self.orders(name, flocks, progress) for name in (NO_STEERING, REFERENCE))
         return none, law
 
 
@@ -128,7 +128,7 @@ def score(
             "there is no scale for a score"
         )
     found = float((led - no_steering).mean()) / scale
-    # What each flock moves the ratio by, to first order.
+    # The change of the ratio by each flock, to first order.
     moved = found + ((led - no_steering) - found * (reference - no_steering)) / scale
     return two_way_interval(moved) if len(moved) > 1 else mean_interval(moved[0])
 

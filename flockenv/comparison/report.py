@@ -44,7 +44,7 @@ class ComparisonReport:
     policies: Sequence[str]
     #: One row per episode: the rows of `Case.run` of all cases.
     runs: "pd.DataFrame"
-    #: What else the numbers depend on.
+    #: Everything else that the numbers depend on.
     conditions: Mapping[str, object] = field(default_factory=dict)
 
     @cached_property
@@ -106,7 +106,7 @@ class ComparisonReport:
         ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (everything
         that the numbers depend on, except for the parameters), for each case its parameters in
         ``NAME.toml``, and ``leader_curve.png`` if a case has several numbers of leaders. Each file
-        is complete, or as it was before.
+        is either complete or unchanged.
         """
         folder.mkdir(parents=True, exist_ok=True)
         for name in _TABLES:
@@ -156,7 +156,7 @@ class ComparisonReport:
             + ("" if math.isnan(row["effect"]) else f", d = {row['effect']:.2f}")
             for row in self.differences.dropna(subset=["mean"]).to_dict("records")
         ]
-        names = [each.name for each in fields(Line)]
+        names = [column.name for column in fields(Line)]
         lines = [
             f"{row['case']}, {row['policy']}: {row['quantity']} = "
             f"{Line(**{name: row[name] for name in names})}"
@@ -202,7 +202,7 @@ def titled(policy: Policy | Mapping[str, Policy]) -> str:
     """Return the name of a policy, or those of the policies of leaders, in one line."""
     if isinstance(policy, Policy):
         return policy.name
-    return "; ".join(f"{leader}: {each.name}" for leader, each in policy.items())
+    return "; ".join(f"{leader}: {one.name}" for leader, one in policy.items())
 
 
 def _plus_minus(row: Mapping[str, float]) -> str:
@@ -213,6 +213,6 @@ def _plus_minus(row: Mapping[str, float]) -> str:
 def _table(
     rows: list[dict[str, object]], keys: list[str], kind: type[Difference] | type[Line]
 ) -> "pd.DataFrame":
-    columns = [*keys, *(each.name for each in fields(kind))]
+    columns = [*keys, *(column.name for column in fields(kind))]
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

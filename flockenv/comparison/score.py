@@ -45,7 +45,7 @@ def score_policies(
     """
     pandas = require("pandas", "plot")
     values = {
-        name: series(each, f"orders[{name!r}]") for name, each in by_name(orders, "orders").items()
+        name: series(own, f"orders[{name!r}]") for name, own in by_name(orders, "orders").items()
     }
     if reference is not None:
         refuse_unknown([reference], values, "policy of these")

@@ -44,7 +44,7 @@ class Training:
     #: As the entry names it.
     given: str
     policy: Policy
-    #: Of its file: short texts by name.
+    #: Provenance stored in its file: short texts by name.
     provenance: Mapping[str, str]
 
 
@@ -52,17 +52,17 @@ class Training:
 class SuiteEntry:
     """An entry of suite v3; `from_file` reads and checks it."""
 
-    #: Of the algorithm and its settings.
+    #: Name of the algorithm and its settings.
     name: str
     #: The class of the algorithm, such as "policy gradient".
     kind: str
     #: Where code, commit and policies are.
     link: str
-    #: Of one training.
+    #: Flock-hours of one training.
     flock_hours: float
-    #: Of searches for its settings; NaN if nobody knows.
+    #: Flock-hours of searches for its settings; NaN if unknown.
     searched_hours: float
-    #: By level.
+    #: Trainings by level.
     trainings: Mapping[str, tuple[Training, ...]]
 
     @classmethod
@@ -122,14 +122,14 @@ class SuiteEntry:
         A ParameterError names a policy that cannot steer to the end of the episode.
         """
         found = []
-        for each in self.trainings[level]:
+        for training in self.trainings[level]:
             try:
-                found.append(LEVELS[level].orders(each.policy, flocks, progress))
+                found.append(LEVELS[level].orders(training.policy, flocks, progress))
             except Exception as error:  # An object's own code may raise anything.
                 kind = "" if isinstance(error, FlockError) else f"{type(error).__name__}: "
                 raise ParameterError(
-                    f"{self.name}, {level}, {each.given}: {kind}{error}; nothing of the entry is "
-                    "scored"
+                    f"{self.name}, {level}, {training.given}: {kind}{error}; nothing of the "
+                    "entry is scored"
                 ) from error
         return np.array(found)
 
@@ -143,9 +143,11 @@ class SuiteEntry:
         """Return the row of the table for the signed orders of a level."""
         trainings = self.trainings[level]
         mean, low, high = score(orders, no_steering, reference)
-        observes = [each.policy.observation for each in trainings]
-        is_default = all(dict(each) == dict(LEVELS[level].observation) for each in observes)
-        seconds = [float(each.provenance.get("cpu_s", "nan")) for each in trainings]
+        observes = [training.policy.observation for training in trainings]
+        is_default = all(
+            dict(observation) == dict(LEVELS[level].observation) for observation in observes
+        )
+        seconds = [float(training.provenance.get("cpu_s", "nan")) for training in trainings]
         return {
             "level": level,
             "budget": self.budget,
@@ -174,14 +176,14 @@ def scored(
     """Score entries one after another, each on those of the levels that it has policies for.
 
     Yields after each entry the rows of all entries so far, ranked, and the orders of all flocks:
-    first those of both references of each level. Raises what `SuiteEntry.run` raises.
+    first those of both references of each level. Raises the errors of `SuiteEntry.run`.
     """
     pandas = require("pandas", "plot")
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
     ends = {name: LEVELS[name].references(flocks, progress) for name in named}
     parts = [
-        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), np.array(each))
-        for name, each in ends.items()
+        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), np.array(orders))
+        for name, orders in ends.items()
     ]
     rows: list[dict[str, object]] = []
     for entry in entries:
@@ -189,7 +191,7 @@ def scored(
         led = {name: entry.run(name, flocks, progress) for name in own}
         for name, orders in led.items():
             rows.append(entry.row(name, orders, *ends[name]))
-            given = [each.given for each in entry.trainings[name]]
+            given = [training.given for training in entry.trainings[name]]
             parts.append(orders_table(name, entry.budget, entry.name, given, orders))
         yield ranked(rows), pandas.concat(parts, ignore_index=True)
 
@@ -246,7 +248,7 @@ def _check_training_seeds(seeds: object) -> None:
 
 
 def _levels(levels: object) -> Mapping[str, object]:
-    """Return what an entry names for each level of the suite."""
+    """Return the policies that an entry names, by level."""
     if not isinstance(levels, Mapping) or not levels:
         raise ParameterError(f"levels = {short_repr(levels)} is no table of levels and policies")
     refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
@@ -318,6 +320,6 @@ def _check_weights(source: object, given: str) -> None:
     """Refuse a model of torch whose weights are not finite; other files were checked as read."""
     model = getattr(source, "model", None)
     parameters = getattr(getattr(model, "policy", model), "parameters", None)
-    for each in parameters() if callable(parameters) else ():
-        if not bool(each.isfinite().all()):
+    for weights in parameters() if callable(parameters) else ():
+        if not bool(weights.isfinite().all()):
             raise ParameterError(f"{given} holds weights that are not finite")

@@ -18,14 +18,14 @@ from flockenv.flock import Flock
 
 
 class OwnFlocks(FixedOptions):
-    """An environment whose copies have flocks of their own, shallow copies too."""
+    """An environment whose copies, shallow ones too, have flocks of their own."""
 
     def __copy__(self) -> Self:
         return copy.deepcopy(self)
 
 
 class Resumable(OwnFlocks):
-    """An environment that continues from what it was, or as a copy of itself."""
+    """An environment that can be pickled and copied, and continues from the same state."""
 
     _batch: LeaderBatch
 

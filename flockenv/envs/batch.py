@@ -76,8 +76,8 @@ class LeaderBatch:
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
-        `env` is what a function of a user's own that rewards looks at. If that returns something
-        else than rewards that are finite in this precision, the flocks have moved already.
+        A user's own reward function gets `env`. If that returns something else than rewards that
+        are finite in this precision, the flocks have moved already.
         """
         if self._own_reward is None:
             return self.core.step(actions)
@@ -145,7 +145,7 @@ def mean_rows(rows: list[list[float]]) -> list[float]:
     sums, count = [0.0] * len(rows[0]), len(rows)
     for row in rows:
         sums = list(map(operator.add, sums, row))
-    return [each / count for each in sums]
+    return [total / count for total in sums]
 
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))

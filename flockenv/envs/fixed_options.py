@@ -12,9 +12,10 @@ from flockenv.envs.reset_options import RESET_OPTIONS, UPCOMING_OPTIONS, Spellin
 class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
-    Names in other case or without their unit are refused too. A subclass may keep attributes of any
-    name but those in `_kept`, which its methods set on ``self``, or its classmethods on what they
-    make; from then on they are its own, as are those that its class has.
+    Names in other case or without their unit are refused too. A subclass may have attributes of any
+    name but those in `_kept`. Its methods set them on ``self``, or its classmethods on the
+    instances that they make. From then on they may be set from outside too, as may attributes of
+    its class.
     """
 
     #: Attributes of this class that are named like an argument.
@@ -42,7 +43,7 @@ class FixedOptions:
         is_own = name in vars(self).get("_names_of_subclass", ())
         if name not in self._kept:
             subclasses = takewhile(_is_of_a_user, type(self).__mro__)
-            is_own = is_own or any(name in vars(each) for each in subclasses)
+            is_own = is_own or any(name in vars(subclass) for subclass in subclasses)
         if words is not None and not is_own:
             raise AttributeError(words)
 
@@ -52,7 +53,7 @@ def _is_of_a_user(cls: type) -> bool:
 
 
 def _is_method_of(env: object, frame: FrameType) -> bool:
-    """Return whether a frame is of a method of an environment, or of a classmethod that made it."""
+    """Return whether a frame belongs to a method of an environment or a classmethod making it."""
     cls = frame.f_locals.get("cls")
     return frame.f_locals.get("self") is env or (
         isinstance(cls, type) and issubclass(cls, FixedOptions) and isinstance(env, cls)

@@ -11,7 +11,7 @@ class Environment(NamedTuple):
     purpose: str
     #: Those in which it differs from the defaults.
     options: Mapping[str, Any]
-    #: What changed, by version.
+    #: Changes, a sentence for each version.
     history: tuple[str, ...] = ("v0: initial version.",)
 
 

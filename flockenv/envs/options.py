@@ -16,7 +16,7 @@ TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
 
 
 class Option(NamedTuple):
-    """An option of the environments: its default, and what it means."""
+    """An option of the environments: its default and its meaning."""
 
     default: Any
     doc: str
@@ -32,9 +32,9 @@ OPTIONS: dict[str, Option] = {
         '"training" steps the flock by dt_s = 0.1 s with tolerance_cm = 1e-4, coarser and cheaper; '
         '"publication" by 0.01 s with 1e-6, finer; "default" as the parameters have it',
     ),
-    **{each["name"]: Option(each["default"], each["doc"]) for each in _core.OPTIONS},
+    **{option["name"]: Option(option["default"], option["doc"]) for option in _core.OPTIONS},
     "bw_s": Option(
-        {each.name: each.default for each in fields(FlockParameters)}["bw_s"],
+        {parameter.name: parameter.default for parameter in fields(FlockParameters)}["bw_s"],
         "duration of the backward phase in s, the source of disorder; a pair (low, high) draws it "
         "uniformly for each episode",
     ),
@@ -47,9 +47,9 @@ OPTIONS: dict[str, Option] = {
 }
 """The options of the environments by name, besides the fields of `FlockParameters`."""
 
-_FIELDS = tuple(each.name for each in fields(FlockParameters))
+_FIELDS = tuple(parameter.name for parameter in fields(FlockParameters))
 _SETTINGS = tuple(
-    each["name"] for each in _core.OPTIONS if each["name"] not in ("bw_s", "autoreset_mode")
+    option["name"] for option in _core.OPTIONS if option["name"] not in ("bw_s", "autoreset_mode")
 )
 NAMES = (
     "preset",
@@ -93,7 +93,7 @@ class EnvOptions:
         counts
             Name of the argument that is the number of flocks; None for one flock.
         """
-        for name in (each for each in options if each not in NAMES):
+        for name in (option for option in options if option not in NAMES):
             # TorchRL looks for these words.
             raise UnknownOptionError(
                 f"got an unexpected keyword argument {name!r}, which is no option of the "
@@ -115,8 +115,8 @@ class EnvOptions:
                 settings[name] = _plain(settings[name])
         target = settings.get("target")
         # Anything but a direction is refused with the settings.
-        each = target if isinstance(target, list | tuple) else (target,)
-        if each and all(one in ("cw", "ccw") for one in each):
+        targets = target if isinstance(target, list | tuple) else (target,)
+        if targets and all(direction in ("cw", "ccw") for direction in targets):
             given["target"] = target
         stepping = _physics(given)
         parameters = _parameters({**given, **stepping})
@@ -152,7 +152,7 @@ def _instead(name: str, counts: str | None) -> str:
 def _plain(value: object) -> Any:
     """Return a mapping, or each of a list, as the dictionary that the core reads."""
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [_plain(item) for item in value]
     return dict(value) if isinstance(value, Mapping) else value
 
 

@@ -228,7 +228,7 @@ class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
         self._flock.np_random = generator
 
     def step(self, action: object) -> None:
-        # Those whose episode is over take none.
+        # Agents whose episode is over take no action.
         if self._flock.agents:
             self._flock._action(self.agent_selection, action)
         super().step(action)

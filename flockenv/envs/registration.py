@@ -19,14 +19,14 @@ _OF_PETTINGZOO = {
 
 def register() -> None:
     """Make the environments known to Gymnasium and PettingZoo."""
-    for env_id, each in ENVIRONMENTS.items():
+    for env_id, declared in ENVIRONMENTS.items():
         if env_id in gymnasium.registry:
             continue
         gymnasium.register(
             id=env_id,
             entry_point=ENTRY_POINT,
             vector_entry_point="flockenv.envs.vector:LeadersVectorEnv",
-            kwargs=dict(each.options),
+            kwargs=dict(declared.options),
             # It refuses a step before a reset itself, and options as attributes, which wrappers
             # would take.
             order_enforce=False,
@@ -35,10 +35,10 @@ def register() -> None:
         # Before version 1.27 it has no ids.
         if hasattr(pettingzoo, "register"):
             for kind, entry_point in _OF_PETTINGZOO.items():
-                pettingzoo.register(kind, env_id, entry_point, kwargs=dict(each.options))
+                pettingzoo.register(kind, env_id, entry_point, kwargs=dict(declared.options))
 
 
 def registered(is_ours: Callable[[Mapping[str, Any]], bool]) -> EnvSpec | None:
-    """Return the first registered environment of leaders whose options are ours, if any is."""
-    specs = (each for each in gymnasium.registry.values() if each.entry_point == ENTRY_POINT)
-    return next((each for each in specs if is_ours(each.kwargs)), None)
+    """Return the first registered environment of leaders with fitting options, or None."""
+    specs = (spec for spec in gymnasium.registry.values() if spec.entry_point == ENTRY_POINT)
+    return next((spec for spec in specs if is_ours(spec.kwargs)), None)

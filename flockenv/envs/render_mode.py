@@ -73,7 +73,7 @@ class RenderMode:
             self.close()
 
     def render(self, flock: Flock) -> NDArray[np.uint8] | None:
-        """Do what `render` of an environment with one flock does."""
+        """Render the flock, as `render` of an environment with one flock does."""
         if self.mode == "rgb_array":
             return self.frame(flock)
         # A step that was shown already takes no time again.

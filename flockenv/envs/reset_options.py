@@ -66,8 +66,8 @@ def reset_requests(
 ) -> list[dict[str, Any]]:
     """Return the request for each flock's reset.
 
-    Other keys are for somebody's wrapper: Gymnasium hands one dictionary through all of them. What
-    would do nothing but looks as if it did is a ParameterError: other spellings of the options,
+    Other keys are for somebody's wrapper: Gymnasium hands one dictionary through all of them. A
+    ParameterError refuses keys that would be ignored silently: other spellings of the options,
     arguments of the constructor, and keys of ``state``.
 
     Parameters
@@ -89,7 +89,7 @@ def reset_requests(
         if name not in takes:
             _refuse_misplaced(name, takes)
     requests: list[dict[str, Any]] = [{} for _ in range(flocks)]
-    for name in (each for each in RESET_OPTIONS if each in options):
+    for name in (option for option in RESET_OPTIONS if option in options):
         for request, value in zip(
             requests, _values(name, options[name], flocks, is_each), strict=True
         ):
@@ -102,7 +102,7 @@ def _values(name: str, value: object, flocks: int, is_each: bool) -> Any:
     held = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
     if not is_each:
-        # Of one flock a list is a range of noises, or a target for each leader.
+        # For one flock, a list is a range of noises, or a target for each leader.
         return [tuple(held) if is_list else held]
     if held is value and not is_list:
         return [value] * flocks

@@ -82,4 +82,4 @@ def seeds_of_flocks(seed: object, flocks: int) -> Sequence[int | None]:
         return seeds_from(seeds, flocks)
     if len(seeds) != flocks:
         raise ParameterError(f"seed lists {len(seeds)} seeds, expected {flocks}")
-    return [None if each is None else seed_of(each) for each in seeds]
+    return [None if seed is None else seed_of(seed) for seed in seeds]

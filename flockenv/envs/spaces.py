@@ -74,18 +74,18 @@ class ObservationSpace(_Box):
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        """Return shape, leaders and options; the layout of the observation by what it changes."""
+        """Return shape, leaders and options, with only the changed blocks of the observation."""
         own = {name: value for name, value in self.options.items() if name != "observation"}
         blocks = self.options["observation"]
-        own["observation"] = {each: n for each, n in blocks.items() if BLOCKS.get(each) != n}
+        own["observation"] = {block: n for block, n in blocks.items() if BLOCKS.get(block) != n}
         words = ", ".join(f"{name}={value!r}" for name, value in own.items())
         return f"ObservationSpace({self.shape}, leaders={self.leaders}, {words})"
 
     def policy_options(self) -> dict[str, Any]:
         """Return `options`, also of a space that another build stored in the file of a model.
 
-        An option or a block that is younger than the file has its default. ParameterError for
-        unknown ones.
+        An option or a block that the file does not know has its default. ParameterError for unknown
+        ones.
         """
         refuse_unknown(self.options, POLICY_OPTIONS, "option that a policy depends on")
         refuse_unknown(self.options.get("observation", {}), BLOCKS, "block of the observation")

@@ -14,7 +14,7 @@ class _Columns:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        columns = (each.name for each in fields(self))  # type: ignore[arg-type]
+        columns = (column.name for column in fields(self))  # type: ignore[arg-type]
         return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in columns)
 
     __hash__ = None  # type: ignore[assignment]
@@ -86,10 +86,10 @@ class ContactSeries(_Columns):
     @classmethod
     def from_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
         """Return the series with these of its columns, by name; others are left out."""
-        return cls(*(columns[each.name] for each in fields(cls)))
+        return cls(*(columns[column.name] for column in fields(cls)))
 
     def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":
         """Return the contacts of some of the samples, shape (t,)."""
         chosen = np.repeat(samples, self.count)
-        each = (getattr(self, field.name)[chosen] for field in fields(self)[1:])
-        return ContactSeries(self.count[samples], *each)
+        others = (getattr(self, column.name)[chosen] for column in fields(self)[1:])
+        return ContactSeries(self.count[samples], *others)

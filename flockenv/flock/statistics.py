@@ -82,11 +82,11 @@ class StepStatistics:
     halved_substeps: int
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
+        for statistic in fields(self):
+            value = getattr(self, statistic.name)
             if not (math.isfinite(value) and value >= 0):
-                raise ParameterError(f"{each.name} = {value} is not accepted: at least 0")
+                raise ParameterError(f"{statistic.name} = {value} is not accepted: at least 0")
 
 
-STEP_STATISTICS = tuple(each.name for each in fields(StepStatistics))
+STEP_STATISTICS = tuple(statistic.name for statistic in fields(StepStatistics))
 """Names of the `StepStatistics`, as in tables and summaries of episodes."""

@@ -68,7 +68,7 @@ _LONGEST_NAME = 200
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Policy:
-    """A policy: one checked type, whatever `flockenv.policies.policy` made it of.
+    """A policy as one checked type, for everything that `flockenv.policies.policy` accepts.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class Policy:
     ) -> Self:
         """Return the policy of an object with ``predict``, by its attributes.
 
-        A TypeError or a ParameterError names an attribute that is none of an option's values.
+        A TypeError or a ParameterError names an attribute that holds no value of its option.
         """
         mode = getattr(source, "action_mode", None) or "rudder"
         refuse_unknown((mode,), _core.ACTION_MODES, "action_mode of a policy")
@@ -224,7 +224,7 @@ def observed(observation: ArrayLike) -> NDArray[np.float32]:
 
 
 def leaders_observed(observation: NDArray[Any], size: int) -> int:
-    """Return the number of leaders whose observations, each of a size, the last axis holds."""
+    """Return the number of leaders along the last axis, from the size of an observation."""
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(
@@ -279,7 +279,7 @@ class RowPolicy(ABC):
     ) -> tuple[object, object]:
         """Return rudders for observations, as `LeaderPolicy`; there is one way to act."""
         if isinstance(observation, Mapping):
-            return {agent: self._rudders(each) for agent, each in observation.items()}, state
+            return {agent: self._rudders(rows) for agent, rows in observation.items()}, state
         return self._rudders(observation), state
 
     def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:

@@ -291,8 +291,8 @@ class LeaningLaw(LawPolicy):
                     f"in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
                 )
         weights, bias = (
-            LARGEST_LEAN * each.detach().cpu().double().numpy().ravel()
-            for each in (policy.action_net.weight, policy.action_net.bias)
+            LARGEST_LEAN * tensor.detach().cpu().double().numpy().ravel()
+            for tensor in (policy.action_net.weight, policy.action_net.bias)
         )
         return cls(
             pool,
@@ -318,7 +318,7 @@ class LeaningLaw(LawPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a law from its JSON file, in which nothing is executed.
 
-        Raises what `flockenv.policies.load` raises.
+        Raises the errors of `flockenv.policies.load`.
         """
         content = read_limited(path, f"{path} is no policy")
         try:

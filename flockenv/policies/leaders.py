@@ -48,8 +48,9 @@ class Leaders:
     ) -> Self:
         """Return who steers a flock's leaders, given as a policy or as one for each leader.
 
-        Raises what `policy` raises; a ParameterError refuses policies that have nobody to steer or
-        another number of leaders, and dictionaries that do not name the leaders.
+        Raises the errors of `policy`. A ParameterError also refuses policies without leaders to
+        steer, policies for another number of leaders, and dictionaries that do not name the
+        leaders.
         """
         k = flock.n_leaders
         if isinstance(given, Mapping) and (given or k > 0):
@@ -103,10 +104,10 @@ def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat,
         )
     # Leaders with one policy are steered at once, as a model of several leaders needs it.
     found: dict[object, tuple[Policy, list[int]]] = {}
-    for leader, each in enumerate(given[name] for name in names):
-        key = each if isinstance(each, str) else id(each)
+    for leader, one in enumerate(given[name] for name in names):
+        key = one if isinstance(one, str) else id(one)
         if key not in found:
-            own = policy(each, flock.pool)
+            own = policy(one, flock.pool)
             # Beside others the law acts at every control step.
             found[key] = policy(PAPERS_LAW) if own.control_hz is None else own, []
         found[key][1].append(leader)
@@ -128,9 +129,9 @@ class Decisions:
         self._seats = [_Deciding(seat.policy.started(), list(seat.leaders)) for seat in seats]
         #: The rate at which `rudders` is to be asked.
         self.control_hz = _common_rate(self._seats) if control_hz is None else control_hz
-        #: What each policy observes, and whether its view is mirrored.
+        #: The observation of each policy, and whether its view is mirrored.
         self.layouts = [
-            (dict(each.policy.observation), each.policy.mirror_to_target) for each in self._seats
+            (dict(seat.policy.observation), seat.policy.mirror_to_target) for seat in self._seats
         ]
 
     def rudders(
@@ -145,10 +146,10 @@ class Decisions:
         observations
             For each layout shape (leaders, size): what they observe.
         """
-        leaders = sum(len(each.leaders) for each in self._seats)
+        leaders = sum(len(seat.leaders) for seat in self._seats)
         rudders = np.zeros((len(signs) // leaders, leaders))
-        for each, observed in zip(self._seats, observations, strict=True):
-            rudders[:, each.leaders] = each.rudders(
+        for seat, observed in zip(self._seats, observations, strict=True):
+            rudders[:, seat.leaders] = seat.rudders(
                 observed.reshape(len(rudders), leaders, -1), signs.reshape(rudders.shape)
             )
         return rudders.ravel()
@@ -169,7 +170,7 @@ class _Deciding:
     def rudders(
         self, observed: NDArray[np.float32], signs: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return rudders of its leaders, shape (flocks, leaders), of what all leaders see."""
+        """Return rudders of its leaders, shape (flocks, leaders), from all observations."""
         if self.held is not None and self.wait > 0:
             self.wait -= 1
             return self.held
@@ -189,7 +190,7 @@ def _common_rate(seats: Sequence[_Deciding]) -> float:
     if len(set(rates)) == 1:
         return rates[0]
     exact = [Fraction(rate).limit_denominator(1000) for rate in rates]
-    numerators, denominators = zip(*(each.as_integer_ratio() for each in exact), strict=True)
+    numerators, denominators = zip(*(rate.as_integer_ratio() for rate in exact), strict=True)
     common = Fraction(math.lcm(*numerators), math.gcd(*denominators))
     if common > _FASTEST_HZ:
         given = ", ".join(f"{rate:g}" for rate in sorted(rates))

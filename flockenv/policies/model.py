@@ -118,7 +118,7 @@ class ModelPolicy:
         model's. A ParameterError also refuses numbers of leaders that are no multiple of k.
         """
         if isinstance(observation, Mapping):
-            stacked = np.stack([observed(each) for each in observation.values()])
+            stacked = np.stack([observed(one) for one in observation.values()])
             rudders, state = self._predict(stacked, state, episode_start, deterministic)
             return dict(zip(observation, rudders, strict=True)), state
         return self._predict(observed(observation), state, episode_start, deterministic)
@@ -181,7 +181,7 @@ def lacks_normalizing(model: object) -> bool:
 
 
 def space_under_wrappers(model: object) -> "ObservationSpace | None":
-    """Return the space of the environment that a model learns in, whatever wraps it, if known."""
+    """Return the space of the environment under all wrappers in which a model learns, if known."""
     from flockenv.envs.spaces import ObservationSpace
 
     base: Any = getattr(getattr(model, "env", None), "unwrapped", None)
@@ -214,7 +214,7 @@ def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - t
     """Return the output of torch's linear layer, computed by the core."""
     rows = input.reshape(-1, input.shape[-1])
     added = weight.new_zeros(len(weight)) if bias is None else bias
-    arrays = (each.detach().float().cpu().numpy() for each in (rows, weight.T, added))
+    arrays = (array.detach().float().cpu().numpy() for array in (rows, weight.T, added))
     return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], len(weight))
 
 

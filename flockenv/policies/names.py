@@ -5,7 +5,7 @@ from typing import Any
 
 from flockenv import _core
 
-LAWS: Mapping[str, Mapping[str, Any]] = {each["name"]: each for each in _core.LAWS}
+LAWS: Mapping[str, Mapping[str, Any]] = {law["name"]: law for law in _core.LAWS}
 """The declaration of each law, by name: ``doc``, ``color`` (or None) and ``is_of_pool``."""
 
 # By name and not by index: a law may be declared anywhere among them.

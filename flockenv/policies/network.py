@@ -60,7 +60,7 @@ variance."""
 
 @dataclass(frozen=True)
 class _Layer:
-    """A linear layer, with what follows it."""
+    """A linear layer and its activation."""
 
     weight: NDArray[np.float32]
     bias: NDArray[np.float32]
@@ -284,7 +284,7 @@ class NetworkPolicy(RowPolicy):
                 else None
                 for index in indices
             ]
-            # An option that is younger than the file has its default.
+            # An option that the file does not know has its default.
             options = {name: header[name] for name in _OPTIONS if name in header}
             return cls(
                 [arrays[f"weight_{index}"] for index in indices],

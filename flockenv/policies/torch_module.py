@@ -28,7 +28,7 @@ _TRIED, _AS_NEAR_AS = 16, 1e-4
 
 @dataclass
 class ModuleLayer:
-    """A linear layer, with what follows it."""
+    """A linear layer and its activation."""
 
     weight: NDArray[np.float32]
     bias: NDArray[np.float32]
@@ -37,12 +37,12 @@ class ModuleLayer:
 
 
 def read_module(module: Any, *, has_spread: bool = False) -> list[ModuleLayer]:
-    """Return the layers of a ``torch.nn.Module``, or refuse what is something else.
+    """Return the layers of a ``torch.nn.Module``, or refuse other objects.
 
     With `has_spread`, or if a ``NormalParamExtractor`` ends it, the last of two outputs is left
     out: the spread of a distribution.
     """
-    own = [each for each in module.modules() if next(each.children(), None) is None]
+    own = [layer for layer in module.modules() if next(layer.children(), None) is None]
     layers: list[ModuleLayer] = []
     for layer in own:
         if type(layer).__name__ not in _PASSED_OVER:
@@ -126,17 +126,19 @@ def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
             expected = torch.from_numpy(rows)
             for layer in layers:
                 expected = _computed(torch, layer, expected)
-    except RuntimeError as error:  # Of shapes that do not follow each other.
+    except RuntimeError as error:  # The layers' shapes do not fit each other.
         raise ParameterError(
             f"a module is not accepted whose layers do not fit each other in their order: {error}"
         ) from error
     finally:
         module.train(was_training)
     outputs = list(_tensors(found))
-    joined = torch.cat([torch.empty(_TRIED, 0), *(each.float().cpu() for each in outputs)], dim=-1)
+    joined = torch.cat(
+        [torch.empty(_TRIED, 0), *(output.float().cpu() for output in outputs)], dim=-1
+    )
     # A distribution's spread is made positive after the last layer.
     columns = 1 if len(outputs) == 2 else expected.shape[1]
-    own, ours = (each[:, :columns] for each in (joined, expected))
+    own, ours = (values[:, :columns] for values in (joined, expected))
     if joined.shape != expected.shape or not torch.allclose(own, ours, atol=_AS_NEAR_AS):
         raise ParameterError(
             f"a module is not accepted that computes something else than its {len(layers)} linear "
@@ -148,8 +150,8 @@ def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
 def _tensors(found: object) -> Iterator[Any]:
     """Yield the tensors of an output, such as those of a distribution."""
     if isinstance(found, tuple | list):
-        for each in found:
-            yield from _tensors(each)
+        for layer in found:
+            yield from _tensors(layer)
     elif hasattr(found, "detach"):
         yield found
 

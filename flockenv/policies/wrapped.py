@@ -94,8 +94,8 @@ class WrappedPolicy(ModelPolicy):
 
     def _check_normalizing(self, made: Any) -> None:
         """Refuse wrappers that do not normalize as the model's training did."""
-        statistics = [each.obs_rms for each in _layers(made) if hasattr(each, "obs_rms")]
-        if any(each.count < 1.0 for each in statistics):
+        statistics = [layer.obs_rms for layer in _layers(made) if hasattr(layer, "obs_rms")]
+        if any(statistic.count < 1.0 for statistic in statistics):
             raise ParameterError(
                 "a wrapper that normalizes without statistics is not accepted: let it take over "
                 "obs_rms of the training's"
@@ -122,11 +122,11 @@ class WrappedPolicy(ModelPolicy):
             made = self._wrapper(_stand_in(self._space, self._actions, items[0]))
         else:
             made = self._wrapper(_vector_stand_in(self._space, self._actions, items))
-        for each in _layers(made):
+        for layer in _layers(made):
             # Of stable-baselines3's VecNormalize and of Gymnasium's NormalizeObservation.
             for learns in ("training", "update_running_mean"):
-                if hasattr(each, "obs_rms") and hasattr(each, learns):
-                    setattr(each, learns, False)
+                if hasattr(layer, "obs_rms") and hasattr(layer, learns):
+                    setattr(layer, learns, False)
         return made
 
     def _decided(
@@ -178,17 +178,17 @@ class _Run:
 
     def observed(self, items: NDArray[np.float32]) -> object:
         """Return observations as the wrappers change them."""
-        for index, each in enumerate(self.wrapped):
-            each.unwrapped.given = items[index] if self.is_each else items
+        for index, wrapper in enumerate(self.wrapped):
+            wrapper.unwrapped.given = items[index] if self.is_each else items
         starts = self.actions is None
         if not self.is_each:
             (venv,) = self.wrapped
             return venv.reset() if starts else venv.step(self.actions)[0]
         seen = [
-            each.reset()[0] if starts else each.step(self.actions[index])[0]
-            for index, each in enumerate(self.wrapped)
+            wrapper.reset()[0] if starts else wrapper.step(self.actions[index])[0]
+            for index, wrapper in enumerate(self.wrapped)
         ]
-        return np.stack([np.asarray(each) for each in seen])
+        return np.stack([np.asarray(row) for row in seen])
 
 
 def _stand_in(

@@ -36,7 +36,7 @@ ORIGIN: dict[str, np.dtype[Any]] = {
     "schedule_sha256": np.dtype(np.str_),
 }
 """Fields that set a run apart from another of its parameters, seed and policy; each may be None."""
-CONTACTS = tuple(each.name for each in fields(ContactSeries))
+CONTACTS = tuple(column.name for column in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
 
@@ -155,7 +155,7 @@ def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParam
     count = contacts.count
     if (count < 0).any() or (count > c).any() or count.sum() != c:
         raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
-    boats, obstacles = parameters.n_boats, sum(len(getattr(parameters, each)) for each in OBSTACLES)
+    boats, obstacles = parameters.n_boats, sum(len(getattr(parameters, kind)) for kind in OBSTACLES)
     pairs = np.concatenate([contacts.i, contacts.j])
     if c and (contacts.i.min() < 0 or pairs.min() < -2 - obstacles or pairs.max() >= boats):
         raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")

@@ -15,10 +15,16 @@ from flockenv.recording.stored import ARRAYS, OPTIONAL
 
 
 def check_names(quantities: object, of: str) -> None:
-    """Refuse quantities of a user's own that are not by name, or whose names are taken."""
+    """Refuse a user's quantities that are no dictionary, and names that are taken."""
     if not isinstance(quantities, Mapping):
         raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
-    taken = {each.name for each in QUANTITIES} | {*TIMES, *MOTION, "boat", "id", "is_leader"}
+    taken = {quantity.name for quantity in QUANTITIES} | {
+        *TIMES,
+        *MOTION,
+        "boat",
+        "id",
+        "is_leader",
+    }
     for name in quantities:
         if not isinstance(name, str) or not name.isidentifier() or name in taken:
             raise ParameterError(
@@ -65,7 +71,7 @@ def _series(name: str, function: Callable[[Any], object], recording: object) -> 
 
 
 def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
-    """Refuse quantities of a user's own that are no series, or whose names are taken."""
+    """Refuse a user's quantities that are no series, and names that are taken."""
     check_names(quantities, "arrays")
     for name, values in quantities.items():
         if not isinstance(values, np.ndarray) or values.dtype != np.float64:
@@ -79,7 +85,7 @@ def read_only(of_recording: Mapping[str, Any]) -> dict[str, Any]:
     present = (name for name in (*ARRAYS, *OPTIONAL) if of_recording[name] is not None)
     sealed: dict[str, Any] = {name: _sealed(of_recording[name]) for name in present}
     if (contacts := of_recording["contacts"]) is not None:
-        columns = (_sealed(getattr(contacts, each.name)) for each in fields(contacts))
+        columns = (_sealed(getattr(contacts, column.name)) for column in fields(contacts))
         sealed["contacts"] = type(contacts)(*columns)
     sealed["order"] = OrderSeries(*map(_sealed, of_recording["order"].columns()))
     own = of_recording["quantities"].items()

@@ -185,14 +185,14 @@ class Recording(HintsAtNames):
         return f"<flockenv.Recording of {what}, {len(self)} samples to {self.duration_s} s>"
 
     def _fields(self) -> dict[str, Any]:
-        return {each.name: getattr(self, each.name) for each in fields(self)}
+        return {own.name: getattr(self, own.name) for own in fields(self)}
 
     def flock_at(self, time_s: float) -> Flock:
         """Return the flock at the last sample up to a time, as far as recorded.
 
         It has the poses, the velocities and the time of the sample, but neither the contacts nor
-        the state of the noise, so it does not move on as the recorded flock did. Raises what
-        `state_at` raises.
+        the state of the noise, so it does not move on as the recorded flock did. Raises the errors
+        of `state_at`.
         """
         state = self.state_at(time_s)
         present = self._there(self._sample_at(time_s))
@@ -201,7 +201,7 @@ class Recording(HintsAtNames):
         return Flock.from_state(parameters, self.seed, state)
 
     def state_at(self, time_s: float) -> dict[str, Any]:
-        """Return the state of the boats that are there at the last sample up to a time.
+        """Return the state of the boats that are present at the last sample up to a time.
 
         Returns
         -------

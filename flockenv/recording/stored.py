@@ -1,8 +1,8 @@
 """The file of a recording: its arrays, each by its name.
 
-A quantity that a file lacks is computed from the poses, or is NaN with a word where none were kept,
-and what is unknown is dropped with a word: files of builds with one quantity, one parameter or one
-array more or less are read.
+Files of builds with one quantity, parameter or array more or less are read. A missing quantity is
+computed from the poses; without poses it is NaN, with a warning. An unknown array is dropped with a
+warning.
 """
 
 import warnings
@@ -39,7 +39,7 @@ class RecordingWarning(UserWarning):
 
 
 class LayoutError(ParameterError):
-    """A whole file of a recording lacks what cannot be computed, or has another format."""
+    """An undamaged recording lacks an array that cannot be computed, or has another format."""
 
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
@@ -78,7 +78,10 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     if missing := [name for name in needed if name not in arrays]:
         raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
     own = [name for name in arrays if name.startswith(_OWN)]
-    steps = {each.name: f"{_STEPS}{each.name}" for each in dataclass_fields(StepStatistics)}
+    steps = {
+        statistic.name: f"{_STEPS}{statistic.name}"
+        for statistic in dataclass_fields(StepStatistics)
+    }
     orders = [f"order_{name}" for name in ORDER]
     known = {*needed, *orders, *OPTIONAL, *own, *steps.values(), *ORIGIN}
     _say(_DROPPED.format("arrays"), arrays.keys() - known)
@@ -129,7 +132,7 @@ def _statistics(
 
 
 def _say(words: str, names: Iterable[str]) -> None:
-    # Of the same text Python prints the first alone: a sweep may read thousands of such files.
+    # Python prints a repeated text once: a sweep may read thousands of such files.
     if listed := ", ".join(sorted(names)):
         warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
 

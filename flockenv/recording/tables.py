@@ -39,14 +39,14 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
     by_time = {name: getattr(recording, name) for name in TIMES[1:]}
     by_time |= {name: getattr(recording.order, name) for name in ORDER}
     by_time |= recording.quantities
-    units = {each.name: each.unit or "1" for each in RECORDED} | MOTION
+    units = {quantity.name: quantity.unit or "1" for quantity in RECORDED} | MOTION
     attributes = {name: {"units": units[name]} for name in units}
     variables: dict[str, Any] = {
-        name: ("time_s", each, attributes.get(name)) for name, each in by_time.items()
+        name: ("time_s", values, attributes.get(name)) for name, values in by_time.items()
     }
     variables |= {
-        name: (("time_s", "boat"), each, attributes[name])
-        for name, each in _motion(recording).items()
+        name: (("time_s", "boat"), values, attributes[name])
+        for name, values in _motion(recording).items()
     }
     kinds = {"policy": np.dtype(np.str_), **ORIGIN}
     origin = {name: (getattr(recording, name), kind) for name, kind in kinds.items()}
@@ -63,7 +63,11 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
             "seed": np.uint64(recording.seed),
             "version": recording.version,
             "parameters": recording.parameters.to_toml(),
-            **{name: kind.type(each) for name, (each, kind) in origin.items() if each is not None},
+            **{
+                name: kind.type(value)
+                for name, (value, kind) in origin.items()
+                if value is not None
+            },
         },
     )
 

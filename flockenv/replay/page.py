@@ -147,7 +147,9 @@ def _page(recordings: Mapping[str, Recording], every: int) -> str:
     time_s, words = decisive_minute(list(recordings.values()))
     quantities = shown_quantities(list(recordings.values()))
     data = {
-        "runs": [_run(name, each, every, quantities) for name, each in recordings.items()],
+        "runs": [
+            _run(name, recording, every, quantities) for name, recording in recordings.items()
+        ],
         "quantities": quantities,
         "moment": {"time_s": time_s, "words": words},
     }
@@ -197,7 +199,7 @@ def _run(
             "inner_radius_cm": inner_cm,
             **parameters._in_core.hull_lengths,
         },
-        **{each: getattr(parameters, each) for each in OBSTACLES},
+        **{kind: getattr(parameters, kind) for kind in OBSTACLES},
         # Of tracks the phases may be unknown.
         "phases": PHASES.tolist() if _has_phases(recording) else [],
         "ids": None if recording.ids is None else recording.ids.tolist(),

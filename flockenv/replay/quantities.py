@@ -27,21 +27,21 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
     highest value of its chart, None for those of the data; and ``decimals`` that are shown. Order
     towards the target is among them if in any of the recordings leaders have one.
     """
-    has_target = any(each.parameters.common_target is not None for each in recordings)
+    has_target = any(recording.parameters.common_target is not None for recording in recordings)
     keys = [*(["signed_order"] if has_target else []), "rotation", *ORDER]
-    table = {each.name: each for each in QUANTITIES}
+    table = {quantity.name: quantity for quantity in QUANTITIES}
     found = []
     for key in keys:
-        each = table[key]
+        quantity = table[key]
         values = [series_of(recording, key) for recording in recordings]
-        limits = each.range or [np.abs(own).max() for own in values if np.isfinite(own).all()]
+        limits = quantity.range or [np.abs(own).max() for own in values if np.isfinite(own).all()]
         largest = max(map(abs, limits), default=1.0)
         # Three digits of numbers around the largest, and no more than 6 behind the point.
         decimals = 2 - math.floor(math.log10(largest) + 0.3) if largest > 0 else 2
-        name, _, index = each.symbol.partition("_")
+        name, _, index = quantity.symbol.partition("_")
         symbol = f" {name}{index.translate(_SMALL)}" if index else ""
-        shown = {"key": key, "words": f"{each.label}{symbol}", "unit": each.unit}
-        found.append({**shown, "range": each.range, "decimals": min(max(decimals, 0), 6)})
+        shown = {"key": key, "words": f"{quantity.label}{symbol}", "unit": quantity.unit}
+        found.append({**shown, "range": quantity.range, "decimals": min(max(decimals, 0), 6)})
     return found
 
 
@@ -53,13 +53,16 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     their difference in signed order is largest. It is the first sample, with no words, where the
     recordings have no whole minute in common or no normal boats.
     """
-    first = max(float(each.time_s[0]) for each in recordings)
-    end = min(float(each.time_s[-1]) for each in recordings)
-    signed = [series_of(each, "signed_order") for each in recordings]
-    if end - first < _MINUTE_S or not all(np.isfinite(each).all() for each in signed):
-        return min(float(each.time_s[0]) for each in recordings), ""
+    first = max(float(recording.time_s[0]) for recording in recordings)
+    end = min(float(recording.time_s[-1]) for recording in recordings)
+    signed = [series_of(recording, "signed_order") for recording in recordings]
+    if end - first < _MINUTE_S or not all(np.isfinite(series).all() for series in signed):
+        return min(float(recording.time_s[0]) for recording in recordings), ""
     steps = np.arange(first, end - _STEP_S / 2, _STEP_S)
-    series = [np.interp(steps, each.time_s, s) for each, s in zip(recordings, signed, strict=True)]
+    series = [
+        np.interp(steps, recording.time_s, s)
+        for recording, s in zip(recordings, signed, strict=True)
+    ]
     minute = round(_MINUTE_S / _STEP_S)
     half = np.full(minute // 2, 1.0)
     if len(series) == 1:

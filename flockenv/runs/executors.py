@@ -75,7 +75,7 @@ class RayExecutor(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Stop Ray, if it was started here; what is under way then ends with it."""
+        """Stop Ray if it was started here; its unfinished tasks end with it."""
         if self._is_ours:
             self._ray.shutdown()
 

@@ -51,11 +51,11 @@ def _search(use: str, index: int) -> SeedRange:
 
 
 POLICY_SEEDS: Mapping[str, SeedRange] = {
-    each.use: each
-    for each in (
+    seeds.use: seeds
+    for seeds in (
         SeedRange("evaluation", 0, 3_000_000_000),
-        # Of studies, which no policy was made with. Words that `release_seeds` hashes may fall
-        # here, too: "train_leaders" does, so that trainings were judged with some of them.
+        # Seeds of studies, with which no policy was made. Words that `release_seeds` hashes may
+        # fall here, too: "train_leaders" does, so that trainings were judged with some of them.
         SeedRange("paper", 3_000_000_000, _FIRST_JUDGMENT - 3_000_000_000),
         # They judge constants of the model that were searched and chosen with the two below.
         SeedRange("calibration judgment", _FIRST_JUDGMENT, 1 << 16),
@@ -77,7 +77,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     """Refuse seeds that policies are trained on."""
-    # Of a range the ends are enough, however long it is.
+    # For a range, its ends suffice.
     for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(

@@ -88,7 +88,7 @@ class RunSpec:
 
         Defaults are left out, so that a new field changes no run's text.
         """
-        given = {each.name: (getattr(self, each.name), each.default) for each in fields(self)}
+        given = {own.name: (getattr(self, own.name), own.default) for own in fields(self)}
         plain = {name: value for name, (value, default) in given.items() if value != default}
         changed = self.parameters.to_dict().items() - _DEFAULTS.items()
         text = json.dumps(plain | {"parameters": dict(changed)}, sort_keys=True)
@@ -109,7 +109,7 @@ class RunSpec:
 def execute(spec: RunSpec) -> Recording:
     """Make a run: a pure function, the same bits in any thread, process and machine.
 
-    Raises what `simulate` raises.
+    Raises the errors of `simulate`.
 
     Returns
     -------

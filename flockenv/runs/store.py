@@ -28,7 +28,7 @@ RESULTS_VERSION = 6
 
 
 class StorageError(FlockError, OSError):
-    """A folder or file cannot be written; what was finished before is still there."""
+    """A folder or file cannot be written; earlier finished runs are kept."""
 
 
 class StoreWarning(UserWarning):
@@ -106,7 +106,7 @@ class RunStore:
 
 
 def _difference(run: Recording, spec: RunSpec) -> str | None:
-    """Return in what a recording is not the run of a spec, None if it is that run."""
+    """Return how a recording differs from the run of a spec; None if it is that run."""
     title = policy(spec.policy, spec.parameters.pool).name
     step_s, kept = 1.0 / spec.sample_hz, spec.keep
     gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s

@@ -35,7 +35,7 @@ MOST_RUNS = 1_000_000
 """A sweep of more runs is refused: it is a mistake in a list, or needs to be split."""
 
 _KEYS = ("preset", "minutes", "seeds", "sample_hz", "policy", "keep", "fixed", "grid")
-_AVERAGED = tuple(each.name for each in QUANTITIES if each.is_averaged)
+_AVERAGED = tuple(quantity.name for quantity in QUANTITIES if quantity.is_averaged)
 _COLUMNS = (
     "frames",
     *(f"{name}_{kind}" for name in _AVERAGED for kind in ("mean", "std")),
@@ -106,11 +106,11 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    # Beside flocks with leaders, those without are what they are compared with.
-    unled = run | {"policy": EVERY_SUBSTEP} if any(each.n_leaders for each in flocks) else run
+    # Flocks without leaders are the comparison for those with leaders.
+    unled = run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
     runs = tuple(
-        RunSpec(parameters=each, seed=seed, **(run if each.n_leaders else unled))
-        for each in flocks
+        RunSpec(parameters=flock, seed=seed, **(run if flock.n_leaders else unled))
+        for flock in flocks
         for seed in seeds
     )
     return SweepSpec(axes, runs)
@@ -236,9 +236,9 @@ def _one_word(value: object) -> object:
     # no type.
     if not isinstance(value, tuple):
         return value
-    if all(isinstance(each, str) for each in value):
+    if all(isinstance(item, str) for item in value):
         return ",".join(value)
-    if all(isinstance(each, float) for each in value):
+    if all(isinstance(item, float) for item in value):
         return "x".join(f"{radius:g}" for radius in value)
     return repr(value)
 
@@ -269,7 +269,7 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
             levels = np.sort(group["bw_s"].unique())
             noises = group[["bw_s", "psi_o_mean", "rotation_size"]].groupby("bw_s")
             if len(levels) > 1:
-                means = [each.drop(columns="bw_s") for _, each in noises]
+                means = [noise.drop(columns="bw_s") for _, noise in noises]
                 found = critical_noise(levels, means)
                 row = dict(zip(fields, key, strict=True)) | dict(zip(names, found, strict=True))
                 rows.append(row | {"rotation_size": noises["rotation_size"].mean().max()})

@@ -94,8 +94,8 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     by_policy: dict[str, list[RunSpec]] = {}
     for spec in missing:
         by_policy.setdefault(spec.policy, []).append(spec)
-    seconds = [_core_seconds(each) for each in by_policy.values()]
-    known = [each for each in seconds if each is not None]
+    seconds = [_core_seconds(specs) for specs in by_policy.values()]
+    known = [time_s for time_s in seconds if time_s is not None]
     return Workload(
         runs=len(specs),
         stored=len(specs) - len(missing),

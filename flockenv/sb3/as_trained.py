@@ -25,7 +25,7 @@ class AsTrained:
         self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
         own, layers = normalizing(self.model), normalizing_layers(flocks)
-        theirs = [each for each in layers if each.norm_obs]
+        theirs = [layer for layer in layers if layer.norm_obs]
         if not layers and lacks_normalizing(self.model):
             raise ParameterError(
                 f"{short_repr(self.model)} was trained in VecNormalize and loaded without it: "
@@ -45,8 +45,8 @@ class AsTrained:
                 f"{own.obs_rms.mean.shape}, not {shape}: evaluate it in wrappers in the same order"
             )
         if own is not None:
-            for each in theirs:
-                _follow(own, each)
+            for name in theirs:
+                _follow(own, name)
         self._normalizing = None if theirs else own
 
     def predict(
@@ -69,14 +69,14 @@ class AsTrained:
 
 def trained(model: object, flocks: VecEnv) -> AsTrained:
     """Return a model as it acts in flocks whose task is that of its training."""
-    (leaders,) = (each.leaders for each in layers_of(flocks) if isinstance(each, PerFlock))
+    (leaders,) = (layer.leaders for layer in layers_of(flocks) if isinstance(layer, PerFlock))
     _check_task(model, flocks, leaders)
     return AsTrained(model, flocks, leaders)
 
 
 def normalizing_layers(flocks: VecEnv) -> list[VecNormalize]:
     """Return the `VecNormalize`s around flocks."""
-    return [each for each in layers_of(flocks) if isinstance(each, VecNormalize)]
+    return [layer for layer in layers_of(flocks) if isinstance(layer, VecNormalize)]
 
 
 def _follow(training: VecNormalize, own: VecNormalize) -> None:
@@ -87,7 +87,7 @@ def _follow(training: VecNormalize, own: VecNormalize) -> None:
 
 def _unwrapped(model: object) -> Any:
     """Return the model of a `ModelPolicy`, which normalizes too and turns levels into rudders."""
-    # One in a wrapper of its own makes what the model observes.
+    # A flock in a wrapper of its own gives the model the wrapper's observations.
     return model.model if type(model) is ModelPolicy else model
 
 
@@ -98,9 +98,9 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, options = getattr(model, "observation_space", None), leaders.observation_space.options
     # A wrapper may make a space that says nothing of its meaning, or keep another flock's.
-    known = [each for each in (space, space_under_wrappers(model)) if _says_meaning(each)]
-    for each in known:
-        _check_options(model, each.policy_options(), options)
+    known = [one for one in (space, space_under_wrappers(model)) if _says_meaning(one)]
+    for layer in known:
+        _check_options(model, layer.policy_options(), options)
     if not known:
         own_policy.check_action_mode(leaders.action_mode, "in this evaluation")
         said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}

@@ -139,11 +139,11 @@ def evaluated(
 def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
     """Let no `VecNormalize` learn from an evaluation, which may be on the training's own flocks."""
     layers = normalizing_layers(flocks)
-    learned = [each.training for each in layers]
-    for each in layers:
-        each.training = False
+    learned = [layer.training for layer in layers]
+    for layer in layers:
+        layer.training = False
     try:
         yield
     finally:
-        for each, training in zip(layers, learned, strict=True):
-            each.training = training
+        for layer, training in zip(layers, learned, strict=True):
+            layer.training = training

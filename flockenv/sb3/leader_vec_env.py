@@ -188,10 +188,10 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             For options that are no dictionaries.
         """
         self._reset_options()
-        each = materialized({} if options is None else options)
-        each = [each] * self.num_envs if isinstance(each, Mapping) else each
-        self._requests(each)
-        super().set_options(list(each))
+        given = materialized({} if options is None else options)
+        by_slot: Any = [given] * self.num_envs if isinstance(given, Mapping) else given
+        self._requests(by_slot)
+        super().set_options(list(by_slot))
 
     def _drawn_seed(self) -> int:
         return drawn_seed(self.np_random)
@@ -199,11 +199,11 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     def _requests(self, options: Any) -> list[dict[str, Any]]:
         """Return the request for each flock's reset, of one dictionary for each slot."""
         is_each = isinstance(options, Sequence) and len(options) == self.num_envs
-        if not is_each or not all(isinstance(each, Mapping) for each in options):
+        if not is_each or not all(isinstance(request, Mapping) for request in options):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
         by_flock: list[dict[str, Any] | None] = [None] * self.num_flocks
-        for flock, each in zip(self.flock_of_slot.tolist(), options, strict=True):
-            (request,) = reset_requests(each, 1, is_each=False)
+        for flock, given in zip(self.flock_of_slot.tolist(), options, strict=True):
+            (request,) = reset_requests(given, 1, is_each=False)
             if by_flock[flock] is None:
                 by_flock[flock] = request
             elif not _equal(by_flock[flock], request):
@@ -241,7 +241,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, flat, np.float32)
         except Exception:
-            # Of the motion of a flock or the reward: flocks whose episode is over start again.
+            # Errors of the motion of a flock or of the reward; flocks whose episode is over start
+            # again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
@@ -291,7 +292,9 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     def _chosen(self, indices: Any) -> list[int]:
         """Return the numbers of slots; an error names other values."""
-        chosen = [as_int(each, "indices") for each in items(self._get_indices(indices), "indices")]
+        chosen = [
+            as_int(index, "indices") for index in items(self._get_indices(indices), "indices")
+        ]
         if any(not -self.num_envs <= slot < self.num_envs for slot in chosen):
             raise IndexError(
                 f"indices = {short_repr(indices)} are not accepted: slots 0 to {self.num_envs - 1}"

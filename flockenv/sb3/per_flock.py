@@ -58,7 +58,7 @@ class PerFlock(VecEnvWrapper):
 
 def per_flock(env: VecEnv) -> VecEnv:
     """Return an environment that counts flocks."""
-    return env if any(isinstance(each, PerFlock) for each in layers_of(env)) else PerFlock(env)
+    return env if any(isinstance(layer, PerFlock) for layer in layers_of(env)) else PerFlock(env)
 
 
 def layers_of(env: VecEnv) -> list[VecEnv]:

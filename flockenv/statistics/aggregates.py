@@ -26,7 +26,7 @@ def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
 def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
     """Return how often a difference is positive (equal ones count half), mean over the tasks.
 
-    Takes what `interquartile_mean` takes, for paired differences.
+    Takes the arguments of `interquartile_mean`, for paired differences.
     """
     shares = [((task > 0.0) + 0.5 * (task == 0.0)).mean(axis) for task in tasks]
     return np.mean(shares, axis=0)

@@ -63,7 +63,7 @@ def critical_noise(
     def of_places(*indices: object, axis: int) -> NDArray[np.float64]:
         drawn = [group[np.asarray(at, int)] for group, at in zip(groups, indices, strict=True)]
         psi_o, rotation = (
-            np.stack(np.broadcast_arrays(*(each[..., column].mean(-1) for each in drawn)))
+            np.stack(np.broadcast_arrays(*(curve[..., column].mean(-1) for curve in drawn)))
             for column in (0, 1)
         )
         return loss_of_order(levels, psi_o, rotation)
@@ -93,7 +93,7 @@ def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> ND
     x = np.asarray(noise, float)
     order, turning = np.asarray(psi_o, float), np.asarray(rotation, float)
     curves = zip(order.reshape(len(x), -1).T, turning.reshape(len(x), -1).T, strict=True)
-    return np.array([_middle(x, *each) for each in curves]).reshape(order.shape[1:])
+    return np.array([_middle(x, *curve) for curve in curves]).reshape(order.shape[1:])
 
 
 def _middle(x: NDArray[np.float64], psi_o: Any, rotation: Any) -> float:

@@ -131,7 +131,7 @@ def bootstrap_interval(
         The value and the ends at level `CONFIDENCE`; the ends are NaN for a single run. With
         fewer than `FEW` runs they are too narrow.
     """
-    data = tuple(series(each, "samples") for each in items(samples, "samples"))
+    data = tuple(series(sample, "samples") for sample in items(samples, "samples"))
     value = float(statistic(*data, axis=-1))
     if min(map(len, data)) < 2:
         return value, math.nan, math.nan
@@ -157,8 +157,8 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     Trainings that are judged in the same flocks are such rows: an interval over their means leaves
     out the luck of the flocks, which all of them share. Here both are drawn, rows and columns each
     with their own means, 9999 times. Deviations are stretched so that few rows or columns have
-    Student's interval, as in `mean_interval`. What is left beside both effects counts twice, so
-    that a table of noise alone has an interval that is 1.4 times too wide.
+    Student's interval, as in `mean_interval`. The residual beside both effects counts twice: a
+    table of noise alone gets an interval 1.4 times too wide.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from flockenv.parameters import FlockParameters
 def structure_series(
     name: str, parameters: FlockParameters, pose: ArrayLike
 ) -> NDArray[np.float64]:
-    """Return a quantity of structure at each time, shape (t,); NaN if no boat is there.
+    """Return a quantity of structure at each time, shape (t,); NaN if no boat is present.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 
-    Takes and raises what `structure_series` does.
+    Takes the arguments of `structure_series`, and raises its errors.
     """
     found = _core.jam_sizes(parameters, _poses(pose))
     return [np.sort(np.array(sizes, np.int64)) for sizes in found]

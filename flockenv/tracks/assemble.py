@@ -156,7 +156,7 @@ def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
-    distance, speed = (np.hypot(each[..., 0], each[..., 1]) for each in (pose, velocity))
+    distance, speed = (np.hypot(rows[..., 0], rows[..., 1]) for rows in (pose, velocity))
     moves = ~np.isnan(speed).all(axis=0)
     fastest = np.nanmedian(speed[:, moves], axis=0).max(initial=0.0)
     if fastest > _FASTEST_CM_S:

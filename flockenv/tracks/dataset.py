@@ -78,7 +78,7 @@ def _named(position: Any, dimension: str) -> list[str]:
     if dimension not in position.coords:
         only = dimension == "keypoints" and position.sizes[dimension] == 1
         return [""] if only else [str(n) for n in range(position.sizes[dimension])]
-    names = [str(each) for each in np.atleast_1d(position[dimension].values)]
+    names = [str(name) for name in np.atleast_1d(position[dimension].values)]
     for name in names:
         if names.count(name) > 1:
             raise ParameterError(
@@ -89,7 +89,7 @@ def _named(position: Any, dimension: str) -> list[str]:
 
 def _said(dataset: Any, layout: TrackLayout, points: list[str]) -> TrackLayout:
     """Return a layout whose fields, where they were left out, are what the dataset says."""
-    default = {each.name: each.default for each in fields(TrackLayout)}
+    default = {one.name: one.default for one in fields(TrackLayout)}
     given = {name for name, value in default.items() if getattr(layout, name) != value}
     form: dict[str, Any] = {"frame": "time", "id": "individuals"}
     known = key_points({name: f"{name}_" if name else "" for name in points})

@@ -1,4 +1,4 @@
-"""What is known of other programs' tables: one row each, and words that many use for columns.
+"""Tables of other programs: a row of facts for each, and words that many use for columns.
 
 In a pattern ``{id}`` stands for the name of a boat, ``{n}`` for its number, ``{part}`` for a key
 point and ``*`` for anything. The column of y is that of x with one letter exchanged.
@@ -45,7 +45,7 @@ FORMATS = (
     Format("key points", {"x": "{part}_x"}),
     Format("key points", {"x": "{part}.x"}),
 )
-"""What is known of each program, the more special ones first."""
+"""A row for each program, the more special ones first."""
 
 _BODIES = ("body", "boat", "robot", "animal", "fish", "individual", "particle", "agent")
 _THINGS = (*_BODIES, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
@@ -70,7 +70,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
         *("winkel", "richtung"),
     ),
 }
-"""What columns are often called, in small letters without a unit, the better names first."""
+"""Frequent names of columns, in small letters without a unit, the better names first."""
 
 _PARTS = {
     "head": ("head", "nose", "snout", "bow", "front"),

@@ -32,7 +32,7 @@ def _are(holds: Callable[[Any], bool], values: Any, count: int | None = None) ->
 
 
 def _among(*values: Any) -> Rule:
-    words = (each if each.isalpha() else repr(each) for each in values if each)
+    words = (value if value.isalpha() else repr(value) for value in values if value)
     return lambda value: value in values, " or ".join(words)
 
 
@@ -187,12 +187,12 @@ class TrackLayout:
     header: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value = getattr(self, each.name)
-            holds, accepted = _KINDS.get(each.type, (None, ""))
+        for one in fields(self):
+            value = getattr(self, one.name)
+            holds, accepted = _KINDS.get(one.type, (None, ""))
             if holds and not holds(value):
                 raise ParameterError(
-                    f"{each.name} = {short_repr(value)} is not accepted: {accepted}"
+                    f"{one.name} = {short_repr(value)} is not accepted: {accepted}"
                 )
         if len(columns_of(self.x)) != len(columns_of(self.y)):
             raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
@@ -253,7 +253,7 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     """
     values = {name: _plain(name, value) for name, value in read_toml_file(path, str(path)).items()}
     try:
-        refuse_unknown(values, [each.name for each in fields(TrackLayout)], "field of a layout")
+        refuse_unknown(values, [one.name for one in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
         none = {name: None for name in ("id", "heading", "separator") if values.get(name) == ""}
@@ -267,5 +267,5 @@ def _plain(name: str, value: Any) -> Any:
     if not isinstance(value, list):
         return value
     as_text = name in ("leaders", "unassigned", "missing")
-    plain = (_plain("", each) for each in value)
+    plain = (_plain("", item) for item in value)
     return tuple(str(v) if as_text and type(v) in (int, float) else v for v in plain)

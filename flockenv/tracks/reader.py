@@ -179,7 +179,7 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
     time_s = frames.to_numpy()
     stamps = wide["time"][names].to_numpy()
     stamps = np.where(np.isnan(stamps), time_s[:, None], stamps)
-    pose = np.stack([wide[each][names] for each in ("x", "y", "heading")], axis=-1)
+    pose = np.stack([wide[column][names] for column in ("x", "y", "heading")], axis=-1)
     return names, time_s - time_s[0], stamps, pose
 
 

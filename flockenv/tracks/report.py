@@ -67,7 +67,7 @@ class TrackReport:
 
     def named(self) -> dict[str, Any]:
         """Return the attributes by name, None for numbers that are undefined."""
-        return {name: None if each != each else each for name, each in asdict(self).items()}
+        return {name: None if value != value else value for name, value in asdict(self).items()}
 
     def __str__(self) -> str:
         all_of = self.samples + self.missing

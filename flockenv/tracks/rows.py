@@ -44,7 +44,7 @@ def rows_of(table: Table, layout: TrackLayout) -> "pd.DataFrame":
     _check_no_part(given, layout)
     heading, is_strange = _headings(table, layout)
     sure = [table.numbers(name, layout) for name in layout.columns["confidence"]]
-    is_sure = [each >= (layout.least_confidence or 0.0) for each in sure]
+    is_sure = [confidence >= (layout.least_confidence or 0.0) for confidence in sure]
     is_wet = in_water(layout.pool, rows[["x", "y"]].to_numpy(), 2 * layout.hull[0])
     reasons = {
         "without a name": rows["id"].isna().to_numpy(),
@@ -97,7 +97,7 @@ def _names_beside(table: Table, layout: TrackLayout) -> list[str]:
         and name.casefold().endswith(last)
         and len(name) > len(first + last)
     ]
-    names = [n for n in names if all(each.replace("{id}", n) in table for each in fields)]
+    names = [n for n in names if all(field.replace("{id}", n) in table for field in fields)]
     if not names:
         raise ParameterError(
             f"no columns look like {' and '.join(map(repr, fields))}; there are "
@@ -114,7 +114,7 @@ def _names(table: Table, layout: TrackLayout) -> "pd.Series[Any]":
         ids = table.rows.assign(id="0")["id"] if layout.id is None else table.column(layout.id)
     names = ids.convert_dtypes().astype(object).where(ids.notna(), "").astype(str).str.strip()
     names = names.str.replace(r"^(-?\d+)\.0+$", r"\1", regex=True)
-    nobody = {each.strip().casefold() for each in layout.unassigned} | {""}
+    nobody = {name.strip().casefold() for name in layout.unassigned} | {""}
     return names.mask(names.str.casefold().isin(nobody), None)
 
 

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 _TEXTS, _PARQUET = (".csv", ".tsv", ".txt"), (".parquet", ".pq")
-SUFFIXES = (*_TEXTS, *(f"{each}.gz" for each in _TEXTS), *_PARQUET)
+SUFFIXES = (*_TEXTS, *(f"{text}.gz" for text in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
 NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
-"""What stands for no number, in small letters."""
+"""Cells that stand for no number, in small letters."""
 
 
 class Table:
@@ -89,7 +89,7 @@ class Table:
 
 def ending(path: Path) -> str:
     """Return the ending of a file in small letters, with that under .gz."""
-    suffixes = [each.lower() for each in path.suffixes[-2:]]
+    suffixes = [suffix.lower() for suffix in path.suffixes[-2:]]
     return "".join(suffixes if suffixes[-1:] == [".gz"] else suffixes[-1:])
 
 
@@ -260,7 +260,7 @@ def plain_table(table: "pd.DataFrame") -> Table:
     index: Any = table.index
     if columns.nlevels > 1 and "coords" in columns.names:
         kept = columns.droplevel("scorer") if "scorer" in columns.names else columns
-        table = table.set_axis([_joined(each) for each in kept], axis=1)
+        table = table.set_axis([_joined(levels) for levels in kept], axis=1)
         index = index.rename(index.name or "frame")
     elif columns.nlevels > 1:
         raise ParameterError(
@@ -302,7 +302,7 @@ def _other_mark(names: list[str]) -> str:
 
 def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
     texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
-    none = texts.str.lower().isin(NONE | {each.strip().lower() for each in layout.missing})
+    none = texts.str.lower().isin(NONE | {word.strip().lower() for word in layout.missing})
     point = texts.str.replace(layout.decimal, ".")
     values = pandas.to_numeric(point.mask(none), errors="coerce")
     strange = values.isna() & ~none

@@ -89,7 +89,7 @@ def _layout(recording: Recording) -> dict[str, Any]:
         "pool": parameters.pool,
         "hull": (parameters.boat_radius_cm, parameters.boat_shape),
         "target": parameters.target,
-        "leaders": [str(each) for each in names[: parameters.n_leaders]],
+        "leaders": [str(name) for name in names[: parameters.n_leaders]],
     }
 
 

@@ -32,7 +32,7 @@ CHECKPOINT, CURVE, POLICY, SETTINGS = "checkpoint.bin", "curve.csv", "policy.jso
 TRAINED = "trained"
 """Name of the trained leaders in a comparison."""
 
-OPTIONS: tuple[str, ...] = tuple(each["name"] for each in _core.BRANCH_OPTIONS)
+OPTIONS: tuple[str, ...] = tuple(option["name"] for option in _core.BRANCH_OPTIONS)
 """Names of the options of a training; docs/training_reference.md says what each is."""
 
 #: Between two checkpoints, in s.
@@ -243,7 +243,7 @@ def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTra
 def compare_with_laws(
     policy: LeaningLaw, parameters: FlockParameters, flocks: int
 ) -> dict[str, dict[str, NDArray[np.float64]]]:
-    """Return what `run_episodes` measures in some fresh flocks, by what leads them for 8 minutes.
+    """Return the measurements of `run_episodes` in fresh flocks, by the policy that leads them.
 
     Parameters
     ----------
@@ -258,8 +258,8 @@ def compare_with_laws(
     seeds = range(flocks)
     options = {"target": "random"}
     return {
-        name: run_episodes(parameters, each, seeds, _EPISODE_S, options=options)
-        for name, each in led.items()
+        name: run_episodes(parameters, own, seeds, _EPISODE_S, options=options)
+        for name, own in led.items()
     }
 
 

@@ -1,4 +1,4 @@
-"""Flocks that branch from one state and meet one noise: what leads them makes the difference."""
+"""Flocks that branch from one state and meet one noise: only their leaders differ."""
 
 from collections.abc import Callable
 from typing import Any
@@ -104,7 +104,7 @@ class BranchingFlocks:
         return np.array(orders)
 
     def _start(self) -> NDArray[np.float32]:
-        """Start the next branch of each group, and return what leaders see."""
+        """Start the next branch of each group, and return the leaders' observations."""
         if self._snapshots:
             branching = self._had < self._branches
             options = {"snapshot": self.size * self._snapshots, "target": self._target_of_flocks()}

@@ -25,7 +25,7 @@ from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.ppo.settings import TrainingSettings
 
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
-#: What is kept of each episode.
+#: Numbers kept of each episode.
 _SUMMARY = ("signed_order", "worst_overlap_cm", "unsolved")
 
 
@@ -131,7 +131,7 @@ def resume(
             if type(done) is not int or done < 0 or done % (model.n_steps * venv.num_envs):
                 raise ValueError(f"{short_repr(done)} samples are no whole number of rollouts")
             model.num_timesteps = done
-        # What a damaged archive makes zipfile, pickle and torch raise is not one kind of error.
+        # zipfile, pickle and torch raise errors of several kinds for a damaged archive.
         except Exception as error:
             raise ParameterError(
                 f"{path} is no checkpoint of these settings: {type(error).__name__}: {error}"
@@ -240,7 +240,7 @@ class _Checkpoints(BaseCallback):
 
 
 def _check_finite(model: BaseAlgorithm, folder: Path) -> None:
-    if not all(bool(torch.isfinite(each).all()) for each in model.policy.parameters()):
+    if not all(bool(torch.isfinite(weights).all()) for weights in model.policy.parameters()):
         raise TrainingError(
             f"weights are not finite after {model.num_timesteps} samples: try a lower "
             f"learning_rate or max_grad_norm; {_last_good(folder)}"

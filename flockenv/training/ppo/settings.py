@@ -169,7 +169,7 @@ class TrainingSettings:
             model = PPO(SharedNoisePolicy, venv, policy_kwargs=policy, seed=self.seed, **options)
         except (AssertionError, TypeError, ValueError) as error:
             raise ParameterError(f"PPO refuses its options: {error}") from error
-        # Learned, it would end the exploration of weights whose gradient is small.
+        # If it were learned, weights with a small gradient would no longer be explored.
         model.policy.log_std.requires_grad_(False)
         return model
 
@@ -185,7 +185,7 @@ class TrainingSettings:
     def to_dict(self) -> dict[str, Any]:
         """Return every field by name."""
         own = {"environment": dict(self.environment), "ppo": dict(self.ppo)}
-        return {**{each.name: getattr(self, each.name) for each in fields(self)}, **own}
+        return {**{setting.name: getattr(self, setting.name) for setting in fields(self)}, **own}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
@@ -196,7 +196,7 @@ class TrainingSettings:
         ParameterError
             For unknown names, with the nearest one, and values that are not accepted.
         """
-        refuse_unknown(values, [each.name for each in fields(cls)], "setting of the training")
+        refuse_unknown(values, [setting.name for setting in fields(cls)], "setting of the training")
         return cls(**values)
 
     def to_toml(self) -> str:
