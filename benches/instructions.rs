@@ -26,7 +26,7 @@ const HEADER: &str = "scene,instructions per step,per boat and substep,per conta
 
 type Failure = Box<dyn std::error::Error>;
 
-/// What is counted: substeps of a flock, or control steps of the flocks of an environment.
+/// The counted work: substeps of a flock, or control steps of the flocks of an environment.
 enum Work {
     Flock(FlockParameters),
     Environment(FlockParameters),
@@ -37,7 +37,7 @@ enum Work {
 /// How many flocks a seed stands for where leaders lean: a training's 128 in all.
 const LEANING_FLOCKS: u64 = 32;
 
-/// What a measured stretch did.
+/// Work done in a measured stretch.
 struct Done {
     steps: u64,
     boats: u64,
@@ -178,7 +178,7 @@ impl Work {
     }
 }
 
-/// What all flocks of a batch did.
+/// Sums over all flocks of a batch.
 fn statistics(batch: &EnvBatch) -> Statistics {
     let episodes = batch.envs().iter().filter_map(|env| env.episode());
     episodes

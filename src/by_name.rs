@@ -7,7 +7,7 @@ use serde::ser::{Serialize, Serializer};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A struct that is stored as its fields by name.
+/// A struct stored as its fields by name.
 pub(crate) trait ByName: Default {
     /// Its name in messages.
     const NAME: &'static str;

@@ -23,7 +23,7 @@ pub fn seconds(ticks: Ticks) -> f64 {
 
 /// Number of steps in a duration (s), which must be a whole number of them.
 ///
-/// `rate_hz`: steps per second; `steps`: what they are, for the message.
+/// `rate_hz`: steps per second; `steps`: their name in the message.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] that names the durations nearest to a `duration_s` that is no whole number of steps.

@@ -3,12 +3,12 @@
 /// Every error that the simulator reports. No input reaches a panic.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FlockError {
-    /// A parameter, option or argument lies outside what is accepted.
+    /// A parameter, option or argument lies outside the accepted range.
     #[error("{field} = {value} is not accepted: {accepted}")]
     Parameter {
         /// The field's public name, unit included.
         field: &'static str,
-        /// The value as it was given.
+        /// The given value.
         value: String,
         /// The accepted values.
         accepted: String,
@@ -126,9 +126,9 @@ impl FlockError {
 fn readable(text: &str) -> String {
     const MOST_DIGITS: usize = 20;
     let (mut written, mut rest) = (String::new(), text);
-    while let Some(start) = rest.find(|each: char| each.is_ascii_digit()) {
+    while let Some(start) = rest.find(|letter: char| letter.is_ascii_digit()) {
         let (before, from) = rest.split_at(start);
-        let is_over = |each: char| !each.is_ascii_digit() && each != '.';
+        let is_over = |letter: char| !letter.is_ascii_digit() && letter != '.';
         let (digits, after) = from.split_at(from.find(is_over).unwrap_or(from.len()));
         written += before;
         match digits.parse::<f64>() {

@@ -1,6 +1,6 @@
 //! States as bytes that show when they are damaged: 8 bytes magic, whose last one is the format's version, 8 bytes
-//! checksum (CRC-32, little-endian), then the state in postcard encoding. What the tables of parameters, options,
-//! reward terms, blocks and quantities declare is stored by name; the rest by its place, so that the version rises with
+//! checksum (CRC-32, little-endian), then the state in postcard encoding. Parameters, options, reward terms, blocks and
+//! quantities, which tables declare, are stored by name. The rest is stored by position, so that the version rises with
 //! every change of it.
 
 use crate::error::{FlockError, Result};
@@ -20,8 +20,8 @@ pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     debug_assert!(bytes.is_ok(), "{:?}", bytes.err());
     let mut bytes = bytes.unwrap_or_default();
     let sum = crc_32(bytes.get(16..).unwrap_or_default());
-    if let Some(place) = bytes.get_mut(8..16) {
-        place.copy_from_slice(&sum.to_le_bytes());
+    if let Some(checksum) = bytes.get_mut(8..16) {
+        checksum.copy_from_slice(&sum.to_le_bytes());
     }
     bytes
 }
@@ -61,7 +61,7 @@ thread_local! {
     static REASON: Cell<Option<String>> = const { Cell::new(None) };
 }
 
-/// The error of content that is readable and refused, whose words [`unseal`] passes on.
+/// The error of readable content that is refused; [`unseal`] passes its words on.
 pub(crate) fn refused<E: serde::de::Error>(why: String) -> E {
     let error = E::custom(&why);
     REASON.set(Some(why));

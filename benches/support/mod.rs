@@ -1,4 +1,4 @@
-//! What the benches of the product share: scenes, and batches of environments that are stepped.
+//! Shared by the product's benches: scenes, and batches of environments that are stepped.
 #![allow(dead_code, reason = "each bench uses a part")]
 
 #[path = "../src/scene.rs"]

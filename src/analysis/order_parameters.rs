@@ -24,7 +24,7 @@ pub struct OrderParameters {
 }
 
 impl OrderParameters {
-    /// Of boats with these poses and velocities (two slices of equal length).
+    /// Order parameters of boats with these poses and velocities (two slices of equal length).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
@@ -34,7 +34,7 @@ impl OrderParameters {
         Self::from_hulls(&hulls, velocities)
     }
 
-    /// The same for poses whose direction vectors are known.
+    /// The same for poses with known direction vectors.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.

@@ -33,11 +33,11 @@ impl Boats<'_> {
 /// The arguments of a quantity's formula, and the formula.
 #[derive(Debug, Clone, Copy)]
 pub enum Formula {
-    /// Of the boats at a time. Recordings keep it with every sample.
+    /// Computed from the boats at a time. Recordings keep it with every sample.
     Recorded(fn(&Boats) -> f64),
-    /// Of order parameters and the target direction.
+    /// Computed from order parameters and the target direction.
     Derived(fn(&OrderParameters, Target) -> f64),
-    /// Of poses, hull and pool; slower, so that it is computed on request.
+    /// Computed from poses, hull and pool; slower, so only on request.
     Structure(fn(&[Pose], &FlockParameters) -> f64),
 }
 
@@ -214,7 +214,9 @@ pub(crate) const SUMMARIZED: usize = COUNTS[1];
 
 /// The quantities averaged in an episode summary, in the order of the table.
 pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {
-    QUANTITIES.iter().filter(|each| each.is_summarized())
+    QUANTITIES
+        .iter()
+        .filter(|quantity| quantity.is_summarized())
 }
 
 /// Present values of the quantities averaged in an episode summary.
@@ -257,9 +259,9 @@ pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded>
 /// # Errors
 /// [`FlockError::Parameter`] lists the known names.
 pub fn quantity(name: &str) -> Result<&'static Quantity> {
-    let found = QUANTITIES.iter().find(|each| each.name == name);
+    let found = QUANTITIES.iter().find(|quantity| quantity.name == name);
     found.ok_or_else(|| {
-        let names: Vec<_> = QUANTITIES.iter().map(|each| each.name).collect();
+        let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
         let accepted = format!("one of {}", names.join(", "));
         FlockError::parameter("quantity", format!("{name:?}"), accepted)
     })

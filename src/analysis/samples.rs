@@ -32,13 +32,13 @@ impl Samples {
     }
 
     /// The rows of one time after another.
-    pub fn each(&self) -> impl Iterator<Item = &[Pose]> {
+    pub fn by_time(&self) -> impl Iterator<Item = &[Pose]> {
         self.rows.chunks_exact(self.boats)
     }
 
     /// The boats that are present, one time after another.
     pub fn present(&self) -> impl Iterator<Item = Vec<Pose>> {
-        self.each()
+        self.by_time()
             .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())
     }
 
@@ -50,7 +50,7 @@ impl Samples {
     pub fn recorded(&self, velocities: &Self) -> Result<Vec<Recorded>> {
         let velocity = |row: &Pose| Velocity::new(row.position.x, row.position.y, row.heading);
         let mut hulls = Vec::new();
-        let times = self.each().zip(velocities.each());
+        let times = self.by_time().zip(velocities.by_time());
         times
             .map(|(poses, rows)| {
                 let both = poses.iter().zip(rows);
@@ -66,8 +66,8 @@ impl Samples {
             .collect()
     }
 
-    /// Velocities of boats whose poses these are, and how many steps were too fast. `times_s` holds the time of each
-    /// row: boats may have clocks of their own.
+    /// Velocities from poses, and the number of steps that were too fast. `times_s` holds the time of each row: boats
+    /// may have clocks of their own.
     ///
     /// Where a boat is there before and after, they are differences weighted by the other step, which are exact under
     /// a constant acceleration; at the ends of a track they are one-sided. No difference is taken across steps of more

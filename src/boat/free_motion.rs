@@ -70,7 +70,7 @@ impl FreeMotion {
         (1.0 - rate * dt).max(0.0)
     }
 
-    /// Explicit Euler over `dt`: accelerations at the given velocity. Drag and damping take at most what there is.
+    /// Explicit Euler over `dt`: accelerations at the given velocity. Drag and damping take at most the whole velocity.
     #[inline]
     pub(crate) fn explicit(
         &self,
@@ -97,8 +97,8 @@ impl FreeMotion {
         1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
-    /// Change of the velocity over `dt` without contacts, with drag centered in the substep. Drag takes at most what there
-    /// is: beyond it a boat would start to back.
+    /// Change of the velocity over `dt` without contacts, with drag centered in the substep. Drag takes at most the
+    /// whole velocity: with more a boat would start to back.
     #[inline]
     pub(crate) fn centered_change(
         &self,

@@ -60,8 +60,8 @@ impl DampedLaw {
     /// The tuned law: the damped law with the gains tuned in a pool, by the pool's name.
     ///
     /// Source: `studies/tuned_laws`, results version 1. CMA-ES (seed 0) searched for three leaders among 27 boats at
-    /// each pool's critical noise, on training seeds. The study has its candidates and their scores, from which a test
-    /// finds these gains again. A longer search (results version 4) found no better ones.
+    /// each pool's critical noise, on training seeds. The study keeps its candidates and their scores; a test finds
+    /// these gains from them. A longer search (results version 4) found no better ones.
     pub const TUNED: [(&str, Self); 2] = [
         (
             "wide",

@@ -41,7 +41,7 @@ impl Depenetration {
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         let gyration_radius = parameters.gyration_radius_cm;
         Self {
-            // Regularized, since a packing may leave no way out; the rest is then shared evenly.
+            // Regularized, since a packing may leave no solution; the remaining overlap is then shared evenly.
             solver: ContactSolver::regularized(1e-4),
             contacts: Vec::new(),
             biases: Vec::new(),
@@ -57,8 +57,8 @@ impl Depenetration {
     }
 
     /// Displaces poses, of which an overlap is known to exceed `allowed` (cm, positive), until none does, and fills
-    /// `found` with what is nearer than `margin` afterwards. That also shows whether another pass is needed: overlaps
-    /// are found with any margin.
+    /// `found` with the contacts nearer than `margin` afterwards. That also shows whether another pass is needed:
+    /// overlaps are found with any margin.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -129,7 +129,7 @@ pub(super) fn smallest_gap(contacts: &[Contact]) -> f64 {
     })
 }
 
-/// Σx×v about the pool's center: what moving poses alone changes of the angular momentum, in cm²/s.
+/// Σx×v about the pool's center, the part of the angular momentum that changes if poses alone move, in cm²/s.
 pub(super) fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) -> f64 {
     let pairs = poses.iter().zip(velocities);
     pairs

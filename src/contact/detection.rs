@@ -16,7 +16,7 @@ const LONG: f64 = 0.1;
 /// each can then reach what lies within a few lengths. Beyond it a linearized gap means nothing, and memory and time grow
 /// with the square of the number of boats.
 const MOST_PAIRS_A_BOAT: usize = 32;
-/// Part of `dt_s` below which no substep is cut for what boats can reach in it.
+/// Substeps are not cut below this part of `dt_s` for having too many boats in reach.
 const SHORTEST_SHARE: f64 = 1e-3;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
@@ -93,7 +93,7 @@ impl ContactDetector {
         let hull = self.hull;
         self.reaches.clear();
         self.reaches
-            .extend(velocities.iter().map(|each| hull.speed(each)));
+            .extend(velocities.iter().map(|velocity| hull.speed(velocity)));
         let mut fastest = 0.0;
         for &speed in &self.reaches {
             if speed > fastest {
@@ -122,7 +122,7 @@ impl ContactDetector {
         self.farthest > LONG * self.hull.radius
     }
 
-    /// Whether what was found as a contact overlaps at other poses by more than `allowed`.
+    /// Whether a contact overlaps at other poses by more than `allowed`.
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
         let gap = if contact.has_ends() {
             self.smallest_gap_at(contact, boats)
@@ -168,7 +168,7 @@ impl ContactDetector {
 
     /// Adds the contacts of the neighbor list.
     fn detect_listed(&self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
-        // Of a boat and a wall only one moves.
+        // Only the boat moves, not the wall.
         let open = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
         for (boat, partners) in self.neighbors.groups() {
@@ -302,7 +302,7 @@ impl ContactDetector {
         }
     }
 
-    // Apart from boats, whose gaps then stay in registers.
+    // A loop apart from that of boats, whose gaps then stay in registers.
     #[inline(never)]
     fn obstacle_touches(&self, contact: &Contact, boat: &HullPose) -> [EndTouch; 2] {
         let mut touches = [EndTouch::MISSING; 2];
@@ -364,7 +364,7 @@ impl ContactDetector {
     }
 }
 
-/// Notes a touch under the end of the boat that it is at; what is at no end counts for both.
+/// Notes a touch under the boat's end where it is; a touch between the ends counts for both.
 #[inline]
 fn note_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
     match feature {

@@ -1,5 +1,5 @@
-//! Frictionless plastic contacts take energy out of the boats that they join, or leave it; only what
-//! opens an overlap adds some.
+//! Frictionless plastic contacts take energy out of the boats that they join, or leave it; only opening an overlap adds
+//! some.
 //!
 //! With biases that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Biases
 //! that look ahead along a curve, for a flank on the inner wall or by relinearization, may demand more
@@ -68,8 +68,8 @@ impl Passivity {
         driven.flatten().map(|&k| k as usize).collect()
     }
 
-    /// Whether the contacts of an island, given by their numbers, add to the energy of its boats, beyond
-    /// what opening overlaps takes.
+    /// Whether the contacts of an island, given by their numbers, add to the energy of its boats, beyond the energy
+    /// that opening overlaps takes.
     fn is_driven(
         &mut self,
         island: &[u32],

@@ -26,9 +26,9 @@ impl SkippedContacts {
         self.contacts.is_empty()
     }
 
-    /// Moves here what boats with these velocities do not close within `dt`. The normal of the nearer touch of
-    /// two bodies separates them: along it their cores close no faster than their centers do, and than turning swings
-    /// their ends. Both touches of a pair stay or go, since closing one swings the other.
+    /// Moves here the contacts that boats with these velocities do not close within `dt`. The normal of the nearer
+    /// touch of two bodies separates them: along it their cores close no faster than their centers do, and than turning
+    /// swings their ends. Both touches of a pair stay or go, since closing one swings the other.
     pub(super) fn set_apart(
         &mut self,
         detector: &ContactDetector,
@@ -86,8 +86,8 @@ impl SkippedContacts {
     }
 }
 
-/// Whether boats with these velocities may close the one or two touches of two bodies within `dt`, with some room for
-/// what others add.
+/// Whether boats with these velocities may close the one or two touches of two bodies within `dt`, with some margin for
+/// the effect of others.
 #[inline]
 fn may_close(
     detector: &ContactDetector,

@@ -35,9 +35,9 @@ pub struct Statistics {
     pub worst_residual_cm_s: f64,
     /// Deepest overlap met at the start of a substep in cm, positive.
     pub worst_overlap_cm: f64,
-    /// Angular momentum about the pool's center that came or went where deep overlaps were undone, in
-    /// cm²/s: its changes, each positive, summed. Hulls that slide past each other while they overlap
-    /// have no way apart that keeps it.
+    /// Angular momentum about the pool's center that came or went where deep overlaps were undone, in cm²/s: its
+    /// changes, each positive, summed. For hulls that slide past each other while they overlap, no displacement keeps
+    /// it.
     pub displaced_angular_momentum_cm2_s: f64,
     /// Largest error in cm that an advance stated; 0 if none was asked to.
     pub worst_error_cm: f64,

@@ -12,7 +12,7 @@ pub(super) struct VelocityBias {
     /// Time in s within which an overlap closes: a substep that a phase or control step cuts to 1 ns would
     /// close it at any speed.
     pub closing_s: f64,
-    /// Overlaps beyond this (cm) are undone by moving poses; what that leaves must not push.
+    /// Overlaps beyond this (cm) are undone by moving poses; the rest must not push.
     pub penetration_slop: f64,
 }
 

@@ -10,7 +10,7 @@ use crate::flock::Flock;
 use crate::parameters::{FlockParameters, Target};
 use tiny_skia::Pixmap;
 
-/// Draws frames of one size; what lies under the boats is drawn once and kept.
+/// Draws frames of one size; the background is drawn once and kept.
 #[derive(Debug, Clone)]
 pub struct FrameRenderer {
     canvas: Pixmap,
@@ -70,7 +70,7 @@ impl FrameRenderer {
     pub fn draw_with(&mut self, flock: &Flock, look: Look<'_>) -> Vec<u8> {
         self.draw_canvas(flock, look);
         let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);
-        // The canvas is opaque throughout, so that premultiplied colors are plain ones.
+        // The canvas is opaque, so that premultiplied colors are plain ones.
         for pixel in self.canvas.data().chunks_exact(4) {
             frame.extend_from_slice(&pixel[..3]);
         }
@@ -103,7 +103,7 @@ impl FrameRenderer {
             return;
         }
         let same =
-            |each: &Background| each.target == target && each.parameters.has_same_water(parameters);
+            |kept: &Background| kept.target == target && kept.parameters.has_same_water(parameters);
         if let Some(kept) = self.background.as_ref().filter(|kept| same(kept)) {
             self.canvas.data_mut().copy_from_slice(kept.image.data());
             return;

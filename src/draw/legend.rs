@@ -121,7 +121,9 @@ fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
         Some(Target::CounterClockwise) => "target ↺ counter-clockwise",
         None => {
             let targets = (0..count).map(|leader| parameters.target.of(leader));
-            let clockwise = targets.filter(|&each| each == Target::Clockwise).count();
+            let clockwise = targets
+                .filter(|&target| target == Target::Clockwise)
+                .count();
             return vec![
                 ("targets ↻ and ↺".to_owned(), None),
                 backward,
@@ -165,7 +167,7 @@ fn labeled(words: &str, number: Option<String>) -> String {
     format!("{words} {}", number.unwrap_or("-".to_owned()))
 }
 
-/// A number in [−1, 1] with its sign; what rounds to zero has none.
+/// A number in [−1, 1] with its sign; one that rounds to zero has no sign.
 fn signed_text(number: f64) -> String {
     match format!("{number:+.2}").as_str() {
         "+0.00" | "-0.00" => "0.00".to_owned(),

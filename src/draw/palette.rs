@@ -153,7 +153,7 @@ pub fn tint(pose: &Pose) -> Rgb {
 /// The palette as custom properties of a style sheet, for light ground and for dark.
 pub fn style_sheet() -> String {
     let colors = |of: fn(&Swatch) -> Rgb| -> String {
-        let lines = PALETTE.iter().map(|each| (each.name, of(each)));
+        let lines = PALETTE.iter().map(|color| (color.name, of(color)));
         lines
             .map(|(name, color)| format!("--{name}:{color};"))
             .collect()
@@ -161,7 +161,7 @@ pub fn style_sheet() -> String {
     format!(
         ":root{{color-scheme:light dark;--circles-from:{CIRCLES_FROM};{}}}\n\
          @media (prefers-color-scheme:dark){{:root{{{}}}}}\n",
-        colors(|each| each.light),
-        colors(|each| each.dark),
+        colors(|color| color.light),
+        colors(|color| color.dark),
     )
 }

@@ -24,7 +24,9 @@ impl Typeface {
     /// Width of a text in pixels.
     pub(super) fn width(&self, text: &str) -> f32 {
         let font = self.font.as_scaled(self.scale);
-        let advances = text.chars().map(|each| font.h_advance(font.glyph_id(each)));
+        let advances = text
+            .chars()
+            .map(|letter| font.h_advance(font.glyph_id(letter)));
         advances.sum()
     }
 
@@ -39,11 +41,11 @@ impl Typeface {
             if let Some(outline) = font.outline_glyph(glyph) {
                 let corner = outline.px_bounds().min;
                 outline.draw(|column, row, coverage| {
-                    let place = (
+                    let pixel = (
                         corner.x as i64 + i64::from(column),
                         corner.y as i64 + i64::from(row),
                     );
-                    ink.blend(canvas, place, coverage);
+                    ink.blend(canvas, pixel, coverage);
                 });
             }
         }

@@ -51,22 +51,25 @@ pub(super) fn draw(
 
 /// Discs and walls, those that meet as one.
 fn obstacles(canvas: &mut Pixmap, parameters: &FlockParameters, view: &View, wall: f32) {
-    for each in &parameters.walls {
-        let ends = [(each.x0_cm, each.y0_cm), (each.x1_cm, each.y1_cm)];
+    for segment in &parameters.walls {
+        let ends = [
+            (segment.x0_cm, segment.y0_cm),
+            (segment.x1_cm, segment.y1_cm),
+        ];
         let ends = ends.map(|(x, y)| view.pixel(Vec2::new(x, y)));
         if ends.into_iter().all(in_reach) {
             WALL.line(canvas, ends, wall);
         }
     }
     for (inset, color) in [(0.0, WALL), (wall, GROUND)] {
-        for each in &parameters.discs {
-            let center = view.pixel(Vec2::new(each.x_cm, each.y_cm));
-            disc(canvas, center, view.length(each.radius_cm) - inset, color);
+        for post in &parameters.discs {
+            let center = view.pixel(Vec2::new(post.x_cm, post.y_cm));
+            disc(canvas, center, view.length(post.radius_cm) - inset, color);
         }
     }
 }
 
-/// The pool's outer wall and the ground around it, over what reaches beyond: rings wider than the frame.
+/// The pool's outer wall and the ground around it, as rings wider than the frame, over everything that reaches beyond.
 fn shore(canvas: &mut Pixmap, middle: Point, radius: f32, wall: f32) {
     let width = (canvas.width() + canvas.height()) as f32;
     for (inside, color) in [(radius, WALL), (radius + wall, GROUND)] {

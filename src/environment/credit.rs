@@ -24,7 +24,7 @@ pub struct LeaderCredit {
     pub push: f64,
     /// Σ Δα̇·sin δ: angular velocity given towards the target's tangent, per time, in rad/s².
     pub alignment: f64,
-    /// Σ cos δ − cos(δ + turned angle): the order of touched boats against what it would be unturned.
+    /// Σ cos δ − cos(δ + turned angle): the order of touched boats minus their order without the turn.
     pub touched_order: f64,
 }
 

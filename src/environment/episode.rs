@@ -1,4 +1,4 @@
-//! One episode under way: the flock, its leaders' rudders, what was observed and rewarded so far.
+//! One episode under way: the flock, its leaders' rudders, observations and rewards so far.
 
 use super::credit::{ContactCredit, LeaderCredit};
 use super::observation::{
@@ -231,7 +231,7 @@ impl Episode {
         actions: Option<&[f64]>,
         rewards: &mut [f64],
     ) -> Result<()> {
-        // A rudder that was chosen in the mirrored view stays what it is when the target turns round.
+        // A rudder chosen in the mirrored view keeps its value if the target is reversed.
         let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
         self.state.terms.fill([0.0; TERMS]);
         rewards.fill(0.0);

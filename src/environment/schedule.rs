@@ -1,4 +1,4 @@
-//! The schedule of an episode: its length, its target at each time, and what a seed fixes.
+//! The schedule of an episode: its length, its target at each time, and all that its seed fixes.
 
 use super::{EnvSettings, TargetChoice};
 use crate::parameters::{Target, Targets};
@@ -6,10 +6,10 @@ use crate::random::Stream;
 use rand::RngExt;
 use rand_chacha::rand_core::Rng;
 
-/// One episode: what was drawn for it and how far it is.
+/// One episode: its random draws and its progress.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EpisodeSchedule {
-    /// Seed of the flock: of its start, its noise, what is drawn for the episode, and the camera.
+    /// Seed of the flock: of its start, its noise, the draws of the episode, and the camera.
     pub flock_seed: u64,
     /// Control steps taken.
     pub step: u32,

@@ -96,7 +96,7 @@ impl EnvSettings {
         let shortest = 1.0 / self.control_hz;
         let horizon = self.reward_horizon_s.unwrap_or(shortest);
         let accepted = format!("at least one control step of {shortest} s");
-        // A tenth may be given for ten control steps per second, whatever the rounding.
+        // A tenth may be given for ten control steps per second, despite its rounding.
         let is_whole = horizon >= (1.0 - 1e-9) * shortest;
         FlockError::unless(is_whole, "reward_horizon_s", horizon, accepted)?;
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;

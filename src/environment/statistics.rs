@@ -24,7 +24,7 @@ pub struct Averages([f64; SUMMARIZED]);
 impl Averages {
     /// Names and values, in the order of the table.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        summarized().map(|each| each.name).zip(self.0)
+        summarized().map(|quantity| quantity.name).zip(self.0)
     }
 }
 
@@ -39,7 +39,7 @@ impl<'de> Deserialize<'de> for Averages {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let mut averages = Self([f64::NAN; SUMMARIZED]);
         by_name::read(from, "the averages of an episode", |name, value| {
-            let index = summarized().position(|each| each.name == name);
+            let index = summarized().position(|quantity| quantity.name == name);
             index.map(|index| averages.0[index] = value).is_some()
         })?;
         Ok(averages)
@@ -66,7 +66,7 @@ impl EpisodeStatistics {
         self.reward += reward;
     }
 
-    /// Adds a leader's terms in one step, as its share of the leaders' mean.
+    /// Adds a leader's terms of one step, divided by the number of leaders.
     pub(super) fn add_terms(&mut self, share: f64, terms: &RewardTerms) {
         for (sum, term) in self.terms.iter_mut().zip(terms) {
             *sum += share * term;
@@ -133,8 +133,8 @@ impl EpisodeSummary {
         let numbers = means
             .chain(times)
             .map(|(name, number)| (name, number.into()));
-        let each = first.into_iter().chain([("reward_terms", terms.collect())]);
-        each.chain(numbers).collect()
+        let first = first.into_iter().chain([("reward_terms", terms.collect())]);
+        first.chain(numbers).collect()
     }
 }
 

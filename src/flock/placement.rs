@@ -81,7 +81,7 @@ struct Region {
     /// Radii between which centers are drawn.
     inner: f64,
     outer: f64,
-    /// In cm², without what obstacles take up.
+    /// In cm², without the area of obstacles.
     area: f64,
     /// Draws of a boat's position before rejection gives up.
     tries: usize,
@@ -153,7 +153,7 @@ impl Region {
         PI * (outer - inner) * self.free_share(inner, outer, 0.0)
     }
 
-    /// Part of the water between two squared radii that is so far from every obstacle, found at places spread evenly
+    /// Part of the water between two squared radii that is so far from every obstacle, found at points spread evenly
     /// along a spiral.
     fn free_share(&self, inner: f64, outer: f64, clearance: f64) -> f64 {
         if self.obstacles.is_empty() {
@@ -161,19 +161,19 @@ impl Region {
         }
         // The golden angle: every turn of the spiral falls between earlier ones.
         let golden = PI * (3.0 - 5.0_f64.sqrt());
-        let free = (0..SURVEYED).filter(|&place| {
-            let share = (f64::from(place) + 0.5) / f64::from(SURVEYED);
-            let (sin, cos) = libm::sincos(golden * f64::from(place));
-            let place = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
-            self.is_open(place, clearance)
+        let free = (0..SURVEYED).filter(|&index| {
+            let share = (f64::from(index) + 0.5) / f64::from(SURVEYED);
+            let (sin, cos) = libm::sincos(golden * f64::from(index));
+            let point = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
+            self.is_open(point, clearance)
         });
         free.count() as f64 / f64::from(SURVEYED)
     }
 
-    /// Whether a place is so far from every obstacle.
-    fn is_open(&self, place: Vec2, clearance: f64) -> bool {
+    /// Whether a point is so far from every obstacle.
+    fn is_open(&self, point: Vec2, clearance: f64) -> bool {
         let mut obstacles = self.obstacles.iter();
-        obstacles.all(|obstacle| obstacle.distance(place) >= clearance)
+        obstacles.all(|obstacle| obstacle.distance(point) >= clearance)
     }
 
     /// A uniform place with a uniform heading.

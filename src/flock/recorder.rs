@@ -82,7 +82,7 @@ impl ContactSamples {
         let before = self.contacts.len();
         let contacts = flock.contacts().into_iter();
         self.contacts
-            .extend(contacts.filter(|each| each.force > 0.0));
+            .extend(contacts.filter(|contact| contact.force > 0.0));
         self.count.push(self.contacts.len() - before);
     }
 }

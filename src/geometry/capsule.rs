@@ -142,7 +142,7 @@ fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let rounding = number(6_755_399_441_055_744.0);
     let shifted = angle * number(std::f64::consts::FRAC_2_PI) + rounding;
     let quarters = shifted - rounding;
-    // π/2 in parts whose multiples are exact.
+    // π/2 in parts, with exact multiples.
     let x = angle
         - quarters * number(1.570_796_310_901_641_8)
         - quarters * number(1.589_325_471_229_585_7e-8)

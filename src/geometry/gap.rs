@@ -63,7 +63,7 @@ const TOUCHING_CORES: f64 = 1e-9;
 /// A hull with its pose.
 pub type Placed<'a> = (&'a HullPose, Hull);
 
-/// Two hulls and what their gaps share.
+/// Two hulls, and numbers that their gaps share.
 struct Pair<'a> {
     a: &'a HullPose,
     b: &'a HullPose,
@@ -246,7 +246,7 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
         .unwrap_or_else(|| crossed_gap(a, hull_a, b, hull_b))
 }
 
-/// Where one of the two touches of two hulls is, and how near they are there.
+/// One of the two touches of two hulls: its position and its gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EndTouch {
     /// The gap in cm; infinite if no end of the group faces the other hull.

@@ -82,8 +82,8 @@ impl Obstacle {
         Some([-1.0, 1.0].map(|side| (pose.end(side, *half_length), -pose.axis * side)))
     }
 
-    /// Whether what is pushed along a normal lies beyond an end from which another wall leads nearer to it: there is
-    /// nothing to touch at that end, and what looks ahead along such a normal would brake a boat that slides past.
+    /// Whether a boat pushed along a normal lies beyond an end that another wall continues towards it. There is nothing
+    /// to touch at such an end: a contact there would brake a boat that slides past.
     fn leads_on(&self, normal: Vec2) -> bool {
         let Self::Wall { pose, joints, .. } = self else {
             return false;
@@ -93,31 +93,31 @@ impl Obstacle {
         beyond.abs() > UPRIGHT && joint.is_some_and(|onward| normal.dot(&onward) > UPRIGHT)
     }
 
-    /// The point of its core, which a disc has at its center, that is nearest to a place, and its radius about that.
-    fn core(&self, place: Vec2) -> (Vec2, f64) {
+    /// The point of its core, which a disc has at its center, that is nearest to a point, and its radius about that.
+    fn core(&self, point: Vec2) -> (Vec2, f64) {
         match self {
             Self::Disc { center, radius } => (*center, *radius),
             Self::Wall {
                 pose, half_length, ..
             } => {
-                let along = (place - pose.center).dot(&pose.axis);
+                let along = (point - pose.center).dot(&pose.axis);
                 let along = along.clamp(-half_length, *half_length);
                 (pose.center + pose.axis * along, 0.0)
             }
         }
     }
 
-    /// The point of its surface that is nearest to a place; the place itself at a disc's very center.
-    pub fn nearest(&self, place: Vec2) -> Vec2 {
-        let (core, radius) = self.core(place);
-        let away = (place - core).try_normalize(0.0);
-        away.map_or(place, |away| core + away * radius)
+    /// The point of its surface that is nearest to a point; the point itself at a disc's very center.
+    pub fn nearest(&self, point: Vec2) -> Vec2 {
+        let (core, radius) = self.core(point);
+        let away = (point - core).try_normalize(0.0);
+        away.map_or(point, |away| core + away * radius)
     }
 
-    /// Distance of its surface from a place in cm, negative inside a disc.
-    pub fn distance(&self, place: Vec2) -> f64 {
-        let (core, radius) = self.core(place);
-        (place - core).norm() - radius
+    /// Distance of its surface from a point in cm, negative inside a disc.
+    pub fn distance(&self, point: Vec2) -> f64 {
+        let (core, radius) = self.core(point);
+        (point - core).norm() - radius
     }
 
     /// The contacts of a boat's hull with a gap below `margin`: none, one or, along a wall, two.
@@ -172,15 +172,15 @@ impl Obstacle {
 fn join(obstacles: &mut [Obstacle]) {
     let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
     for (number, obstacle) in obstacles.iter().enumerate() {
-        let each = obstacle.ends().into_iter().flatten().enumerate();
-        ends.extend(each.map(|(side, (place, inward))| (place, inward, number, side)));
+        let own = obstacle.ends().into_iter().flatten().enumerate();
+        ends.extend(own.map(|(side, (end, inward))| (end, inward, number, side)));
     }
     ends.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
-    for (k, &(place, inward, number, side)) in ends.iter().enumerate() {
-        let near = |other: &&(Vec2, Vec2, usize, usize)| (other.0.x - place.x).abs() <= JOINED;
+    for (k, &(end, inward, number, side)) in ends.iter().enumerate() {
+        let near = |other: &&(Vec2, Vec2, usize, usize)| (other.0.x - end.x).abs() <= JOINED;
         let (before, after) = (ends[..k].iter().rev(), ends[k + 1..].iter());
         let others = before.take_while(near).chain(after.take_while(near));
-        let others = others.filter(|other| (other.0 - place).norm() <= JOINED && other.2 != number);
+        let others = others.filter(|other| (other.0 - end).norm() <= JOINED && other.2 != number);
         let onward = others
             .map(|other| other.1)
             .min_by(|a, b| a.dot(&inward).total_cmp(&b.dot(&inward)));

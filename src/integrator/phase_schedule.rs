@@ -35,7 +35,7 @@ impl Phase {
 }
 
 /// Whether each of some increasing times (s) lies in the analysis window, of which only the phases then are known
-/// (slices of equal length). A phase lasts until the first time of the next one, the last until the last time.
+/// (slices of equal length). A phase lasts until the next one starts, the last until the end of the recording.
 pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     let mut analyzed = Vec::with_capacity(times_s.len());
     for samples in phases.chunk_by(|a, b| a == b) {

@@ -35,7 +35,7 @@ pub enum Range {
     NonNegative,
     /// From a number to another, and in words.
     Within(f64, f64, &'static str),
-    /// What other fields allow, in words.
+    /// The range that other fields allow, in words.
     Dependent(&'static str),
 }
 
@@ -126,8 +126,8 @@ impl<S> Field<S> {
     /// The values of some fields by name, in the order of documentation.
     #[cfg(feature = "python")]
     pub(crate) fn values(fields: &[Self], of: &S) -> Value {
-        let each = fields.iter();
-        each.map(|field| (field.name, (field.get)(of))).collect()
+        let values = fields.iter().map(|field| (field.name, (field.get)(of)));
+        values.collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Choices that users make by name.
 
-/// Declares an enum whose variants have public names, with parsing that lists what there is. A choice may
-/// need a feature of the crate.
+/// Declares an enum whose variants have public names; the parser's error lists the names. A choice may need a feature
+/// of the crate.
 macro_rules! named_choice {
     ($(#[$meta:meta])* $visibility:vis enum $type:ident ($field:literal) {
         $($(#[doc = $doc:literal])+ $variant:ident = $name:literal $(if $feature:literal)?,)+

@@ -74,9 +74,9 @@ impl Preset {
         let own = self.changes().1.iter().find(|(name, _)| *name == field);
         let declared = FlockParameters::FIELDS
             .iter()
-            .find(|each| each.name == field);
+            .find(|declared| declared.name == field);
         own.map(|(_, source)| *source)
-            .or_else(|| declared.map(|each| each.source))
+            .or_else(|| declared.map(|field| field.source))
     }
 
     /// The parameters, and the sources of what differs from the preset `simulation`.

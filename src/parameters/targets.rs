@@ -17,7 +17,7 @@ pub enum Targets {
 }
 
 impl Targets {
-    /// The target of a leader; the reference direction for a boat that is none.
+    /// The target of a leader; for other boats the reference direction.
     pub fn of(&self, leader: usize) -> Target {
         match self {
             Self::One(target) => *target,
@@ -28,7 +28,7 @@ impl Targets {
         }
     }
 
-    /// The direction that what belongs to the whole flock refers to: leader 0's target.
+    /// The reference direction of the whole flock: leader 0's target.
     pub fn reference(&self) -> Target {
         match self {
             Self::One(target) => *target,
@@ -94,7 +94,7 @@ impl Setting for Targets {
         match value {
             Value::Name(text) => text.parse().map(Self::One),
             Value::List(names) => {
-                let targets = names.iter().map(|each| text_of(name, each)?.parse());
+                let targets = names.iter().map(|target| text_of(name, target)?.parse());
                 targets.collect::<Result<_>>().map(Self::Each)
             }
             _ => wrong_kind(name, "a string or a list of strings"),

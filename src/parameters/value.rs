@@ -30,7 +30,7 @@ impl Value {
         Self::List(numbers.into_iter().map(Self::Real).collect())
     }
 
-    /// The number that it is, if it is one.
+    /// Its number, if it is one.
     pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Count(count) => Some(*count as f64),
@@ -39,7 +39,7 @@ impl Value {
         }
     }
 
-    /// The two numbers that it is, if it is a pair.
+    /// Its two numbers, if it is a pair.
     pub(crate) fn pair(&self) -> Option<(f64, f64)> {
         match self {
             Self::List(values) => match &values[..] {

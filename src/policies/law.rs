@@ -11,11 +11,11 @@ use crate::parameters::Value;
 pub enum Law {
     /// The paper's law, eq. (10), at every substep, from the flock itself.
     EverySubstep,
-    /// The paper's law at every decision, by what a leader sees, as all that follow.
+    /// The paper's law at every decision, from the leader's observation, like all laws below.
     Paper,
     /// The damped law with these gains; the tuned law is the one with the gains tuned in the pool.
     Damped(DampedLaw),
-    /// The damped law about a heading that leans outward of the target's tangent, by what the leader sees.
+    /// The damped law about a heading that leans outward of the target's tangent, from the leader's observation.
     Leaning(Box<LeaningLaw>),
 }
 
@@ -59,13 +59,13 @@ impl NamedLaw {
 
     /// Its declaration by name.
     pub fn named(&self) -> Value {
-        let each = [
+        let declared = [
             ("name", Value::from(self.name)),
             ("doc", self.doc.into()),
             ("color", self.color.map(|color| color.to_string()).into()),
             ("is_of_pool", self.is_of_pool().into()),
         ];
-        each.into_iter().collect()
+        declared.into_iter().collect()
     }
 }
 
@@ -116,16 +116,16 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`] for other names, and as for [`NamedLaw::law`].
     pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
-        let found = Self::NAMED.iter().find(|each| each.name == name);
+        let found = Self::NAMED.iter().find(|law| law.name == name);
         let names = || {
-            let names = Self::NAMED.iter().map(|each| format!("{:?}", each.name));
+            let names = Self::NAMED.iter().map(|law| format!("{:?}", law.name));
             format!("one of {}", names.collect::<Vec<_>>().join(", "))
         };
         let unknown = || FlockError::parameter("law", format!("{name:?}"), names());
         found.ok_or_else(unknown)?.law(pool)
     }
 
-    /// Refuses the law at every substep, which no leader follows by what it sees.
+    /// Refuses the law at every substep, which no leader can follow from its observation.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

@@ -46,7 +46,7 @@ pub struct Judged {
 pub struct LeaningLaw {
     #[serde(deserialize_with = "known_format")]
     format: u32,
-    /// Name of the pool that it is for, as whose usual values its features are standardized.
+    /// Name of its pool, by whose usual values its features are standardized.
     pub pool: String,
     /// Its judgment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -125,7 +125,7 @@ mod by_feature {
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {
-    /// A law by its numbers: the weights of the features, then the bias.
+    /// A law of these numbers: the weights of the features, then the bias.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for what [`Self::check`] refuses.

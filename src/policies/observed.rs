@@ -5,7 +5,7 @@ use crate::environment::LARGEST_LEAN;
 use crate::environment::observation::{Block, CourseReader, LEAN_FEATURES, ObservationLayout};
 use crate::error::{FlockError, Result};
 
-/// A law that reads observations of one layout.
+/// A law for observations of one layout.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservedLaw {
     law: Law,

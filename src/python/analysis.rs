@@ -1,5 +1,5 @@
-//! The table of quantities at many times, what follows from them, and structure computed from recorded poses: arrays
-//! (t, n, 3).
+//! The table of quantities at many times, quantities that follow from them, and structure of recorded poses: arrays (t,
+//! n, 3).
 
 use super::arrays::{rows_of, same_length, wrong_shape};
 use super::value::given;
@@ -25,9 +25,9 @@ type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
 /// Columns of the table's recorded quantities, by name: arrays (t,).
 pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    for (index, each) in QUANTITIES[..RECORDED].iter().enumerate() {
+    for (index, quantity) in QUANTITIES[..RECORDED].iter().enumerate() {
         let values = series.iter().map(|values| values[index]);
-        columns.set_item(each.name, PyArray1::from_iter(py, values))?;
+        columns.set_item(quantity.name, PyArray1::from_iter(py, values))?;
     }
     Ok(columns)
 }
@@ -111,8 +111,8 @@ pub(super) fn structure_series<'py>(
         return Err(wrong_formula(name, "a quantity of structure"));
     };
     let samples = samples(&pose, "pose")?;
-    let each = |poses: Vec<Pose>| formula(&poses, &parameters);
-    let values: Vec<f64> = py.detach(|| samples.present().map(each).collect());
+    let measured = |poses: Vec<Pose>| formula(&poses, &parameters);
+    let values: Vec<f64> = py.detach(|| samples.present().map(measured).collect());
     Ok(PyArray1::from_vec(py, values))
 }
 

@@ -1,4 +1,4 @@
-//! Arrays from Python: of a given shape and of real numbers, whatever holds them.
+//! Arrays from Python, of any library: of a given shape and of real numbers.
 
 use super::error::refusal;
 use super::value::{sequence_length, value_from, wrong_type};
@@ -13,7 +13,7 @@ use pyo3::types::PyInt;
 /// Depth to which NumPy stacks sequences.
 const MOST_AXES: usize = 64;
 
-/// The shape of whatever has one: arrays of any library.
+/// The shape of an array of any library.
 fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
     object.getattr("shape").ok()?.extract().ok()
 }
@@ -171,13 +171,17 @@ pub(super) fn linear<'py>(
     if weight.shape() != shape {
         return Err(wrong_shape("weight", weight.shape(), &shape_text(&shape)));
     }
-    let weight: Vec<f64> = weight.as_array().iter().map(|&each| each.into()).collect();
+    let weight: Vec<f64> = weight
+        .as_array()
+        .iter()
+        .map(|&entry| entry.into())
+        .collect();
     let mut sums = numpy::ndarray::Array2::<f64>::zeros((rows.shape()[0], bias.len()));
     sums += &bias.as_array().mapv(f64::from);
     for (row, mut sums) in rows.as_array().outer_iter().zip(sums.outer_iter_mut()) {
         for (&seen, weights) in row.iter().zip(weight.chunks_exact(bias.len().max(1))) {
-            for (sum, each) in sums.iter_mut().zip(weights) {
-                *sum += f64::from(seen) * each;
+            for (sum, weight) in sums.iter_mut().zip(weights) {
+                *sum += f64::from(seen) * weight;
             }
         }
     }

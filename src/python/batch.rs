@@ -1,4 +1,4 @@
-//! `flockenv._core.EnvBatch`: what all environment classes sit on.
+//! `flockenv._core.EnvBatch`: the batch behind all environment classes.
 
 use super::arrays::{floats, rows_of};
 use super::exclusive::{Exclusive, interruptible};
@@ -146,17 +146,17 @@ impl PyEnvBatch {
         Ok(())
     }
 
-    /// Starts episodes: one request per flock, `None` leaves it as it is.
+    /// Starts episodes: one request per flock; `None` leaves a flock unchanged.
     fn reset(&self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
-        let each = requests.iter().enumerate().map(|(flock, request)| {
+        let parsed = requests.iter().enumerate().map(|(flock, request)| {
             let boats = batch.envs().get(flock);
             let boats = boats.map_or(0, |env| env.parameters().n_boats);
             let request = request.as_ref().map(|request| request_from(request, boats));
             request.transpose()
         });
-        let requests: Vec<_> = each.collect::<PyResult<_>>()?;
+        let requests: Vec<_> = parsed.collect::<PyResult<_>>()?;
         interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
     }
 

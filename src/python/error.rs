@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyTuple, PyType};
 
-/// Their names and what they mean. The first is the base of the others, each of which is a built-in exception too.
+/// Their names and meanings. The first is the base of the others, each of which is a built-in exception too.
 const DECLARED: [(&str, &str); 5] = [
     (
         "FlockError",

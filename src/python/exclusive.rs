@@ -52,8 +52,8 @@ impl<T> Exclusive<T> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
-/// going; Python has its signals handled in the calling thread alone, so that this one looks for them whenever it
-/// asks, and the others see what it saw.
+/// going; Python handles signals in the calling thread alone: this one checks for them whenever it asks, and the others
+/// read its result.
 pub(super) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,

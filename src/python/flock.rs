@@ -284,17 +284,17 @@ pub(super) fn contact_columns<'py, I: Element + From<i32>, T: Element>(
         PyArray1::from_iter(py, contacts.iter().map(boat).map(I::from))
     };
     let vectors = |vector: fn(&ContactForce) -> Vec2| {
-        let each = contacts.iter().map(vector).flat_map(|v| [v.x, v.y]);
-        rows_of(py, each.map(rounded).collect(), 2)
+        let numbers = contacts.iter().map(vector).flat_map(|v| [v.x, v.y]);
+        rows_of(py, numbers.map(rounded).collect(), 2)
     };
     let columns = PyDict::new(py);
-    columns.set_item("i", boats(|each| each.contact.boat as i32))?;
+    columns.set_item("i", boats(|pushed| pushed.contact.boat as i32))?;
     columns.set_item("j", boats(partner))?;
-    columns.set_item("gap_cm", numbers(|each| each.contact.gap.gap))?;
-    columns.set_item("normal", vectors(|each| each.contact.gap.normal)?)?;
-    columns.set_item("force", numbers(|each| each.force))?;
-    columns.set_item("point_cm", vectors(|each| each.point)?)?;
-    columns.set_item("along_cm", numbers(|each| each.contact.gap.along))?;
+    columns.set_item("gap_cm", numbers(|pushed| pushed.contact.gap.gap))?;
+    columns.set_item("normal", vectors(|pushed| pushed.contact.gap.normal)?)?;
+    columns.set_item("force", numbers(|pushed| pushed.force))?;
+    columns.set_item("point_cm", vectors(|pushed| pushed.point)?)?;
+    columns.set_item("along_cm", numbers(|pushed| pushed.contact.gap.along))?;
     Ok(columns)
 }
 
@@ -317,14 +317,14 @@ impl PyFrameRenderer {
     #[new]
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let side = |object, name| {
-            // What does not fit 32 bits is as far out of range as the largest that does.
+            // A number beyond 32 bits is as far out of range as the largest one within.
             Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);
         Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))
     }
 
-    /// A flock as it is now: (height, width, 3), uint8. `colors` names what the color of a boat shows.
+    /// A flock as it is now: (height, width, 3), uint8. `colors` names the property that a boat's color shows.
     #[pyo3(signature = (flock, colors="direction", caption=""))]
     fn draw<'py>(
         &self,

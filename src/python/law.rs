@@ -52,7 +52,7 @@ impl PyLaw {
     }
 }
 
-/// A law as it reads observations of one layout.
+/// A law for observations of one layout.
 #[pyclass(name = "ObservedLaw", module = "flockenv._core", frozen)]
 pub struct PyObservedLaw(ObservedLaw);
 

@@ -23,7 +23,7 @@ pub(super) struct Plan<'py> {
     sample_hz: Bound<'py, PyAny>,
     single_precision: bool,
     contacts: bool,
-    /// Times in s from the start of the run and what changes then: a target or parameters.
+    /// Times in s from the start of the run, each with its change: a target or parameters.
     changes: Vec<(f64, Bound<'py, PyAny>)>,
     control: Control<'py>,
     /// Called now and then with the seconds since the last call.
@@ -171,10 +171,10 @@ fn columns<T: Element>(py: Python<'_>, run: Recording<T>) -> PyResult<Bound<'_, 
     let rudder = PyArray1::from_vec(py, run.rudder).reshape([samples, leaders])?;
     columns.set_item("rudder", rudder)?;
     if let Some(samples) = &run.contacts {
-        let each = contact_columns::<i32, f32>(py, &samples.contacts, |x| x as f32)?;
+        let contacts = contact_columns::<i32, f32>(py, &samples.contacts, |x| x as f32)?;
         let count = samples.count.iter().map(|&count| count as i64);
-        each.set_item("count", PyArray1::from_iter(py, count))?;
-        columns.set_item("contacts", each)?;
+        contacts.set_item("count", PyArray1::from_iter(py, count))?;
+        columns.set_item("contacts", contacts)?;
     }
     Ok(columns)
 }

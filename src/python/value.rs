@@ -1,5 +1,5 @@
-//! Values of parameters, options and arguments from Python, and to it. Every refusal names the field and shows what was
-//! given: a value out of range is a `ParameterError`, a value of the wrong type a `TypeError`.
+//! Values of parameters, options and arguments from Python, and to it. Every refusal names the field and shows the
+//! given value. A value out of range is a `ParameterError`, one of the wrong type a `TypeError`.
 
 use crate::error::FlockError;
 use crate::parameters::{Field, FlockParameters, Setting, Value};
@@ -33,10 +33,12 @@ fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
     } else if let Ok(name) = object.extract() {
         Value::Name(name)
     } else if let Ok(dict) = object.cast::<PyDict>() {
-        let each = dict
+        let values = dict
             .iter()
             .map(|(name, value)| Some((name.extract().ok()?, nested_value(&value, most_items))));
-        each.collect::<Option<_>>().map_or(Value::Other, Value::Map)
+        values
+            .collect::<Option<_>>()
+            .map_or(Value::Other, Value::Map)
     } else {
         list_from(object, most_items).map_or(Value::Other, Value::List)
     }
@@ -59,7 +61,7 @@ fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Valu
         .collect()
 }
 
-/// The length of what stacks to an array: sequences other than strings, and arrays of any library.
+/// The length of a sequence that is no string, or of an array of any library.
 pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
     let text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
     let is_sequence = object.cast::<PySequence>().is_ok() || object.hasattr("shape").ok()?;
@@ -101,7 +103,7 @@ pub(super) fn noise_seed_from(object: &Bound<'_, PyAny>) -> PyResult<Option<u64>
     Ok(given::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
 }
 
-/// The error of a field's type as one that shows what Python code gave.
+/// The error of a field's type, with the value that Python code gave.
 fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
     match error {
         FlockError::Kind { field, accepted } => {

@@ -27,8 +27,8 @@ impl KeyedNormals {
     /// N(0, 1) of each boat for (cell, node).
     #[inline]
     fn draws(&self, cell: u64, node: u64) -> impl Iterator<Item = f64> {
-        let place = scramble(scramble(cell).wrapping_add(node));
-        let words = self.keys.iter().map(move |key| key.wrapping_add(place));
+        let word = scramble(scramble(cell).wrapping_add(node));
+        let words = self.keys.iter().map(move |key| key.wrapping_add(word));
         words.map(|word| self.ziggurat.normal(scramble(word)))
     }
 }

@@ -264,7 +264,7 @@ fn flock_of(env: &FlockEnv) -> Result<&Flock> {
     env.episode().map(Episode::flock).ok_or_else(none)
 }
 
-/// Adds what is observed, and 1 for the bias, times a factor.
+/// Adds the observation, and 1 for the bias, times a factor.
 fn add(sum: &mut Features, row: &[f32], factor: f64) {
     let [features @ .., bias] = sum;
     for (sum, &value) in features.iter_mut().zip(row) {

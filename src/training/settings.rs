@@ -46,7 +46,8 @@ declare_fields! {
 /// Numbers of decisions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decisions {
-    /// In a branch, a hold, what of it the features are averaged over, all holds together, and before the order counts.
+    /// In a branch, in a hold, in the part of a hold that features are averaged over, in all holds, and before the
+    /// order counts.
     pub branch: usize,
     pub hold: usize,
     pub seen: usize,
@@ -55,7 +56,7 @@ pub(super) struct Decisions {
 }
 
 impl BranchSettings {
-    /// The usual settings for what leaders choose.
+    /// The usual settings for an action mode.
     pub fn usual(action_mode: ActionMode) -> Self {
         match action_mode {
             ActionMode::Rudder => Self {

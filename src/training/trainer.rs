@@ -21,7 +21,8 @@ struct Memory {
     weights: Vec<Features>,
     /// Mean order of each round.
     orders: Vec<f64>,
-    /// Sums of squares of what was tried, and of its products with the differences; rounds before count less.
+    /// Sums of squares of the tried offsets times features, and of their products with the differences; earlier rounds
+    /// count less.
     tried: Matrix,
     differences: Features,
     /// Sum of the features' squares, and how many rounds count in it.
@@ -67,7 +68,7 @@ pub struct Trainer {
 }
 
 impl Trainer {
-    /// A training from its start. The seed decides what is tried; flocks have the first seed and those that follow.
+    /// A training from its start. The seed decides the offsets; flocks have the first seed and those that follow.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

@@ -11,7 +11,7 @@ use rand_chacha::rand_core::Rng;
 /// Flaws of the camera through which leaders see the flock.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Lens {
-    /// Chance that a boat is not recognized in a frame, and stays in the picture as it was in the last one.
+    /// Chance that a boat is not recognized in a frame, which then shows it as in the last one.
     dropout_rate: f64,
     /// Whether the picture is a frame late.
     is_late: bool,

@@ -76,7 +76,7 @@ impl CourseView {
     /// For checked parameters.
     ///
     /// # Errors
-    /// None: the layout has what the laws read.
+    /// None: the layout has all blocks that the laws read.
     pub fn new(parameters: &FlockParameters) -> Result<Self> {
         let layout = ObservationLayout::from_blocks(&[Block::Own, Block::Target]);
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);

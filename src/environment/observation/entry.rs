@@ -4,7 +4,7 @@
 use crate::geometry::Hull;
 use crate::parameters::{FlockParameters, Value, named_fields};
 
-/// The physical value that an observed 1.0 stands for (and, for the radius, what 0.0 stands for).
+/// The physical value of an observed 1.0, and for the radius that of 0.0 too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "`description` says what each is")]
 pub enum Scale {
@@ -118,8 +118,8 @@ impl Entry {
             named_fields!(self; name unit low high mirrored meaning);
         let scale = ("scale", self.scale.description().into());
         let at = [("block", block.into()), ("place", index.into())];
-        let each = [name, unit, scale, low, high, mirrored, meaning];
-        at.into_iter().chain(each).collect()
+        let of_entry = [name, unit, scale, low, high, mirrored, meaning];
+        at.into_iter().chain(of_entry).collect()
     }
 
     pub(super) const fn odd(self) -> Self {

@@ -61,10 +61,10 @@ pub fn flock_feature_entries() -> Vec<(&'static str, Entry)> {
         ("clock", &PHASE),
         ("clock", &CLOCK),
     ];
-    let each = |(block, entries): (&'static str, &'static [Entry])| {
+    let named = |(block, entries): (&'static str, &'static [Entry])| {
         entries.iter().map(move |entry| (block, *entry))
     };
-    blocks.into_iter().flat_map(each).collect()
+    blocks.into_iter().flat_map(named).collect()
 }
 
 /// One boat in the frame of the target, scaled as observations are and within their bounds.

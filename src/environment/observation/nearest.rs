@@ -100,8 +100,8 @@ impl Nearest {
         for &squares in &self.squares {
             let mut square = f64x4::new(squares);
             // In ascending order: a square that is pushed out moves on.
-            for place in &mut *smallest {
-                (*place, square) = (place.fast_min(square), place.fast_max(square));
+            for kept in &mut *smallest {
+                (*kept, square) = (kept.fast_min(square), kept.fast_max(square));
             }
         }
         smallest[wanted - 1]

@@ -31,7 +31,7 @@ pub struct FlockView<'a> {
 }
 
 impl<'a> FlockView<'a> {
-    /// A flock as it is, given the rudders as they stand and the order parameters of its normal boats.
+    /// The view of a flock without faults, from the present rudders and the order parameters of its normal boats.
     pub fn new(flock: &'a Flock, rudders: &'a [f64], order: Option<&'a OrderParameters>) -> Self {
         let parameters = flock.parameters();
         Self {
@@ -51,7 +51,7 @@ impl<'a> FlockView<'a> {
 /// Scales, offsets and bounds of a row of numbers, ready to apply.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scaling {
-    /// Gain as it is, and where the view is mirrored.
+    /// Gains without and with mirroring.
     gains: [Vec<f64>; 2],
     offsets: Vec<f64>,
     lows: Vec<f64>,

@@ -38,7 +38,7 @@ impl IslandSolver {
         if is_warm {
             self.approach(&mut held, regularization, report);
         }
-        // A contact that would have to pull as soon as it enters depends on those already in.
+        // A contact that would have to pull as soon as it enters depends on the active ones.
         let mut is_refused = vec![false; count];
         let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
@@ -77,7 +77,7 @@ impl IslandSolver {
         held.iter().any(|&impulse| impulse > 0.0)
     }
 
-    /// Of more impulses than can be independent of each other, keeps the strongest.
+    /// Keeps the strongest impulses if there are more than can be independent of each other.
     fn keep_strongest(&self, pushes: &mut [f64]) {
         let most = self.most_active();
         if pushes.len() <= most || pushes.iter().filter(|&&push| push > 0.0).count() <= most {
@@ -88,8 +88,8 @@ impl IslandSolver {
         order[most..].iter().for_each(|&k| pushes[k] = 0.0);
     }
 
-    /// Lets all contacts enter whose gaps close, or the fastest of them, as many as can be independent of each other.
-    /// Those that would have to pull leave again at once; in a large island the others are mostly far apart.
+    /// Activates all contacts whose gaps close, or the fastest of them, at most as many as can be independent of each
+    /// other. Those that would have to pull leave again at once; in a large island the others are mostly far apart.
     fn enter_violated(&mut self) {
         let rows = &self.rows.rows;
         let active = rows.iter().filter(|row| row.is_active).count();

@@ -193,7 +193,7 @@ impl Rows {
     }
 
     /// Guesses which rows are active: those that push after sweeps of projected Gauss–Seidel, from the impulses at
-    /// hand. Most of what one substep changes is local, so that two sweeps find it.
+    /// hand. Most changes of one substep are local, so that two sweeps find them.
     pub(super) fn sweep(&mut self, sweeps: u32) {
         self.set_velocities();
         let Self { rows, bodies } = self;

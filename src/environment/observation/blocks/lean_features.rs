@@ -174,8 +174,8 @@ impl WriteBlock for LeanFeatures {
     }
 }
 
-/// The features of a view, in their order: some of its numbers, and sums over the neighbors that are there. Normal boats
-/// count with exp(-d²/2), leaders with exp(-d²/8), where d is their distance in 6 boat radii.
+/// The features of a view, in their order: some of its numbers, and sums over the present neighbors. Normal boats count
+/// with exp(-d²/2), leaders with exp(-d²/8), where d is their distance in 6 boat radii.
 fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
     let [radial, cos, sin, outward, clockwise, forward, spin] =
         [0, 1, 2, 3, 4, 5, 6].map(|index| view[index]);

@@ -44,7 +44,7 @@ impl<'a> Seen<'a> {
 
 /// Anything that is made for a flock. Types with a default are made the same for every flock.
 trait MadeFor: Sized {
-    /// For checked parameters.
+    /// Made for checked parameters.
     ///
     /// # Errors
     /// [`crate::FlockError::Parameter`] for flocks that it is not made for.

@@ -39,7 +39,7 @@ impl WriteBlock for NearestObstacles {
         let distances = self
             .obstacles
             .iter()
-            .map(|each| each.distance(leader.center));
+            .map(|obstacle| obstacle.distance(leader.center));
         let mut found: Vec<_> = distances.zip(&self.obstacles).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, obstacle) in found.into_iter().take(repeats) {
