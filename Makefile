@@ -63,16 +63,17 @@ lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
 		--output-file requirements.lock
 build: $(STAMPS)/compare $(CORE) ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(CORE) ## formatting, clippy, Rust module cycles, ruff, import layers, mypy, stubs, spelling
+lint: $(STAMPS)/test $(CORE) ## formatting, ruff, Rust module cycles, import layers, mypy, stubs, spelling, clippy
 	cargo fmt --check && cargo fmt --check --manifest-path web/Cargo.toml
 	$(BIN)/ruff format --check
-	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
-	$(BIN)/python tests/modules/cycles.py src
 	$(BIN)/ruff check
+	$(BIN)/python tests/modules/cycles.py src
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy
 	$(BIN)/stubtest flockenv._core --mypy-config-file tests/modules/stubtest.ini --allowlist tests/modules/stubtest_allowlist.txt
 	git ls-files -z | xargs -0 $(BIN)/codespell
+# Last: cargo lets it wait for the compiler of `test-rust` beside it.
+	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
 
 format: $(STAMPS)/test ## format the Rust and Python sources
 	cargo fmt && cargo fmt --manifest-path web/Cargo.toml

@@ -1,4 +1,4 @@
-"""Stands in for the compiled simulator where it is missing: an extension module comes first."""
+"""Stands in for a missing compiled simulator: Python finds an extension module first."""
 
 raise ImportError(
     f"{__file__} is a source file of flockenv, without the compiled simulator beside it: "

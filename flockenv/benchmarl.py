@@ -110,7 +110,7 @@ class LeadersTaskClass(TaskClass):
         return Composite({GROUP: env.observation_spec_unbatched[GROUP]})
 
     def state_spec(self, env: EnvBase) -> Composite | None:
-        """Return the spec of the flock's state, None if the configuration has none."""
+        """Return the spec of the flock's state, or None without a state in the configuration."""
         if self.config.get("state", "none") == "none":
             return None
         return Composite({"state": env.observation_spec_unbatched["state"]})

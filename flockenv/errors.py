@@ -39,7 +39,7 @@ def short_repr(value: object) -> str:
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """Return the known name that is most like another one, None if none is at least `cutoff`."""
+    """Return the known name most similar to another one; None if no similarity reaches `cutoff`."""
     plain = {word.casefold(): word for word in known}
     near = difflib.get_close_matches(str(name).casefold(), plain, n=1, cutoff=cutoff)
     return plain[near[0]] if near else None

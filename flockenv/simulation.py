@@ -197,7 +197,7 @@ def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, A
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     """Return the steering of a run and its rate, as the core takes them."""
     if leaders.law is not None:
-        # The core steers by a law alone, and holds its leans.
+        # The core itself steers by a law, and holds its leans.
         own = leaders.seats[0].policy.control_hz
         if own is None and control_hz is not None:
             raise ParameterError(

@@ -71,7 +71,7 @@ def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
         name = entry.filename.removesuffix(".npy")
         if name in arrays:
             raise ValueError(f"it holds {name!r} twice")
-        # The whole entry, whose checksum is compared; NumPy alone may stop before its end.
+        # The whole entry, whose checksum is compared; NumPy may stop reading before its end.
         with archive.open(entry) as stream:
             # Reads only as many bytes as the entry declares; without a number the whole entry would
             # be unpacked.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 fcntl: Any
 try:
     fcntl = importlib.import_module("fcntl")
-except ImportError:  # Windows, where a file that is open can be neither renamed nor removed.
+except ImportError:  # On Windows an open file can be neither renamed nor removed.
     fcntl = None
 
 _NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
@@ -30,12 +30,12 @@ _temporary: set[Path] = set()
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """Open a file for writing bytes: a temporary one beside it, renamed where all went well.
+    """Open a temporary file for writing bytes, renamed to the path if all goes well.
 
-    It is removed on every way out but a kill, at the latest when Python ends. A file that is
-    replaced keeps its mode, and a link stays a link: the file that it names is replaced. If the
-    file cannot be written, which is an OSError, what was there before is still there. A
-    ParameterError refuses to take the place of a device, a pipe or a socket.
+    It is removed on every way out but a kill, at the latest when Python ends. The new file keeps
+    the old one's mode. A link stays a link, and the file that it names is replaced. If the file
+    cannot be written, which is an OSError, what was there before is still there. A ParameterError
+    refuses to take the place of a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
@@ -89,7 +89,7 @@ def _keep_access(target: Path, file: IO[bytes]) -> None:
 
 
 def _is_locked(file: IO[bytes]) -> bool | None:
-    """Lock a file until it is closed; False if another process has it, None without locks."""
+    """Lock a file until it is closed; False if another process has the lock, None without locks."""
     if fcntl is None:
         return None
     try:

@@ -2,8 +2,8 @@
 
 While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
 done, and executors start no further run. A second signal ends the process at once. A request to
-end, as of Slurm before a job's time is over, and the end of the terminal count as Ctrl-C. The end
-of a terminal is told by the system and by the shell, and so it ends nothing at once.
+end, such as Slurm's before a job's time is over, counts as Ctrl-C. So does the end of the terminal.
+The end of a terminal is told by the system and by the shell, and so it ends nothing at once.
 """
 
 import os

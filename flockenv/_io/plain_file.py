@@ -49,8 +49,8 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
 def check_writable(path: str | os.PathLike[str]) -> None:
     """Refuse to put a file in the place of a device, a pipe or a socket, or of a protected file.
 
-    A file that nobody may write to, or this user may not, is a PermissionError: renaming another
-    one to its name would pass over the protection, as root may anyway.
+    A write-protected file is a PermissionError, for root too: renaming another file to its name
+    would bypass the protection.
     """
     if not Path(path).exists():
         return

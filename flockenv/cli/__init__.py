@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _app(named: Collection[str]) -> typer.Typer:
-    """Return the command line, where commands that are not named have a line of help alone."""
+    """Return the command line; commands that are not named have only their line of help."""
     app = typer.Typer(
         no_args_is_help=True,
         rich_markup_mode="markdown",

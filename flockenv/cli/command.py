@@ -47,7 +47,7 @@ class Command(typer.core.TyperCommand):
 
 
 def _refuse_decimal_comma(args: Sequence[str], error: typer.BadParameter) -> None:
-    """Answer a value that is no number, because it has a comma for the point."""
+    """Suggest a point for a number that was typed with a comma."""
     names = error.param.opts if error.param else []
     pairs = zip(args, [*args[1:], ""], strict=True)
     given = [text.partition("=")[::2] if "=" in text else (text, after) for text, after in pairs]

@@ -29,7 +29,7 @@ def option(
 ) -> Any:
     """Return a field that is an option, from its default and the arguments of `typer.Option`.
 
-    The name of a file that is given may be asked to end in one of some ways.
+    `endings` lists the endings that the name of a given file may have.
     """
     declared = typer.Option(*names, help=help, **settings)
     return field(default=default, metadata={"typer": declared, "endings": endings})

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def printable(name: str | os.PathLike[str]) -> str:
     """Return the name of a file or policy with a sign in place of bytes that are no UTF-8.
 
-    Such a name opens its file, but stands in no page, table or picture.
+    Such a name opens its file, but cannot be printed in a page, table or picture.
     """
     return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 

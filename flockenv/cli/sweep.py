@@ -116,7 +116,7 @@ def _show_shard(
 
 
 def _show_table(options: SweepOptions, folder: Path, runs: int, table: "pd.DataFrame") -> int:
-    """Print the table, or where it is, and return the number of failed runs."""
+    """Print the table or its path, and return the number of failed runs."""
     if options.as_json:
         print_json(json.loads(table.to_json(orient="records")))
     else:

@@ -91,7 +91,7 @@ class Level:
     def references(
         self, flocks: int = FLOCKS, progress: Progress = no_progress
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the orders of flocks that nobody steers, and of those under the damped law."""
+        """Return the orders of flocks without steering, and of those under the damped law."""
         none, law = (self.orders(name, flocks, progress) for name in (NO_STEERING, REFERENCE))
         return none, law
 

@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 
 class Environment(NamedTuple):
-    """The declaration of an id, of which its page is made."""
+    """The declaration of an id; its page is made from it."""
 
     #: A few sentences in Markdown.
     purpose: str
-    #: Those in which it differs from the defaults.
+    #: Options that differ from the defaults.
     options: Mapping[str, Any]
     #: Changes, a sentence for each version.
     history: tuple[str, ...] = ("v0: initial version.",)
@@ -19,7 +19,7 @@ def _suite(
     purpose: str, n_leaders: int, episode_s: float = 480.0, **options: object
 ) -> Environment:
     """Return a task of suite v2, which never changes: another number is another version."""
-    # Written out, so that no other default changes a task.
+    # All options are written out, so that a new default changes no task.
     flock = {"preset": "simulation", "n_boats": 27, "pool": "wide", "bw_s": 0.31, "dt_s": 0.02}
     flock |= {"n_leaders": n_leaders, "target": "cw"}
     return Environment(purpose, {"params": flock, "episode_s": episode_s, **options})

@@ -130,7 +130,7 @@ class EnvOptions:
 
 
 def _taken_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
-    """Take a reward that is a function out of the options, and return it."""
+    """Remove a reward function from the options, and return it."""
     if not callable(given.get("reward")):
         return None
     function: Callable[[Any], ArrayLike] = given.pop("reward")

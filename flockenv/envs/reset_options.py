@@ -43,7 +43,7 @@ class Spellings:
             self._names["_".join(_parts(name))] = name
 
     def meant(self, name: object) -> str | None:
-        """Return the name of which another one is a spelling; None if it may be anything else."""
+        """Return the name that another one is a spelling of; None if it may be anything else."""
         parts = _parts(name)
         known = self._names.get("_".join(parts)) or self._names.get("".join(parts))
         return known or self._bare.get("".join(_parts_without_unit(name)))

@@ -60,7 +60,7 @@ def seed_of(seed: object) -> int:
 
 
 def seeds_from(first: object, flocks: int) -> list[int]:
-    """Return the seeds of flocks of which the first has this one, and each other the next."""
+    """Return consecutive seeds for flocks, from this one on."""
     number = as_int(first, "seed")
     if not 0 <= number <= _SEEDS - flocks:
         raise ParameterError(

@@ -199,7 +199,7 @@ class Policy:
 
 
 def _positive(source: LeaderPolicy, name: str) -> float | None:
-    """Return a number above 0 that an attribute of an object has, if it has one."""
+    """Return an object's attribute, a number above 0, or None without the attribute."""
     value = getattr(source, name, None)
     if value is not None and not 0.0 < number(value, name) < math.inf:
         raise ParameterError(f"{name} = {short_repr(value)} of a policy is not accepted: above 0")
@@ -214,7 +214,7 @@ def _name_of(source: LeaderPolicy) -> str:
 
 
 def observed(observation: ArrayLike) -> NDArray[np.float32]:
-    """Return an observation as an array, of which nothing may be masked."""
+    """Return an observation as an array; masked values are refused."""
     # An environment's own array needs no look at it, which would take longer than a law's step.
     if type(observation) is not np.ndarray or observation.dtype != np.float32:
         if np.ma.is_masked(observation):
@@ -277,7 +277,7 @@ class RowPolicy(ABC):
         episode_start: object = None,
         deterministic: bool = True,
     ) -> tuple[object, object]:
-        """Return rudders for observations, as `LeaderPolicy`; there is one way to act."""
+        """Return rudders for observations, as `LeaderPolicy`; it never acts at random."""
         if isinstance(observation, Mapping):
             return {agent: self._rudders(rows) for agent, rows in observation.items()}, state
         return self._rudders(observation), state

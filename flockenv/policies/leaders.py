@@ -82,7 +82,7 @@ class Leaders:
 
     @property
     def law(self) -> _core.Law | None:
-        """The core's law, if all leaders follow it and it was given alone."""
+        """The core's law, if it is the one policy for all leaders."""
         return None if self.is_each else self.seats[0].policy.law
 
     def check_pool(self, pool: Pool) -> None:
@@ -185,7 +185,7 @@ class _Deciding:
 
 
 def _common_rate(seats: Sequence[_Deciding]) -> float:
-    """Return the lowest rate of which every seat's is a whole part, and set how long each holds."""
+    """Return the lowest common multiple of the seats' rates, and set how long each seat holds."""
     rates = [seat.policy.decisions_hz for seat in seats]
     if len(set(rates)) == 1:
         return rates[0]

@@ -1,4 +1,4 @@
-"""`ModelPolicy`: a model of stable-baselines3 wherever a policy goes."""
+"""`ModelPolicy`: a model of stable-baselines3 as a policy."""
 
 import hashlib
 import json
@@ -92,7 +92,7 @@ class ModelPolicy:
         actions: "gymnasium.Space[Any]",
         provenance: Mapping[str, str] | None,
     ) -> None:
-        """Take a model that is for environments with these spaces."""
+        """Take a model for environments with these spaces."""
         self.model = model
         self.provenance = dict(provenance or {})
         self.leaders = space.leaders
@@ -191,7 +191,7 @@ def space_under_wrappers(model: object) -> "ObservationSpace | None":
 
 
 def one_by_one() -> AbstractContextManager[object]:
-    """Return a mode of torch in which no row of a linear layer depends on the others."""
+    """Return a context in which torch computes each row of a linear layer independently."""
     torch = sys.modules.get("torch")
     return _mode_of(torch)() if torch else nullcontext()
 
@@ -219,7 +219,7 @@ def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - t
 
 
 def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
-    """Return the number of levels of a model's actions, None where they are rudders."""
+    """Return the number of levels of a model's actions; None for rudders."""
     import gymnasium
 
     if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
@@ -269,7 +269,7 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
                 "normalized: steer with the model in memory, or train without VecNormalize: "
                 "observations are scaled already"
             )
-        # Schedules, buffers and the like need not be read, let alone executed.
+        # Schedules, buffers and the like need not be read, and are never executed.
         skipped = dict.fromkeys(stored.keys() - set(_NEEDED))
         data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
         model = _policy_of(data)

@@ -296,7 +296,7 @@ class NetworkPolicy(RowPolicy):
             )
         except KeyError as error:
             raise ParameterError(f"{path} is no whole policy: it has no {error}") from error
-        # Also of JSON that is nested without end.
+        # Deeply nested JSON raises this error, too.
         except (TypeError, ValueError, IndexError, RecursionError) as error:
             raise ParameterError(f"{path} is no whole policy: {error}") from error
 
@@ -370,7 +370,7 @@ def _checked_norm(
 
 
 def _singles(values: ArrayLike, name: str) -> NDArray[np.float32]:
-    """Return real numbers as float32, in which those beyond it are infinite."""
+    """Return real numbers as float32; numbers beyond its range are infinite."""
     found = real_numbers(values, name)
     if found.dtype.kind == "b" or np.ma.is_masked(found):
         raise ParameterError(f"{name} is not accepted: real numbers, all of them")

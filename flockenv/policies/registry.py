@@ -1,4 +1,4 @@
-"""Policies by name, by file, and of every other form in which one may be given."""
+"""Policies by name, by file, and in every other accepted form."""
 
 import importlib
 import os
@@ -40,7 +40,7 @@ POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
     DAMPED_LAW: DampedLaw,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
-    # A law of the core without a class has a line there alone.
+    # A law of the core without a class of its own needs no line here.
     **{name: partial(NamedLaw, name) for name in OTHER_LAWS},
 }
 """Policies by name that are the same in every pool."""

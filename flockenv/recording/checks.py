@@ -86,7 +86,7 @@ def check_order(
     for quantity in RECORDED:
         values = getattr(order, quantity.name)
         undefined = normal_boats < quantity.least_boats
-        # A column that is younger than the file of a recording without poses.
+        # A quantity that the file of a recording without poses does not have.
         undefined |= not posed and bool(np.isnan(values).all())
         check_array(
             f"order.{quantity.name}",
@@ -131,7 +131,7 @@ def check_share(after: object) -> None:
 
 
 def check_ids(ids: object, boats: int) -> None:
-    """Refuse names that are not as many as boats, or not different."""
+    """Refuse a number of names other than that of boats, and repeated names."""
     if not isinstance(ids, np.ndarray) or ids.dtype.kind != "U" or ids.shape != (boats,):
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
     if len(set(ids.tolist())) != boats:
@@ -139,7 +139,7 @@ def check_ids(ids: object, boats: int) -> None:
 
 
 def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParameters) -> None:
-    """Refuse contacts that are not those of so many samples of a flock with these parameters."""
+    """Refuse contacts that do not fit the number of samples or the flock's parameters."""
     c = len(contacts.i) if np.ndim(contacts.i) else 0
     shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
     dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}

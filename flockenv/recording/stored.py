@@ -145,7 +145,7 @@ def _parameters(toml: str) -> FlockParameters:
 
 
 def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> OrderSeries:
-    """Return the quantities, those that are missing computed, or NaN where no poses were kept."""
+    """Return the quantities; missing ones are computed from poses, or NaN without poses."""
     stored = {name: arrays[f"order_{name}"] for name in ORDER if f"order_{name}" in arrays}
     if missing := [name for name in ORDER if name not in stored]:
         pose, velocity = arrays["pose"], arrays["velocity"]

@@ -61,7 +61,7 @@ class Packer:
     ) -> None:
         channels = math.prod(whole.shape[1:])
         by_channel = np.ascontiguousarray(whole.reshape(len(whole), channels).T).reshape(-1)
-        # Small numbers of either sign become small numbers without one.
+        # Small numbers of either sign become small nonnegative numbers.
         folded = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
         planes = np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
         used = max((plane + 1 for plane in range(4) if planes[plane].any()), default=0)

@@ -30,7 +30,7 @@ from flockenv.replay.template import as_script_content, digest, filled, joined
 MOST_BYTES = 10_000_000
 """Size that no page exceeds: of longer runs it shows fewer samples per second."""
 
-# In the order in which one needs another; on the page they are one script.
+# In the order of their imports; on the page they are one script.
 _SCRIPTS = (
     "packing.mjs",
     "shared/words.mjs",
@@ -248,7 +248,7 @@ def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) 
     for quantity in quantities:
         values = series_of(recording, quantity["key"])[shown]
         if np.isfinite(values).all():
-            # A twentieth of the last digit that is shown.
+            # A twentieth of the last shown digit.
             packer.add(quantity["key"], values, 10.0 ** -quantity["decimals"] / 20)
     if recording.contacts is not None:
         _add_contacts(packer, recording, recording.contacts, every)

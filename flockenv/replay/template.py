@@ -25,6 +25,6 @@ def as_script_content(json_text: str) -> str:
 def filled(template: str, parts: Mapping[str, str]) -> str:
     """Return a template with its parts in place of their ``{{names}}``.
 
-    One pass over the template alone: nothing that a part says is taken for a place in it.
+    One pass over the template: a part's own text is never filled in again.
     """
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], template)

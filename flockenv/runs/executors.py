@@ -59,7 +59,7 @@ class RayExecutor(Executor):
             if not os.environ.get("RAY_ADDRESS"):
                 options |= {"num_cpus": workers or cores(), "include_dashboard": False}
             self._ray.init(**options)
-        # A function goes to the cluster once.
+        # The function is sent to the cluster once.
         self._remote = functools.cache(self._ray.remote(num_cpus=1, max_retries=-1))
 
     @property
@@ -85,7 +85,7 @@ ENGINES: Mapping[str, Engine] = {"local": threads, "ray": RayExecutor}
 
 
 def named(name: str) -> Engine:
-    """Return an engine by its name; a ParameterError of an unknown one lists those there are."""
+    """Return an engine by its name; the ParameterError for an unknown name lists all."""
     refuse_unknown((name,), ENGINES, "engine")
     return ENGINES[name]
 

@@ -90,7 +90,7 @@ def release_seeds(tag: str, count: int) -> range:
     """Return the seeds that final tables of a release are made on, given its tag.
 
     The first is SHA-256 of the tag, its first eight bytes as a big-endian number, modulo 2^32 less
-    the count: seeds for evaluation that nobody chose.
+    the count: seeds for evaluation, chosen by no one.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
         raise ParameterError(f"count = {short_repr(count)} is not accepted: from 1 to 2^32 - 1")

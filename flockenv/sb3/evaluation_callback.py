@@ -28,8 +28,8 @@ class FlockEvalCallback(EvalCallback):
     It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The best
     model is the one with the highest mean signed order; if episodes end before the analysis window,
     that with the highest mean return. The file ``evaluations.npz`` has the signed orders as
-    ``signed_order``, beside the returns. A training that goes on (``reset_num_timesteps=False``)
-    goes on with the file, and with its best.
+    ``signed_order``, beside the returns. A continued training (``reset_num_timesteps=False``)
+    continues the file, and keeps its best.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class FlockEvalCallback(EvalCallback):
             self._go_on()
 
     def _go_on(self) -> None:
-        """Take over the evaluations of a training that goes on."""
+        """Continue the evaluations of a continued training."""
         path = None if self.log_path is None else Path(f"{self.log_path}.npz")
         if path is None or not path.is_file():
             return

@@ -280,7 +280,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             }
             summary = infos[slot]["episode_summary"]
             if leader == 0:
-                # As `Monitor` does, but for the time: infos depend on seeds alone.
+                # The infos of `Monitor`, without the time: they depend on seeds alone.
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 

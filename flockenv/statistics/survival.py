@@ -1,4 +1,4 @@
-"""Times of events that did not come to every run, such as ordering times (Kaplan and Meier 1958).
+"""Times of events that some runs never reach, such as ordering times (Kaplan and Meier 1958).
 
 A run without the event only says that its time is longer than the run: its time is censored. If you
 leave such runs out, or count them with the length of the run, all times come out too short.

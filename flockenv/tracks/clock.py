@@ -1,4 +1,4 @@
-"""Times of tracks: seconds from whatever a column holds, and frames."""
+"""Times of tracks: seconds from any column of times, and frames."""
 
 import re
 from typing import TYPE_CHECKING, Any
@@ -129,7 +129,7 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
     within, number, start, there = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
     for place, (name, time) in enumerate(zip(names, times, strict=True)):
-        # A row that is there twice is in one frame, and one without a name is nobody's.
+        # Repeated rows are in one frame, and rows without a name belong to no boat.
         if there.get(name, time) < time or time - start > within:
             number, start, there = number + 1, time, {}
         if isinstance(name, str):

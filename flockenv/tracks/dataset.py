@@ -23,10 +23,10 @@ def is_dataset(source: Any) -> bool:
 
 
 def table_of(dataset: Any, layout: TrackLayout) -> tuple[Table, TrackLayout]:
-    """Return a dataset as a table, and the layout with what the dataset says.
+    """Return a dataset as a table, and the layout with the dataset's own fields.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
-    such as ``nose_x``. A ParameterError names what is missing in the dataset.
+    such as ``nose_x``. A ParameterError names a missing variable or coordinate.
     """
     position, confidence = _variables(dataset)
     names, points = (_named(position, name) for name in ("individuals", "keypoints"))
@@ -88,7 +88,7 @@ def _named(position: Any, dimension: str) -> list[str]:
 
 
 def _said(dataset: Any, layout: TrackLayout, points: list[str]) -> TrackLayout:
-    """Return a layout whose fields, where they were left out, are what the dataset says."""
+    """Return a layout with missing fields taken from the dataset."""
     default = {one.name: one.default for one in fields(TrackLayout)}
     given = {name for name, value in default.items() if getattr(layout, name) != value}
     form: dict[str, Any] = {"frame": "time", "id": "individuals"}

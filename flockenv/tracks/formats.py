@@ -15,9 +15,9 @@ class Format(NamedTuple):
     """The table of one program."""
 
     program: str
-    #: Columns by field of a layout, all of which must be there.
+    #: Columns by field of a layout; a table of the program has all of them.
     columns: Mapping[str, str]
-    #: Other fields of a layout: the clock, the axes, what stands for a boat.
+    #: Other fields of a layout: the clock, the axes, the hull's columns.
     fields: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -86,7 +86,7 @@ _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$"
 
 
 def plain(name: str) -> tuple[str, str]:
-    """Return what a column is called without its unit, in small letters, and the unit."""
+    """Return a column's name without its unit, in small letters, and the unit."""
     name = name[:_LONGEST]
     found = _UNIT.search(name)
     unit = next(filter(None, found.groups()), "") if found else ""
@@ -110,7 +110,7 @@ def _as_written(found: re.Match[str]) -> str:
 
 
 def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
-    """Return the column of y beside one of x, None if there is none; `boat` is what {id} is."""
+    """Return the column of y for one of x, or None; `boat` takes the place of {id}."""
     one = (
         f"{name[:at]}{chr(ord(x) + 1)}{name[at + 1 :]}" for at, x in enumerate(name) if x in "xX"
     )
@@ -133,8 +133,8 @@ def quaternion(names: Iterable[str]) -> list[str] | None:
 def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
     """Return the fields x, y and heading for key points, given what their columns begin with.
 
-    The center is a point in the middle, or the middle of head and tail, or the only point. Of
-    several others any may be it: there are no fields then.
+    The center is a point in the middle, or the middle of head and tail, or the only point. Several
+    other points are ambiguous, and give no fields.
     """
 
     def part(kind: str) -> str | None:

@@ -71,7 +71,7 @@ def _toml(value: Any) -> str:
 
 
 def _guess_fields(table: Table, form: Form, doubts: Doubts) -> None:
-    """Add what the table itself tells to what its columns are called."""
+    """Add fields that follow from the table's values to those from its columns' names."""
     missing = [name for name in ("frame", "x", "y", "id") if name not in form]
     words = f"fill in: one of the columns {listed(table.names)}"
     for name in missing:
@@ -101,10 +101,10 @@ def _spelling(path: Path, doubts: Doubts) -> Form:
     lines, most, found = text.splitlines()[:100], 0, ("", 0)
     for mark in (";", "\t", "|", ",", " "):
         counts = [len(line.split(None if mark == " " else mark)) for line in lines]
-        # Blanks stand in names, too.
+        # Names may hold blanks, too.
         if max(counts, default=0) > most and (mark != " " or most < 3):
             most = max(counts)
-            # The header is the first line as wide as those that follow it.
+            # The header is the first line with as many cells as the following ones.
             found = (mark, counts.index(most) if most > 1 else 0)
     mark, skip = found
     form: Form = {}
@@ -120,7 +120,7 @@ def _spelling(path: Path, doubts: Doubts) -> Form:
         form["decimal"] = ","
     first = next(iter(cells_of(text, mark or ",", skip, 1)), [])
     if first and all(is_value(cell) or not cell for cell in first):
-        # No name begins as a number does: there is no header.
+        # Names do not begin like numbers: there is no header.
         is_mot = 6 <= len(first) <= len(MOT) and "separator" not in form
         names = list(MOT[: len(first)]) if is_mot else [f"column {n}" for n in range(len(first))]
         form["header"] = names
@@ -184,7 +184,7 @@ def _guess_time(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) ->
 
 def _guess_turn(heading: Any, form: Form, doubts: Doubts) -> None:
     unit = plain(form["heading"])[1]
-    # A few may stand for none.
+    # A few may be placeholders.
     turns = np.abs(heading[np.isfinite(heading)])
     largest = np.quantile(turns, 0.99) if len(turns) else 0.0
     if unit.startswith(("deg", "°")):

@@ -54,7 +54,7 @@ class Motion:
         """Return the motion of poses (t, n, 3), at times of shape (t,) or (t, n)."""
         stamps = np.ascontiguousarray(np.broadcast_to(np.atleast_2d(time_s.T).T, pose.shape[:2]))
         steps = np.diff(stamps, axis=0)
-        # Steps are alike but for gaps: those much longer than nine tenths of them.
+        # Steps much longer than nine tenths of all steps are gaps.
         usual = np.quantile(steps, 0.9, method="lower") if steps.size else np.inf
         longest_s = 1.5 * float(usual)
         pose = np.ascontiguousarray(pose)
@@ -87,7 +87,7 @@ class Motion:
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
 
     def check(self, pose: Floats, layout: TrackLayout) -> None:
-        """Refuse steps most of which are too fast, and axes that are said to be directions."""
+        """Refuse tracks in which most steps are too fast, and axes given as directions."""
         steps = (
             self.present[1:] & self.present[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
         )
@@ -144,7 +144,7 @@ def _is_half(heading: Floats) -> bool:
 
 
 def bows_of(axis: Floats, motion: Motion) -> Floats:
-    """Return axes as headings: continuous, and on the whole towards where a boat moves."""
+    """Return axes as headings: continuous, and mostly along the boat's motion."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):
         frames = np.flatnonzero(motion.present[:, boat])

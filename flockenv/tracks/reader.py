@@ -217,7 +217,7 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
 
 def _held(rows: "pd.DataFrame") -> dict[str, int]:
     """Return boats that move with one heading in many samples, and with any other in few."""
-    # A boat that is seen at one point keeps its heading, too.
+    # A boat seen at a single point keeps its heading, too.
     used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
     counts = used.value_counts(["id", "heading"]).groupby("id")
     table = counts.nth([0, 1]).groupby("id").agg(["max", "min", "size"])

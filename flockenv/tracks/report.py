@@ -97,7 +97,7 @@ class TrackReport:
         return "\n  ".join([*lines, *self._doubts(), *self._marks()])
 
     def _marks(self) -> list[str]:
-        """Return lines about points and headings that may stand for a lost boat."""
+        """Return lines about points and headings that may mark a lost boat."""
         lines = []
         if self.stuck:
             points = (

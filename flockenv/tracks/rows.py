@@ -61,7 +61,7 @@ def rows_of(table: Table, layout: TrackLayout) -> "pd.DataFrame":
 
 
 def names_nobody(table: Table, layout: TrackLayout) -> bool:
-    """Return whether there is a column of names in which no row has one."""
+    """Return whether the column of names is empty."""
     if layout.id is None or layout.is_wide:
         return False
     ids = table.column(layout.id)
@@ -69,7 +69,7 @@ def names_nobody(table: Table, layout: TrackLayout) -> bool:
 
 
 def long_table(table: Table, layout: TrackLayout) -> Table:
-    """Return one row per frame and boat of a table in which boats stand beside each other."""
+    """Return one row per frame and boat, of a table with one row per frame."""
     pandas = require("pandas", "plot")
     fields = [name for columns in layout.columns.values() for name in columns]
     names = _names_beside(table, layout)
@@ -86,7 +86,7 @@ def long_table(table: Table, layout: TrackLayout) -> Table:
 
 
 def _names_beside(table: Table, layout: TrackLayout) -> list[str]:
-    """Return the names of boats that stand beside each other."""
+    """Return the names of the boats of a table with one row per frame."""
     fields = [name for columns in layout.columns.values() for name in columns]
     first, _, last = (part.casefold() for part in fields[0].partition("{id}"))
     bare = [name.strip() for name in table.names]
@@ -107,7 +107,7 @@ def _names_beside(table: Table, layout: TrackLayout) -> list[str]:
 
 
 def _names(table: Table, layout: TrackLayout) -> "pd.Series[Any]":
-    """Return the names as text, none where no boat is named; whole numbers have no point."""
+    """Return the names as text, None for rows without a boat; whole numbers have no point."""
     if layout.is_wide:
         ids = table.column("{id}")
     else:
@@ -121,7 +121,7 @@ def _names(table: Table, layout: TrackLayout) -> "pd.Series[Any]":
 def _point(
     table: Table, layout: TrackLayout, x: tuple[str, ...], y: tuple[str, ...]
 ) -> tuple[Floats, Floats, Any]:
-    """Return x and y in units of the file, and whether they stand for a boat that is lost."""
+    """Return x and y in units of the file, and whether they mark a lost boat."""
     pairs = [[table.numbers(name, layout) for name in names] for names in zip(x, y, strict=True)]
     is_lost = np.zeros(len(table), bool)
     for pair in pairs:
@@ -132,7 +132,7 @@ def _point(
 
 
 def _headings(table: Table, layout: TrackLayout) -> tuple[Floats, Any]:
-    """Return headings in rad from x, y up, 0 where the table has none, and which are strange."""
+    """Return headings in rad from x, y up, 0 without a column, and which exceed a full turn."""
     up = -1.0 if layout.y_down else 1.0
     strange = np.zeros(len(table), bool)
     columns, unit = layout.columns["heading"], layout.heading_unit
@@ -166,7 +166,7 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
             f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
             "add up to 1"
         )
-    # Turns that are counted against the way from x to y are about an axis of a mirrored system.
+    # Turns counted from y to x are about an axis of a mirrored system.
     is_mirrored = layout.heading_turns not in (None, "cw" if layout.y_down else "ccw")
     across = -x * y if is_mirrored else x * y
     heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
@@ -176,7 +176,7 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
 def _check_no_part(table: Table, layout: TrackLayout) -> None:
     """Refuse a part of a quaternion, a sine or a cosine in place of a heading.
 
-    Whatever columns are called: the squares of parts that stand beside each other add up to 1.
+    Names of columns do not matter: the squares of neighboring parts add up to 1.
     """
     columns = layout.columns["heading"]
     if len(columns) != 1:
@@ -204,10 +204,10 @@ def _check_no_part(table: Table, layout: TrackLayout) -> None:
 
 
 def _part(table: Table, name: Any, layout: TrackLayout) -> Floats | None:
-    """Return the squares of what may be parts of turns, 0 where there are none."""
+    """Return the squares of a column that may be a part of turns, 0 for missing numbers."""
     try:
         values = table.numbers(name, layout)
-    except ParameterError:  # Of remarks, and of names that are there twice.
+    except ParameterError:  # A column of remarks, or a repeated name.
         return None
     values = np.nan_to_num(values)
     return values**2 if len(values) and np.abs(values).max() <= 1.01 else None
@@ -219,7 +219,7 @@ def direction(x: Floats, y: Floats) -> Floats:
 
 
 def _check_turn(heading: Floats, strange: Any, layout: TrackLayout) -> None:
-    """Refuse headings of which more than a few exceed a full turn; one value may mark lost ones."""
+    """Refuse headings if many exceed a full turn; a single value may mark lost boats."""
     share = strange.sum() / max(1, np.isfinite(heading).sum())
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
         return
@@ -233,7 +233,7 @@ def _check_turn(heading: Floats, strange: Any, layout: TrackLayout) -> None:
 
 
 def _check_water(rows: "pd.DataFrame", why: Any) -> None:
-    """Refuse a pool that is elsewhere; a few points in many rows mark boats that are lost."""
+    """Refuse a pool in another position; a few points in many rows mark lost boats."""
     outside = rows[why == "in no water"]
     counts = outside.value_counts(["x", "y"])
     others = len(outside) - counts[counts > 1].head(3).sum()

@@ -33,7 +33,7 @@ NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan
 
 
 class Table:
-    """Rows of tracks, in which columns are found by their names in any case.
+    """Rows of tracks, with columns found by name in any case.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Table:
         return series
 
     def numbers(self, name: str, layout: TrackLayout) -> Floats:
-        """Return a column as numbers, NaN where none stands; infinite ones are none."""
+        """Return a column as numbers, NaN for missing and infinite ones."""
         pandas, found = require("pandas", "plot"), self.column(name)
         types = pandas.api.types
         if types.is_bool_dtype(found) or types.is_complex_dtype(found):
@@ -94,7 +94,7 @@ def ending(path: Path) -> str:
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a file that is not there, or of another ending."""
+    """Refuse a missing file, and another ending."""
     if not path.exists():
         raise ParameterError(f"{path} cannot be read: No such file or directory")
     if ending(path) not in SUFFIXES:
@@ -105,7 +105,7 @@ def check_ending(path: Path) -> None:
 
 
 def read_table(path: Path, layout: TrackLayout) -> Table:
-    """Return the rows of a text or Parquet file; a ParameterError names one that is none.
+    """Return the rows of a text or Parquet file; a ParameterError names any other file.
 
     Rows of a text file are numbered by their line.
     """
@@ -134,7 +134,7 @@ def _read_parquet(pandas: Any, path: Path) -> Any:
 
 
 def text_of(path: Path) -> str:
-    """Return a file as text: UTF-8 or UTF-16 by its mark, and what Windows wrote otherwise."""
+    """Return a file as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
     with open_plain(path) as file:
         most = most_held(os.fstat(file.fileno()).st_size)
         opened = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
@@ -159,7 +159,7 @@ def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]
     rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
     try:
         return [[cell.strip() for cell in row] for row in rows]
-    except csv.Error as error:  # Of cells as long as a page, and of quotes that nothing ends.
+    except csv.Error as error:  # Very long cells and unclosed quotes raise this.
         raise ParameterError(f"line {skip + 1} and those after it are no table: {error}") from error
 
 
@@ -198,7 +198,7 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
 
 
 def _check_width(names: list[str], rows: list[list[str]], first: int) -> None:
-    """Refuse rows, the first of which is in a line, with more values than there are names."""
+    """Refuse rows with more values than there are names; `first` is the line of the first row."""
     for line, row in enumerate(rows, first):
         if any(row[len(names) :]):
             raise ParameterError(
@@ -208,7 +208,7 @@ def _check_width(names: list[str], rows: list[list[str]], first: int) -> None:
 
 
 def _unique(names: list[Any]) -> tuple[list[Any], set[Any]]:
-    """Return names of which each is there once, and those that were there more often."""
+    """Return names made unique, and those that were repeated."""
     seen, twice, unique = set[Any](), set[Any](), []
     for place, name in enumerate(names):
         unique.append(f"{name} {place}" if name in seen else name)
@@ -250,7 +250,7 @@ def is_value(cell: Any) -> bool:
 
 
 def plain_table(table: "pd.DataFrame") -> Table:
-    """Return a table whose columns have one name each, those of the index among them."""
+    """Return a table with one name per column, the index among the columns."""
     if not hasattr(table, "columns") or not hasattr(table, "index"):
         raise TypeError(
             f"tracks must be a file, a DataFrame of pandas or a Dataset of xarray, not "
@@ -291,7 +291,7 @@ def listed(names: list[str]) -> str:
 
 
 def _other_mark(names: list[str]) -> str:
-    """Return what separates names that were read as one, or that they are no names."""
+    """Return a hint for a header read as one name, or for numbers in its place."""
     if sum(map(is_value, names)) > len(names) / 2:
         return ": `header` names the columns of a file whose first line does not"
     if names[0][:1] in ("#", "%", "/") and len(names) == 1:

@@ -140,7 +140,7 @@ class BranchTraining:
 
     @classmethod
     def from_bytes(cls, state: bytes, *, flock_hours: float | None = None) -> Self:
-        """Return a training that goes on to the same bits, or until other `flock_hours`.
+        """Return a continued training: to the same bits, or until other `flock_hours`.
 
         A FlockError refuses a state that is damaged, of another format, or not finite.
         """

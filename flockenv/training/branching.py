@@ -11,7 +11,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 
 _SEEDS = POLICY_SEEDS["branches"]
-#: The lean features alone.
+#: An observation of the lean features alone.
 _OBSERVATION: dict[str, Any] = {
     **dict.fromkeys(("own", "phase", "target", "order"), False),
     "neighbors": 0,

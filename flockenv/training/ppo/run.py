@@ -58,7 +58,7 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
 
     The folder gets ``model.zip``, ``checkpoint.zip``, ``settings.toml``, ``0.monitor.csv`` with the
     order and overlaps of each flock's episodes, and stable-baselines3's log in ``log-0``. After a
-    resume, names have the samples so far instead of 0.
+    resume, names have the number of samples so far instead of 0.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def _held(folder: Path) -> Iterator[None]:
 def _advance(
     settings: TrainingSettings, folder: Path, model: PPO, venv: LeaderVecEnv, report: Report
 ) -> PPO:
-    """Train a model from where it is to the last sample."""
+    """Train a model from its present sample to the last one."""
     total, done = settings.samples(venv), model.num_timesteps
     rollouts = done // (model.n_steps * venv.num_envs)
     seeds = POLICY_SEEDS["training"]
