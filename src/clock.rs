@@ -1,7 +1,7 @@
 //! The exact clock of a flock, and how many steps a duration holds.
 //!
-//! Time is counted in integer ticks of 1 ns, so that a substep can end exactly on a phase switch or
-//! a control step, and no sliver of a step is left by rounding where the two meet.
+//! Time is counted in integer ticks of 1 ns, so that a substep can end exactly on a phase switch or a control step, and
+//! rounding leaves no tiny step if the two coincide.
 
 use crate::error::{FlockError, Result};
 

@@ -122,7 +122,7 @@ impl FlockError {
     }
 }
 
-/// A text in which numbers that take more digits than a line of a message has room for have an exponent, such as 1e300.
+/// A text in which very long numbers have an exponent, such as 1e300.
 fn readable(text: &str) -> String {
     const MOST_DIGITS: usize = 20;
     let (mut written, mut rest) = (String::new(), text);

@@ -15,7 +15,7 @@ pub(crate) type Magic = [u8; 8];
 pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     let mut bytes = magic.to_vec();
     bytes.extend_from_slice(&[0; 8]);
-    // Writing to a Vec fails only out of memory, where the allocator ends the process first.
+    // Writing to a Vec fails only without memory, and then the allocator ends the process first.
     let bytes = postcard::to_extend(state, bytes);
     debug_assert!(bytes.is_ok(), "{:?}", bytes.err());
     let mut bytes = bytes.unwrap_or_default();

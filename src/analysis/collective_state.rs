@@ -71,8 +71,8 @@ pub struct OrderingWatch {
 }
 
 impl OrderingWatch {
-    /// Records the order at a time since the run started. `is_late` marks the second half of the
-    /// run; an orientation is tangential that is less than `within` (rad) off.
+    /// Records the order at a time since the run started. `is_late` marks the second half of the run; an orientation
+    /// less than `within` (rad) off the tangent is tangential.
     pub(crate) fn note(
         &mut self,
         time_s: f64,

@@ -63,8 +63,8 @@ impl FreeMotion {
         (3.0 * self.c1 * angular * angular + self.c3 * along).max(0.0)
     }
 
-    /// The part of a spin that damping leaves, if it takes `rate` of it over `dt`: none where it would turn it round. A
-    /// step beyond that would make spins alternate, and an explicit one grow without end.
+    /// The part of a spin that is left if damping takes `rate` of it over `dt`; 0 if damping would reverse it. A step
+    /// beyond that would make spins alternate, and an explicit one grow without end.
     #[inline]
     fn damped(rate: f64, dt: f64) -> f64 {
         (1.0 - rate * dt).max(0.0)
@@ -111,8 +111,8 @@ impl FreeMotion {
         (axis * drive.preferred_speed + drive.water - velocity) * relaxed
     }
 
-    /// The spin that a boat is driven to. Eq. (9) drives no backing boat past the spin at which it comes to rest: a step
-    /// that would ends there.
+    /// The spin that a boat is driven to. Eq. (9) drives no backing boat past the spin at which it comes to rest, so
+    /// that a step beyond ends there.
     #[inline]
     fn held_back(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let turns_back =

@@ -81,7 +81,7 @@ impl DampedLaw {
         ),
     ];
 
-    /// The tuned law of a pool, by its name, if it has one, which the value of some setting asks for.
+    /// The tuned law of a named pool, for a setting that asks for it.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names setting and value for pools in which the law has not been tuned.

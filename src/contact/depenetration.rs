@@ -85,7 +85,7 @@ impl Depenetration {
         }
     }
 
-    /// One pass, for the contacts at hand.
+    /// One pass over the present contacts.
     fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
         self.rest.resize(poses.len(), Velocity::default());

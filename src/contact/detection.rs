@@ -82,7 +82,7 @@ impl ContactDetector {
     }
 
     /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, with room for what
-    /// contacts add to them: as much as the fastest boat has. Returns a margin within which all of it lies.
+    /// contacts add to them: as much as the fastest boat has. Returns a margin that includes all of them.
     pub fn detect_moving(
         &mut self,
         boats: &[HullPose],
@@ -154,7 +154,7 @@ impl ContactDetector {
         self.detect_within_reach(boats, margin, contacts);
     }
 
-    /// The same with the reaches at hand, none of which exceeds half the margin.
+    /// The same with known reaches, each at most half the margin.
     fn detect_within_reach(
         &mut self,
         boats: &[HullPose],
@@ -216,7 +216,7 @@ impl ContactDetector {
             0.0
         };
         let high = self.pool.outer_radius_cm - reach;
-        // Nowhere, where the walls' margins meet in the middle.
+        // Nowhere if the walls' margins meet in the middle.
         low..=if high < 0.0 { -1.0 } else { square(high) }
     }
 
@@ -337,7 +337,7 @@ impl ContactDetector {
         }
     }
 
-    /// The gap of contact k where its touch has moved to. The only contact of a pair stands for the whole pair.
+    /// The gap of contact k where its touch has moved to. A pair's only contact describes the whole pair.
     pub(crate) fn moved_gap(&self, contacts: &[Contact], k: usize, boats: &[HullPose]) -> Gap {
         let contact = &contacts[k];
         if !contact.has_ends() || contact.feature.side().is_none() {

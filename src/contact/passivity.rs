@@ -27,8 +27,8 @@ pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: Veloci
     (0..impulses.len()).any(|k| impulses[k] > 0.0 && adds_much(k))
 }
 
-/// Whether a boat of an island has its flank pushed from opposite sides. Looking ahead, either contact would turn it back
-/// against the other one, where a plastic impact stops the turn.
+/// Whether a boat of an island has its flank pushed from opposite sides. If biases looked ahead, either contact would
+/// turn it back against the other; a plastic impact stops the turn.
 fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> bool {
     let contacts = island.iter().map(|&k| k as usize);
     let pushed = contacts

@@ -17,7 +17,7 @@ pub(super) struct VelocityBias {
 }
 
 impl VelocityBias {
-    /// The bias that follows from the gap at hand, in cm/s.
+    /// The bias from the present gap, in cm/s.
     pub(super) fn of_gap(&self, gap: &Gap) -> f64 {
         // Without branches: signs of gaps cannot be foreseen.
         let time = select_unpredictable(gap.gap < 0.0, self.closing_s, self.dt);
@@ -25,7 +25,7 @@ impl VelocityBias {
         select_unpredictable(is_deep, 0.0, gap.gap / time)
     }
 
-    /// Part of the bias that is lost as a flank turns into the inner wall with this spin.
+    /// Part of the bias that is lost if a flank turns into the inner wall with this spin.
     pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
         if gap.gap < -self.penetration_slop {
             0.0

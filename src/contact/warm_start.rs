@@ -76,8 +76,7 @@ impl WarmStartCache {
         self.entries.extend(entries);
     }
 
-    /// The impulse that each contact carried, 0 if it carried none: each impulse goes to that
-    /// contact of the same two bodies which is nearest to where it was.
+    /// The impulse that each contact carried, or 0. Each impulse goes to the nearest contact of the same two bodies.
     ///
     /// Contacts mostly come in the order of the last substep, a few gone and a few new.
     pub(super) fn lookup(&mut self, contacts: &[Contact], impulses: &mut Vec<f64>) {

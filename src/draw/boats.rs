@@ -11,7 +11,7 @@ use tiny_skia::{PathBuilder, Pixmap};
 const EDGE: (f32, f32) = (0.14, 1.0);
 /// Width of a leader's ring, likewise.
 const RING: (f32, f32) = (0.34, 1.8);
-/// The least radius that is drawn, in pixels: boats of a huge pool stay visible.
+/// Least drawn radius in pixels: boats of a huge pool stay visible.
 const LEAST_RADIUS: f32 = 1.0;
 /// The radius from which on marks are legible, in pixels.
 const LEAST_MARKED: f32 = 2.5;
@@ -86,7 +86,7 @@ fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colo
     }
 }
 
-/// An arrowhead in the bow half of a hull that reaches so far along and across, in cm.
+/// An arrowhead in the bow half of a hull with these half lengths along and across, in cm.
 fn mark(view: &View, boat: &HullPose, along: f64, across: f64) -> PathBuilder {
     let corners = [(0.84, 0.0), (-0.12, 0.68), (0.1, 0.0), (-0.12, -0.68)];
     let mut path = PathBuilder::new();

@@ -94,7 +94,7 @@ fn signed_order(flock: &Flock) -> String {
     )
 }
 
-/// Lines for the caption, the time, the phase and the grid, each if there is one.
+/// Lines for the caption, the time, the phase and the grid, each if present.
 fn clock(flock: &Flock, caption: String, grid_cm: Option<f64>) -> Vec<(String, Rgb)> {
     let mut lines = vec![];
     if !caption.is_empty() {

@@ -81,7 +81,7 @@ declare_palette! {
     GRID = "grid": hex(0xC6D8E4), hex(0x34495A);
     /// Text.
     INK = "ink": hex(0x1F2A36), hex(0xE8EDF2);
-    /// Text that stands back.
+    /// Muted text.
     FAINT = "faint": hex(0x667079), hex(0x99A5AF);
     /// The arrow that shows the target.
     TARGET = "target": hex(0xC3C9CE), hex(0x3A4651);
@@ -105,7 +105,7 @@ declare_palette! {
     OUTLINE = "outline": hex(0x1F2A36), hex(0x0C1116);
     /// Bars of contact forces.
     FORCE = "force": hex(0xC2185B), hex(0xFF5C9A);
-    /// The ring around the boat that is chosen.
+    /// The ring around the selected boat.
     PIN = "pin": hex(0x1F2A36), hex(0xFFFFFF);
     /// The paper's law, in pages and plots. Policies have none of the colors of directions.
     PAPER_LAW = "paper-law": hex(0x5E2CA5), hex(0xD0B3FF);

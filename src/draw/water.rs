@@ -49,7 +49,7 @@ pub(super) fn draw(
     }
 }
 
-/// Discs and walls, those that meet as one.
+/// Discs and walls; those that meet are drawn as one.
 fn obstacles(canvas: &mut Pixmap, parameters: &FlockParameters, view: &View, wall: f32) {
     for segment in &parameters.walls {
         let ends = [

@@ -5,7 +5,7 @@ use crate::error::{FlockError, Result};
 use crate::parameters::{FlockParameters, named_choice};
 use std::f64::consts::PI;
 
-/// The angle in rad that a lean of 1 stands for.
+/// Angle in rad of a lean of 1.
 pub const LARGEST_LEAN: f64 = 1.2;
 
 named_choice! {
@@ -22,7 +22,7 @@ named_choice! {
 }
 
 impl ActionMode {
-    /// The law that steers to the heading that an action stands for; `None` where actions are rudders.
+    /// The law that steers to an action's heading; `None` where actions are rudders.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
@@ -36,7 +36,7 @@ impl ActionMode {
         }
     }
 
-    /// The angle in rad outward of the target's tangent that an action in [−1, 1] stands for.
+    /// Angle in rad outward of the target's tangent, of an action in [−1, 1].
     pub fn angle(self, action: f64) -> f64 {
         match self {
             Self::Rudder => 0.0,

@@ -313,7 +313,7 @@ impl EnvBatch {
     }
 }
 
-/// Flocks between two points at which a step of many can be ended; within one that takes long there are others.
+/// Number of flocks after which a step of many can be interrupted; a long step of one flock can be, too.
 const FLOCKS_BETWEEN_LOOKS: usize = 16;
 
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.

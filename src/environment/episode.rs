@@ -88,7 +88,7 @@ impl EpisodeState {
 pub struct Episode {
     state: EpisodeState,
     observer: Observer,
-    /// The law that steers to a heading, where actions stand for one.
+    /// The law that steers to a heading, if actions are headings.
     law: Option<(DampedLaw, CourseView)>,
     /// Commands of the control step under way.
     commands: Vec<f64>,

@@ -51,7 +51,7 @@ impl Upcoming {
         EnvSettings {
             target: self.target.as_ref().unwrap_or(&settings.target).clone(),
             bw_s: self.bw_s.or(settings.bw_s),
-            // Another target would change the length that is not given.
+            // Another target would change a default length.
             episode_s: Some(settings.duration_s()),
             ..settings.clone()
         }
@@ -103,7 +103,7 @@ impl ResetRequest {
     }
 }
 
-/// Refuses a flock of a snapshot that is not one of an environment with these parameters.
+/// Refuses a snapshot's flock that does not fit an environment with these parameters.
 pub(super) fn check_flock(flock: &Flock, parameters: &FlockParameters) -> Result<()> {
     let same = FlockParameters {
         target: parameters.target.clone(),

@@ -56,7 +56,7 @@ impl RewardTerm {
         ) || self.is_credit()
     }
 
-    /// Whether the term comes from the leader's contacts, which are watched only where such a term has a weight.
+    /// Whether the term comes from the leader's contacts, which are watched only if such a term has a weight.
     pub(crate) fn is_credit(self) -> bool {
         matches!(
             self,

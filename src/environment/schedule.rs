@@ -15,7 +15,7 @@ pub struct EpisodeSchedule {
     pub step: u32,
     /// Control steps until the time limit.
     pub steps: u32,
-    /// The targets; those of the first quarter where they alternate.
+    /// The targets; if they alternate, those of the first quarter.
     targets: Targets,
     /// Whether they change in the course of the episode.
     pub(super) alternates: bool,
@@ -57,7 +57,7 @@ impl EpisodeSchedule {
         Targets::One(if is_even { first } else { first.opposite() })
     }
 
-    /// Part of the episode that is over, in [0, 1].
+    /// Elapsed part of the episode, in [0, 1].
     pub fn elapsed(&self) -> f64 {
         f64::from(self.step) / f64::from(self.steps)
     }

@@ -3,7 +3,7 @@
 /// A servo that takes one move a control step and holds the rudder in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
-    /// Part of the difference to the command that is made up in a step.
+    /// Part of the difference to the command that a step takes away.
     follow: f64,
     /// Largest change in a step.
     most: f64,

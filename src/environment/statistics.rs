@@ -34,7 +34,7 @@ impl Serialize for Averages {
     }
 }
 
-/// A quantity that is missing was not watched: its mean is not known, NaN.
+/// A missing quantity was not watched: its mean is NaN.
 impl<'de> Deserialize<'de> for Averages {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let mut averages = Self([f64::NAN; SUMMARIZED]);
@@ -119,8 +119,7 @@ impl EpisodeStatistics {
 }
 
 impl EpisodeSummary {
-    /// The summary by name. Means over an analysis window that the episode did not reach are left out, as there is no
-    /// NaN.
+    /// The summary by name. Means over an analysis window that the episode did not reach are left out, not NaN.
     pub fn named(&self) -> Value {
         let terms = RewardTerm::named(&self.terms);
         let share = ("share_towards_target", self.share_towards_target);

@@ -24,9 +24,8 @@ pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64)
     }
 }
 
-/// Gap between a hull and the inner wall: distance from the pool's center to the core − r − R_in;
-/// the normal points outward. Where the hull's flank lies on the convex wall, turning it either way
-/// brings it into the wall.
+/// Gap between a hull and the inner wall: distance from the pool's center to the core − r − R_in; the normal points
+/// outward. If the hull's flank lies on the convex wall, turning it either way brings it into the wall.
 pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let h = hull.half_length;
     let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);

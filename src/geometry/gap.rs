@@ -130,8 +130,8 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Nearest points for an end of hull a. Where end meets end, both hulls' ends describe it: with
-    /// `once`, only the first hull's does, and only if neither end could slide nearer.
+    /// Nearest points for an end of hull a. If end meets end, both hulls' ends describe the gap. With `once`, only the
+    /// first hull's does, and only if neither end could slide nearer.
     fn end_of_a(&self, side: f64, once: bool) -> Option<Touch> {
         let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
         let along_b = side * h * self.cosine - self.apart_b;
@@ -301,8 +301,8 @@ pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
     smaller(squares[0], squares[1]).sqrt() - (hull_a.radius + hull_b.radius)
 }
 
-/// The gap of crossed cores: the least distance by which one core's end must be moved across the
-/// other's line, and as much more as makes the hulls touch. Where it is inlined, gaps that are not crossed take longer.
+/// The gap of crossed cores: the least distance by which one core's end must be moved across the other's line, plus the
+/// distance that makes the hulls touch. Where it is inlined, gaps that are not crossed take longer.
 // Arguments in registers: tuples would be stored for each pair, crossed or not.
 #[cold]
 fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {

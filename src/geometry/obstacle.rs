@@ -19,14 +19,14 @@ pub enum Obstacle {
         pose: HullPose,
         /// Half its length in cm.
         half_length: f64,
-        /// For its start and its end, in which direction another wall leaves from there, if one does.
+        /// Direction in which another wall leaves from its start, and from its end, if any.
         joints: [Option<Vec2>; 2],
     },
 }
 
 /// Ends of walls nearer than this, in cm, are one point.
 const JOINED: f64 = 1e-6;
-/// Cosine below which a normal is at right angles to a wall but for rounding.
+/// Cosine below which a normal counts as perpendicular to a wall.
 const UPRIGHT: f64 = 1e-9;
 
 impl From<&Disc> for Obstacle {
@@ -93,7 +93,7 @@ impl Obstacle {
         beyond.abs() > UPRIGHT && joint.is_some_and(|onward| normal.dot(&onward) > UPRIGHT)
     }
 
-    /// The point of its core, which a disc has at its center, that is nearest to a point, and its radius about that.
+    /// The point of its core nearest to a point, and its radius about that; a disc's core is its center.
     fn core(&self, point: Vec2) -> (Vec2, f64) {
         match self {
             Self::Disc { center, radius } => (*center, *radius),
@@ -107,7 +107,7 @@ impl Obstacle {
         }
     }
 
-    /// The point of its surface that is nearest to a point; the point itself at a disc's very center.
+    /// The point of its surface nearest to a point; at a disc's center, the point itself.
     pub fn nearest(&self, point: Vec2) -> Vec2 {
         let (core, radius) = self.core(point);
         let away = (point - core).try_normalize(0.0);
@@ -198,8 +198,8 @@ fn wall_hull(half_length: f64) -> Hull {
     }
 }
 
-/// The gap to a wall, which has no lever arm. Where a wall's end touches the flank, turning the boat either way brings
-/// the flank into it, as at a disc.
+/// The gap to a wall, which has no lever arm. If a wall's end touches the flank, turning the boat either way brings the
+/// flank into it, as at a disc.
 fn beside_wall(feature: Feature, gap: Gap, hull: Hull) -> Gap {
     let is_flank = feature != Feature::Crossed && gap.along.abs() < hull.half_length;
     Gap {

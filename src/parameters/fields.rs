@@ -126,7 +126,7 @@ impl FlockParameters {
         }
     }
 
-    /// Checks every field; the one gate through which parameters enter a flock.
+    /// Checks every field; all parameters of a flock pass this check.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names a field that is out of range.

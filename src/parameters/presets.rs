@@ -41,7 +41,7 @@ impl Physics {
     }
 }
 
-/// The preset `simulation` with some fields changed, and where each of their values comes from.
+/// The preset `simulation` with some changed fields, and the source of each.
 macro_rules! changes {
     ($($name:ident = $value:expr, $source:literal;)*) => {{
         #[allow(unused_mut)]
@@ -69,7 +69,7 @@ impl Preset {
         }
     }
 
-    /// Where the value that this preset has for a field comes from; `None` for an unknown field.
+    /// Source of this preset's value of a field; `None` for an unknown field.
     pub fn source(self, field: &str) -> Option<&'static str> {
         let own = self.changes().1.iter().find(|(name, _)| *name == field);
         let declared = FlockParameters::FIELDS

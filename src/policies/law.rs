@@ -26,7 +26,7 @@ pub struct NamedLaw {
     pub name: &'static str,
     /// For documentation.
     pub doc: &'static str,
-    /// The color that it has in every picture; `None`: the next that is free.
+    /// The color that it has in every picture; `None`: the next free color.
     pub color: Option<Rgb>,
     origin: Origin,
 }
@@ -36,7 +36,7 @@ pub struct NamedLaw {
 enum Origin {
     /// It is the same in every pool.
     Everywhere(fn() -> Law),
-    /// It is another one in each pool, which is given by its name, if it has one.
+    /// Each named pool has a law of its own.
     OfPool(fn(Option<&str>) -> Result<Law>),
 }
 
@@ -176,8 +176,7 @@ impl Law {
         }
     }
 
-    /// The rudder on a course, which is about a heading that leans where the law does: in [−1, 1], with the precision of
-    /// actions.
+    /// The rudder in [−1, 1] on a course about the law's own heading, with the precision of actions.
     pub(super) fn rudder(&self, course: &Course) -> f64 {
         let rudder = match self {
             Self::EverySubstep | Self::Paper => steering_law(course.misalignment),

@@ -10,7 +10,7 @@ use crate::error::{FlockError, Result};
 pub struct ObservedLaw {
     law: Law,
     size: usize,
-    /// `None` where the law's actions are leans, to which the environment steers, or rudders.
+    /// `None` if the law's actions are rudders, or leans that the environment steers to.
     courses: Option<CourseReader>,
     /// Where the lean features start, if the law looks at them.
     features: Option<usize>,
@@ -46,8 +46,8 @@ impl ObservedLaw {
         self.size
     }
 
-    /// The action for one observation, in the observation's own sense where it is mirrored: a rudder, or a lean where the
-    /// law holds leans. It depends on nothing else, such as other observations of a batch.
+    /// The action for one observation, mirrored as the observation is: a rudder, or a lean if the law holds leans. It
+    /// depends on nothing else, such as other observations of a batch.
     pub fn action(&self, observation: &[f32]) -> f64 {
         let lean = self.law.leaning().zip(self.features);
         let lean = lean.map_or(0.0, |(law, index)| {

@@ -33,7 +33,7 @@ pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bou
 }
 
 /// The recorded quantities of boats at each time, of poses and velocities of shape (t, n, 3). Rows of NaN stand for
-/// boats that are not there; quantities of too few boats are NaN.
+/// missing boats; quantities of too few boats are NaN.
 #[pyfunction]
 pub(super) fn order_columns<'py>(
     py: Python<'py>,

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyInt;
 
-/// Depth to which NumPy stacks sequences.
+/// Greatest depth to which NumPy stacks sequences.
 const MOST_AXES: usize = 64;
 
 /// The shape of an array of any library.
@@ -49,9 +49,9 @@ fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
     number.ok_or_else(|| wrong_type(object, name, "a number"))
 }
 
-/// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item
-/// by item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may claim more
-/// numbers than there is memory.
+/// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item by
+/// item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may claim more
+/// numbers than fit memory.
 struct Numbers {
     values: Vec<f64>,
     are_whole: bool,
@@ -160,7 +160,8 @@ pub(super) fn flat_actions<'py>(
     Ok(PyArray1::from_vec(actions.py(), values))
 }
 
-/// Rows times a matrix plus a bias: each row alone and in one order, while a product of matrices rounds by place.
+/// Rows times a matrix plus a bias. Each row is summed alone and in one order; a product of matrices rounds a row by
+/// its index.
 #[pyfunction]
 pub(super) fn linear<'py>(
     rows: PyReadonlyArray2<'py, f32>,
@@ -201,7 +202,7 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Refuses a series of another length than those it belongs to.
+/// Refuses a series of another length than its companions.
 pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
     if found == expected {
         return Ok(());

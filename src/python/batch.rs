@@ -242,8 +242,8 @@ impl PyEnvBatch {
         self.gathered(py, TERMS, |_, episode| episode.terms().concat())
     }
 
-    /// The recorded quantities of the normal boats: a row per flock in the order of the table, NaN where a flock has
-    /// none.
+    /// The recorded quantities of the normal boats: a row per flock in the order of the table, NaN for a flock without
+    /// normal boats.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
         self.gathered(py, RECORDED, |_, episode| {
             let recorded = episode.flock().recorded(false);

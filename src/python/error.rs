@@ -1,5 +1,4 @@
-//! The exceptions that users meet, and core errors as exceptions: the one place where they convert, so that
-//! `?` does it elsewhere.
+//! The exceptions that users meet. Errors of the core become exceptions here alone; `?` does it elsewhere.
 
 use crate::error::FlockError;
 use pyo3::exceptions::{
@@ -9,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyTuple, PyType};
 
-/// Their names and meanings. The first is the base of the others, each of which is a built-in exception too.
+/// Their names and meanings. The first is the base of the others; each is a built-in exception, too.
 const DECLARED: [(&str, &str); 5] = [
     (
         "FlockError",

@@ -15,7 +15,7 @@ pub struct PyLaw(pub(super) Law);
 
 #[pymethods]
 impl PyLaw {
-    /// The law of a name, where it needs one in a pool of this name.
+    /// The law of a name, in the pool of this name if it depends on the pool.
     #[staticmethod]
     #[pyo3(signature = (name, pool=None))]
     fn named(name: &str, pool: Option<&str>) -> Result<Self> {

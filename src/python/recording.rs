@@ -41,7 +41,8 @@ pub(super) struct Control<'py> {
     control_hz: Option<Bound<'py, PyAny>>,
 }
 
-/// Records a run from where a flock is, which stays there: the columns of a `flockenv.Recording` that a run fills.
+/// Records a run that starts from a flock's state and leaves that flock unchanged; returns columns of a
+/// `flockenv.Recording`.
 #[pyfunction]
 pub(super) fn record<'py>(
     py: Python<'py>,

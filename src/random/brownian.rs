@@ -1,8 +1,7 @@
 //! Brownian paths that can be read at any time, from keyed normal draws.
 //!
-//! The noise is keyed, not consumed: a draw is a function of (seed, boat, place in time), so two
-//! policies or two control rates on one seed meet the same noise, and a snapshot needs to hold no
-//! generator.
+//! The noise is keyed, not consumed: a draw is a function of (seed, boat, time), so two policies or two control rates
+//! on one seed meet the same noise, and a snapshot needs to hold no generator.
 
 use super::normal::{Ziggurat, scramble};
 use super::streams::{Stream, StreamRng};
@@ -132,7 +131,7 @@ impl BrownianPaths {
         }
     }
 
-    /// Draws keyed by a time, for noise that is defined a step at a time.
+    /// Draws keyed by a time, for noise that is drawn step by step.
     pub(crate) fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
         let found = self.normals.draws(time, 0);
         draws

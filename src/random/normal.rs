@@ -65,7 +65,7 @@ impl Ziggurat {
         }
     }
 
-    /// The layer that a word chooses, and a place up to its edge on either side.
+    /// The layer that a word chooses, and a position within its width on either side.
     #[inline]
     fn place(self, word: u64) -> (usize, f64) {
         let layer = (word & (LAYERS as u64 - 1)) as usize;

@@ -119,7 +119,7 @@ impl BranchSettings {
         self.env_settings().check(parameters)
     }
 
-    /// How many decisions there are.
+    /// The numbers of decisions.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for times that are no whole numbers of decisions.

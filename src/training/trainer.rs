@@ -35,7 +35,7 @@ struct Memory {
 }
 
 impl Memory {
-    /// Whether a training of so many pairs, each with so many branches in an episode, can have it.
+    /// Whether it fits a training of this many pairs, each with this many branches in an episode.
     fn fits(&self, pairs: usize, branches: usize) -> bool {
         let sums = self
             .tried

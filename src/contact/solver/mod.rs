@@ -45,7 +45,7 @@ pub struct ContactSolver {
     /// The numbers of all islands.
     all: Vec<u32>,
     pivoting: BlockPivoting,
-    /// The work of a whole substep, and the part of it that is kept back from the contacts at hand.
+    /// The work of a whole substep, and the part of it that the present contacts may not use.
     most_work: i64,
     kept_back: i64,
     /// Work of the earlier substeps.
@@ -76,8 +76,8 @@ impl ContactSolver {
         }
     }
 
-    /// An exact solver in which every contact gives way by `regularization`·A_kk·λ_k, so that constraints
-    /// that contradict each other are met as well as they can be.
+    /// An exact solver in which every contact gives way by `regularization`·A_kk·λ_k, so that contradicting constraints
+    /// are met as well as possible.
     pub(crate) fn regularized(regularization: f64) -> Self {
         Self {
             pivoting: BlockPivoting::new(regularization),
@@ -128,7 +128,7 @@ impl ContactSolver {
         self.work_before + self.most_work - self.pivoting.budget - self.kept_back
     }
 
-    /// Whether the last contacts were too much work, so that there is no solution.
+    /// Whether the last contacts exceeded the work budget, without a solution.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.pivoting.budget < 0
     }

@@ -45,7 +45,7 @@ impl Frame {
     }
 }
 
-/// The frames of one episode. Stored are the frames alone.
+/// The frames of one episode. Only the frames are stored.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Camera {
     frame: u64,
@@ -87,7 +87,7 @@ impl Camera {
         self
     }
 
-    /// Takes the next frame. Which boats drop out depends on the seed and the frame's number alone.
+    /// Takes the next frame. The dropped boats depend on the seed and the frame's number alone.
     pub(crate) fn expose(&mut self, leaders: usize, flock: &Flock) {
         let (poses, velocities) = (flock.poses(), flock.velocities());
         self.frame += 1;

@@ -149,7 +149,7 @@ pub const BOAT: [Entry; 10] = [
     Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
 ];
 
-/// The rest of the global state besides the boats, the phase and the target.
+/// Entries of the global state other than boats, phase and target.
 #[rustfmt::skip]
 pub(super) const CLOCK: [Entry; 1] =
     [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];

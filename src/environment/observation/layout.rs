@@ -5,7 +5,7 @@ use super::entry::{BOAT, CLOCK, Entry};
 use crate::error::{FlockError, Result};
 use crate::parameters::{Kind, Setting, Value, wrong_kind};
 
-/// Version of the observation: of the entries, their order, scales and bounds. A policy belongs to the one of its file.
+/// Version of the observation: of the entries, their order, scales and bounds. A policy needs the version in its file.
 pub const OBSERVATION_VERSION: u32 = 1;
 
 /// The most neighbors, and the most obstacles, that a leader may observe.
@@ -16,12 +16,12 @@ pub(crate) const MOST_NEIGHBORS: usize = 64;
 pub struct ObservationLayout {
     #[serde(with = "stored_repeats")]
     repeats: [usize; Block::COUNT],
-    /// Whether observation and action are reflected where the target is counter-clockwise, so that
-    /// both directions are one task, the clockwise one.
+    /// Whether observation and action are reflected if the target is counter-clockwise, so that both directions are the
+    /// clockwise task.
     pub is_mirrored: bool,
 }
 
-/// Blocks as they are stored: by name, those that are missing as often as by default.
+/// Blocks as they are stored: by name; missing ones occur as often as by default.
 mod stored_repeats {
     use super::Block;
     use crate::by_name;
@@ -166,7 +166,7 @@ impl Setting for ObservationLayout {
         blocks.collect()
     }
 
-    /// Blocks that are not named are as by default.
+    /// Blocks that are not named keep their default.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         let Value::Map(blocks) = value else {
             return wrong_kind(name, "a dictionary of blocks");

@@ -1,5 +1,5 @@
-//! The nearest boats of leaders. Which boats are near is nothing that a processor can foresee, so that no branch
-//! depends on it: a wrong guess costs more than the arithmetic for all boats.
+//! The nearest boats of leaders. A processor cannot predict which boats are near. So no branch depends on it: a wrong
+//! prediction costs more than the arithmetic for all boats.
 
 use crate::geometry::HullPose;
 use wide::f64x4;
@@ -15,9 +15,10 @@ const GROWTH: f64 = 1.1;
 /// Finds the nearest boats, with its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
-    /// Squared distances of every boat from the leaders at hand, which are infinitely far from themselves.
+    /// Squared distances of every boat from the leaders at hand; that of a leader from itself is infinite.
     squares: Vec<[f64; AT_ONCE]>,
-    /// Within these, and not much more, every leader has as many boats as are wanted, or had so when it last looked.
+    /// Squared distances, at most slightly too large, within which each leader had the wanted number of boats in its
+    /// last search.
     limits: Vec<f64>,
     /// A leader's nearest boats, in front.
     found: Vec<u32>,
@@ -99,7 +100,7 @@ impl Nearest {
         let smallest = &mut smallest[..wanted];
         for &squares in &self.squares {
             let mut square = f64x4::new(squares);
-            // In ascending order: a square that is pushed out moves on.
+            // In ascending order: a square that is displaced moves to the next slot.
             for kept in &mut *smallest {
                 (*kept, square) = (kept.fast_min(square), kept.fast_max(square));
             }

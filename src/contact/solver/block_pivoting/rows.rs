@@ -30,7 +30,7 @@ pub(super) type Motion = [f64; 3];
 /// second body, so that all rows look alike.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Row {
-    /// The contact it belongs to.
+    /// Its contact.
     pub contact: u32,
     /// Its bodies, by their index in the island.
     pub bodies: [u32; 2],
@@ -106,7 +106,7 @@ impl Row {
         dot(&jacobian, &response)
     }
 
-    /// A_kl of two rows through a body that is on these sides of them.
+    /// A_kl of two rows through a body on these sides of them.
     #[inline]
     pub(super) fn coupling(&self, side: usize, other: &Self, other_side: usize) -> f64 {
         dot(&self.response[side], &other.jacobian[other_side])

@@ -81,7 +81,7 @@ fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
 
 /// The neighbors that the features look at.
 const SEEN_NEIGHBORS: usize = 6;
-/// Where they start in the view, where the order parameters do, and where those end.
+/// Their first index in the view, that of the order parameters, and the end of those.
 const NEIGHBORS: usize = OWN.len() + PHASE.len();
 const ORDERS: usize = NEIGHBORS + SEEN_NEIGHBORS * NEIGHBOR.len();
 const VIEW: usize = ORDERS + ORDER.len();

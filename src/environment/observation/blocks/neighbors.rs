@@ -5,7 +5,7 @@ use super::super::nearest::Nearest;
 use super::{Seen, WriteBlock};
 use crate::geometry::cross;
 
-/// One neighbor; zeros if there are fewer boats than neighbors to observe.
+/// One neighbor; zeros for neighbors that the flock lacks.
 #[rustfmt::skip]
 pub(super) const NEIGHBOR: [Entry; 8] = [
     Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),

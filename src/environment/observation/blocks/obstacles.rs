@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geometry::{Hull, Obstacle};
 use crate::parameters::FlockParameters;
 
-/// One obstacle; zeros if there are fewer than observed.
+/// One obstacle; zeros for obstacles that the pool lacks.
 #[rustfmt::skip]
 pub(super) const OBSTACLE: [Entry; 4] = [
     Entry::new("there", "", Scale::Plain, FLAG, "1 where there is such an obstacle"),
@@ -32,7 +32,7 @@ impl MadeFor for NearestObstacles {
 }
 
 impl WriteBlock for NearestObstacles {
-    /// Nearest to the leader's center first, equally near ones in the order of obstacles; zeros where there are fewer.
+    /// Nearest to the leader's center first, equally near ones in the order of obstacles; zeros for missing ones.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
         let leader = &seen.view.hulls[seen.leader];
         let filled = physical.len() + repeats * OBSTACLE.len();
