@@ -72,7 +72,7 @@ def _held_file(folder: Path) -> tuple[Path, IO[bytes]]:
             raise
         if _is_locked(file) is not False and os.fstat(file.fileno()).st_nlink > 0:
             return temporary, file
-        # Another process took it for a leftover, before it was held.
+        # Before the file was locked, another process removed it as a leftover.
         file.close()
         _temporary.discard(temporary)
 
@@ -104,7 +104,7 @@ def _is_locked(file: IO[bytes]) -> bool | None:
 def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) -> None:
     """Remove the temporary files of killed processes from a folder, and from those within it.
 
-    Those that a process still writes to stay.
+    Files that a process still writes are kept.
     """
     found = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
     for path in found:

@@ -79,7 +79,7 @@ def _draw(axes: Axes, means: pd.DataFrame, shift: float, policy: str, color: str
     order = means["signed_order"]
     ends = means[["signed_order_low", "signed_order_high"]].sub(order, axis=0).abs().to_numpy().T
     # Policies may have the names of files: a dollar sign there starts no formula, and a legend
-    # leaves out what starts with an underscore.
+    # leaves out names that start with an underscore.
     label = " " + policy[-40:].replace("$", r"\$")
     axes.errorbar(
         means["leaders"] + shift,

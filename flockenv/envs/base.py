@@ -44,9 +44,9 @@ class Resumable(OwnFlocks):
     def set_next_episodes(self, **options: object) -> None:
         """Set ``bw_s`` or ``target`` of all future episodes, until they are set again.
 
-        Values are as for `reset`: a range (low, high) of bw_s is drawn from. A ParameterError
-        refuses other names, and values that are not accepted. In a vector environment they hold for
-        all flocks.
+        Values are as for `reset`: bw_s is drawn from a range (low, high). A ParameterError refuses
+        other names, and values that are not accepted. In a vector environment they hold for all
+        flocks.
         """
         self._batch.set_upcoming(range(self._batch.num_flocks), options)
 

@@ -76,15 +76,15 @@ class LeaderBatch:
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
-        A user's own reward function gets `env`. If that returns something else than rewards that
-        are finite in this precision, the flocks have moved already.
+        A user's own reward function gets `env`. If that function returns anything but rewards
+        finite in this precision, the error comes after the flocks have moved.
         """
         if self._own_reward is None:
             return self.core.step(actions)
         starts = ~np.array(self.running())
         observations, _, truncated = self.core.step(actions)
         rewards = self._rewards(self._own_reward(env), precision)
-        # A step that only starts the next episode is worth nothing.
+        # A step that only starts the next episode earns no reward.
         rewards[starts[self._flock_of_row]] = 0.0
         self.core.add_rewards(rewards)
         return observations, rewards, truncated

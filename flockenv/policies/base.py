@@ -215,7 +215,7 @@ def _name_of(source: LeaderPolicy) -> str:
 
 def observed(observation: ArrayLike) -> NDArray[np.float32]:
     """Return an observation as an array; masked values are refused."""
-    # An environment's own array needs no look at it, which would take longer than a law's step.
+    # An environment's own array needs no check, which would take longer than a law's step.
     if type(observation) is not np.ndarray or observation.dtype != np.float32:
         if np.ma.is_masked(observation):
             raise ParameterError("observation is masked: give plain numbers")

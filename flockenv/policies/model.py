@@ -114,7 +114,7 @@ class ModelPolicy:
     ) -> tuple[object, object]:
         """Return rudders for observations, as `LeaderPolicy`.
 
-        A model of k leaders takes every k leaders in a row for a flock; `deterministic` is the
+        A model of k leaders treats every k consecutive leaders as a flock; `deterministic` is the
         model's. A ParameterError also refuses numbers of leaders that are no multiple of k.
         """
         if isinstance(observation, Mapping):

@@ -96,7 +96,7 @@ def finished(
     workers: int | None = None,
     engine: Engine = threads,
 ) -> Generator[tuple[int, Value], None, None]:
-    """Yield the place of each item and the function's value of it, as they are finished.
+    """Yield each item's index and the function's value for it, in the order in which they finish.
 
     After Ctrl-C no further item is started, and those in progress end. An error of the function
     ends the work, too.

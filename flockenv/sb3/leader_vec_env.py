@@ -304,8 +304,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
-        They hold until they are set again, within `learn` too. Values are as for `reset`: a range
-        (low, high) of bw_s is drawn from, a list of targets has one for each leader.
+        They hold until they are set again, within `learn` too. Values are as for `reset`: bw_s is
+        drawn from a range (low, high), and a list of targets has one for each leader.
 
         Raises
         ------

@@ -230,7 +230,7 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
         name = next(row for row in rows[1:last] if row[1] == "Name")
         columns = zip(name[2:], rows[last - 1][2:], rows[last][2:], strict=False)
         return [*rows[last][:2], *map(_joined, columns)], last + 1
-    # Separators at the ends of lines name nothing.
+    # A separator at the end of the line leaves an empty name.
     return [name or f"unnamed {place}" for place, name in enumerate(rows[0])], 1
 
 

@@ -57,8 +57,8 @@ impl Depenetration {
     }
 
     /// Displaces poses, of which an overlap is known to exceed `allowed` (cm, positive), until none does, and fills
-    /// `found` with the contacts nearer than `margin` afterwards. That also shows whether another pass is needed:
-    /// overlaps are found with any margin.
+    /// `found` with the contacts nearer than `margin` afterwards. Any overlap is among them, which tells whether
+    /// another pass is needed.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,

@@ -1,4 +1,4 @@
-//! What there is, and what a flock is like, as JSON.
+//! The lists of parameters, policies and quantities, and the description of a flock, as JSON.
 
 use crate::json::written;
 use crate::live::{quantities, statistics};

@@ -21,7 +21,7 @@ pub(crate) enum Leaders {
     Law(Pilot),
     /// To the visitor's heading, by the damped law.
     You(Pilot),
-    /// Each by a law of its own, from what it observes.
+    /// By a law for each leader, from its observation.
     Each(Vec<Observing>),
 }
 

@@ -166,7 +166,7 @@ pub extern "C" fn open(flock: usize) -> u32 {
     })
 }
 
-/// Changes a flock to a request. `continued` says whether it does so from where it was, or starts again.
+/// Changes a flock as a request asks. `continued` says whether the flock continues from its state or starts again.
 #[unsafe(no_mangle)]
 pub extern "C" fn change(flock: usize) -> u32 {
     with(|page| {

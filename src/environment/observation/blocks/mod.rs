@@ -63,8 +63,8 @@ trait WriteBlock: MadeFor {
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
 }
 
-/// Declares blocks in the order of an observation: name, entries, writer, how often each occurs by default and whether
-/// it may occur more than once, as that of a neighbor does.
+/// Declares blocks in the order of an observation: name, entries, writer, default number of occurrences, and whether it
+/// may occur more than once, as a neighbor's block may.
 macro_rules! declare_blocks {
     ($($(#[doc = $doc:literal])+ $block:ident = $name:literal:
         $module:ident::{$entries:ident, $writer:ident}, $default:literal $counted:ident;)+) => {
@@ -96,7 +96,7 @@ macro_rules! declare_blocks {
             }
         }
 
-        /// The writers of the blocks that are on, with how often each occurs.
+        /// The writers of the present blocks, each with its number of occurrences.
         #[derive(Debug, Clone)]
         pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
 
