@@ -36,6 +36,11 @@ def drawing(name: str, plots: Mapping[str, Plot]) -> Callable[[Options], None]:
     return script
 
 
+def interval(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
+    """Return a mean and the ends of its interval, from the columns of a row."""
+    return float(row[mean]), float(row[low]), float(row[high])
+
+
 def across(
     axes: Axes,
     rows: Iterable[Row],

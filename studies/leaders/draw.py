@@ -4,8 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, listed, one, rows
-from studies.plots import across, drawing
+from docs.scripts.plots import Interval, Plot, listed, one, rows
+from studies.plots import across, drawing, interval
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
@@ -51,11 +51,7 @@ def _added(case: str) -> dict[str, Interval]:
     close = {(row["case"], row["leaders"]): row for row in rows(CLOSE, policy=LEARNED)}
     other = {"case": case, "policy": LEARNED, "reference": TUNED}
     few = {k: one(DIFFERENCES, leaders=k, **other) for k in "1234"}
-    return {k: _ends(close.get((case, k), few[k])) for k in "1234"}
-
-
-def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
-    return float(row[mean]), float(row[low]), float(row[high])
+    return {k: interval(close.get((case, k), few[k])) for k in "1234"}
 
 
 PLOTS = {

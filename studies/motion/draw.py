@@ -4,8 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, rows
-from studies.plots import drawing, grouped
+from docs.scripts.plots import Plot, rows
+from studies.plots import drawing, grouped, interval
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
@@ -26,7 +26,7 @@ def motion(figure: Figure) -> None:
     for axes, pool in zip(panels, POOLS, strict=True):
         found = {
             row["policy"]: {
-                words: _ends(row, name, f"{name}_low", f"{name}_high")
+                words: interval(row, name, f"{name}_low", f"{name}_high")
                 for words, name in SHOWN.items()
             }
             for row in rows(MOTION, pool=pool)[::-1]
@@ -35,10 +35,6 @@ def motion(figure: Figure) -> None:
         axes.set(title=pool, xlabel="share of the time, or cosine", xlim=(0, 1))
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
-
-
-def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
-    return float(row[mean]), float(row[low]), float(row[high])
 
 
 PLOTS = {

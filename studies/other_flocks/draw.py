@@ -5,8 +5,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, listed, rows
-from studies.plots import drawing
+from docs.scripts.plots import Plot, Row, listed, rows
+from studies.plots import drawing, interval
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
@@ -16,7 +16,7 @@ BEYOND = RESULTS / "beyond.csv"
 def beyond(figure: Figure) -> None:
     """Draw what learned leaders add to the tuned law in other flocks than those of the training."""
     axes = figure.subplots()
-    found = {_in_words(row): _ends(row, "gain", "gain_low", "gain_high") for row in rows(BEYOND)}
+    found = {_in_words(row): interval(row, "gain", "gain_low", "gain_high") for row in rows(BEYOND)}
     listed(axes, found, dict.fromkeys(found, "0.15"), 0.0)
     axes.set(xlabel="learned minus tuned law", xticks=(-0.05, 0.0, 0.05, 0.1))
 
@@ -31,10 +31,6 @@ def _in_words(row: Row) -> str:
         "scheme": f"scheme of the {value}",
     }
     return words.get(what, " ".join({what: 0, value: 0}))
-
-
-def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
-    return float(row[mean]), float(row[low]), float(row[high])
 
 
 PLOTS = {

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, rows
+from docs.scripts.plots import Interval, Plot, rows
 from flockenv.comparison.figure import policy_colors
-from studies.plots import drawing, grouped
+from studies.plots import drawing, grouped, interval
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
@@ -34,7 +34,9 @@ def scores(figure: Figure) -> None:
     """Draw the scores of the learned leaders and of laws in each task."""
     found: dict[str, dict[str, Interval]] = {}
     for row in rows(SCORES):
-        found.setdefault(row["policy"], {})[row["task"]] = _ends(row)
+        found.setdefault(row["policy"], {})[row["task"]] = interval(
+            row, "score", "score_low", "score_high"
+        )
     left, right = figure.subplots(1, 2, width_ratios=(3, 1))
     improved = {name: {"": own.pop(IMPROVED)} for name, own in found.items()}
     grouped(left, found, reference=0.0)
@@ -70,10 +72,6 @@ def grid(figure: Figure) -> None:
     panels[1].set(xlabel=IMPROVED)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
-
-
-def _ends(row: Row) -> Interval:
-    return float(row["score"]), float(row["score_low"]), float(row["score_high"])
 
 
 PLOTS = {

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import Interval, Plot, Row, listed, rows
-from studies.plots import drawing
+from docs.scripts.plots import Plot, listed, rows
+from studies.plots import drawing, interval
 from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
@@ -18,17 +18,13 @@ def tuned_laws(figure: Figure) -> None:
     ends = ("beyond", "beyond_low", "beyond_high")
     found = {pool: {row["leaders"]: row for row in rows(GAINS, pool=pool)} for pool in POOLS}
     shown = {
-        pool: {k: _ends(row, *ends) for k, row in each.items()} for pool, each in found.items()
+        pool: {k: interval(row, *ends) for k, row in each.items()} for pool, each in found.items()
     }
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     for axes, (pool, gains) in zip(panels, shown.items(), strict=True):
         listed(axes, gains, dict.fromkeys(gains, "0.15"), 0.0)
         axes.set(title=pool, xlabel="searched gains minus tuned law")
     panels[0].set_ylabel("leaders")
-
-
-def _ends(row: Row, mean: str = "mean", low: str = "low", high: str = "high") -> Interval:
-    return float(row[mean]), float(row[low]), float(row[high])
 
 
 PLOTS = {
