@@ -35,11 +35,11 @@ runs.to_csv(out / "runs.csv", index=False)
 means = summarize(runs, ["policy", "leaders"], ["signed_order"])  # with 95 % intervals
 print(means.round(3).to_string(index=False))
 
-for place, name in enumerate(policies):
+for index, name in enumerate(policies):
     curve = means[means["policy"].isin([NO_LEADERS, name])]  # one flock without leaders for all
     order = curve["signed_order"]
     ends = [order - curve["signed_order_low"], curve["signed_order_high"] - order]
-    plt.errorbar(curve["leaders"] + 0.05 * place, order, ends, marker="o", capsize=3, label=name)
+    plt.errorbar(curve["leaders"] + 0.05 * index, order, ends, marker="o", capsize=3, label=name)
 plt.xticks(means["leaders"].unique())
 plt.xlabel("leaders among 27 boats")
 plt.ylabel(f"signed order, 95 % intervals of {flocks} flocks")

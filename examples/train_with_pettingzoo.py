@@ -85,7 +85,7 @@ for episode in range(settings.episodes):
             actions.append(drawn.sample())
             chances.append(drawn.log_prob(actions[-1]))
             rudders = actions[-1].clamp(-1.0, 1.0).numpy()
-            given = {agent: rudders[[place]] for place, agent in enumerate(agents)}
+            given = {agent: rudders[[index]] for index, agent in enumerate(agents)}
             observations, gained, _, _, infos = env.step(given)
             rewards.append(stacked(gained))
         seen.append(stacked(observations))

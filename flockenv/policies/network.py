@@ -240,19 +240,19 @@ class NetworkPolicy(RowPolicy):
         If it cannot be written, which is an OSError, what was there before is still there.
         """
         header, arrays = self._contents()
-        whole = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
-        text = json.dumps({**whole, "made": self.provenance}, sort_keys=True)
+        stored = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}
+        text = json.dumps({**stored, "made": self.provenance}, sort_keys=True)
         write_arrays(path, {"header": np.array(text), **arrays})
 
     @property
     def digest(self) -> str:
         """The first digits of the SHA-256 of layout and numbers alone."""
         header, arrays = self._contents()
-        whole = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
+        digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
         for name in sorted(arrays):
             array = np.ascontiguousarray(arrays[name])
-            whole.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
-        return f"sha256:{whole.hexdigest()[:12]}"
+            digest.update(f"{name} {array.shape} {array.dtype.str}".encode() + array.tobytes())
+        return f"sha256:{digest.hexdigest()[:12]}"
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:

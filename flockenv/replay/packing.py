@@ -38,15 +38,15 @@ class Packer:
         """
         largest = float(np.abs(values).max(initial=0.0))
         quantum = max(quantum, largest / _LARGEST)
-        whole = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
         for _ in range(_DIFFERENCES):
-            whole = np.diff(whole, axis=0, prepend=np.zeros_like(whole[:1]))
-        self._append(name, whole, quantum, _DIFFERENCES)
+            steps = np.diff(steps, axis=0, prepend=np.zeros_like(steps[:1]))
+        self._append(name, steps, quantum, _DIFFERENCES)
 
     def add_plain(self, name: str, values: NDArray[Any], quantum: float = 1.0) -> None:
         """Add numbers that have nothing to do with the ones before, within 2^28 quanta."""
-        whole = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
-        self._append(name, whole, quantum, 0)
+        steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        self._append(name, steps, quantum, 0)
 
     def text(self) -> str:
         """Return all of it as base64."""
@@ -57,10 +57,10 @@ class Packer:
         return base64.b64encode(packed.compress(content) + packed.flush()).decode("ascii")
 
     def _append(
-        self, name: str, whole: NDArray[np.int64], quantum: float, differences: int
+        self, name: str, steps: NDArray[np.int64], quantum: float, differences: int
     ) -> None:
-        channels = math.prod(whole.shape[1:])
-        by_channel = np.ascontiguousarray(whole.reshape(len(whole), channels).T).reshape(-1)
+        channels = math.prod(steps.shape[1:])
+        by_channel = np.ascontiguousarray(steps.reshape(len(steps), channels).T).reshape(-1)
         # Small numbers of either sign become small nonnegative numbers.
         folded = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
         planes = np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
@@ -69,7 +69,7 @@ class Packer:
         self._columns.append(
             {
                 "name": name,
-                "length": len(whole),
+                "length": len(steps),
                 "channels": channels,
                 "quantum": quantum,
                 "differences": differences,

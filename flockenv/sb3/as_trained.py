@@ -103,10 +103,10 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
         _check_options(model, layer.policy_options(), options)
     if not known:
         own_policy.check_action_mode(leaders.action_mode, "in this evaluation")
-        said = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
-        said = {name: value for name, value in said.items() if value is not None}
+        stated = {name: getattr(model, name, None) for name in POLICY_OPTIONS}
+        stated = {name: value for name, value in stated.items() if value is not None}
         # A policy does not depend on options that it does not name.
-        _check_options(model, said, {name: options[name] for name in said})
+        _check_options(model, stated, {name: options[name] for name in stated})
     spaces = {"observation": (space, flocks.observation_space)}
     spaces["action"] = (getattr(model, "action_space", None), flocks.action_space)
     for kind, (own, other) in spaces.items():
@@ -121,9 +121,9 @@ def _says_meaning(space: object) -> TypeGuard[ObservationSpace]:
     return isinstance(space, ObservationSpace)
 
 
-def _check_options(model: object, said: dict[str, Any], options: dict[str, Any]) -> None:
+def _check_options(model: object, stated: dict[str, Any], options: dict[str, Any]) -> None:
     """Refuse flocks with other options than those that a model is made for."""
-    if differing := differing_options(said, options):
+    if differing := differing_options(stated, options):
         raise ParameterError(
             f"{short_repr(model)} is not accepted in these flocks: "
             + ", ".join(

@@ -127,12 +127,12 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
     if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
         return frames
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
-    within, number, start, there = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
-    for place, (name, time) in enumerate(zip(names, times, strict=True)):
+    within, number, start, last_seen = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
+    for index, (name, time) in enumerate(zip(names, times, strict=True)):
         # Repeated rows are in one frame, and rows without a name belong to no boat.
-        if there.get(name, time) < time or time - start > within:
-            number, start, there = number + 1, time, {}
+        if last_seen.get(name, time) < time or time - start > within:
+            number, start, last_seen = number + 1, time, {}
         if isinstance(name, str):
-            there[name] = time
-        frames[place] = number
+            last_seen[name] = time
+        frames[index] = number
     return frames

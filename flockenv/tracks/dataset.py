@@ -35,13 +35,13 @@ def table_of(dataset: Any, layout: TrackLayout) -> tuple[Table, TrackLayout]:
         "time": np.repeat(dataset["time"].values, animals),
         "individuals": np.tile(names, frames),
     }
-    for place, point in enumerate(points):
+    for index, point in enumerate(points):
         stem = f"{point}_" if point else ""
         for axis in ("x", "y"):
             at = [*position["space"].values].index(axis)
-            columns[f"{stem}{axis}"] = position.values[:, at, :, place].ravel()
+            columns[f"{stem}{axis}"] = position.values[:, at, :, index].ravel()
         if confidence is not None:
-            columns[f"{stem}confidence"] = confidence.values[:, :, place].ravel()
+            columns[f"{stem}confidence"] = confidence.values[:, :, index].ravel()
     rows = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
     return Table(rows), _said(dataset, layout, points)
 
@@ -53,20 +53,24 @@ def _variables(dataset: Any) -> tuple[Any, Any]:
             f"the dataset has no variable 'position'; there are {listed([*dataset.data_vars])}"
         )
     found = [dataset["position"], dataset.get("confidence")]
-    for place, each in enumerate(found):
-        if each is None:
+    for index, variable in enumerate(found):
+        if variable is None:
             continue
         # Later versions of movement call them by one: individual, keypoint.
-        each = each.rename({f"{n}": f"{n}s" for n in ("individual", "keypoint") if n in each.dims})
-        own = ("time", "space") if place == 0 else ("time",)
+        variable = variable.rename(
+            {f"{n}": f"{n}s" for n in ("individual", "keypoint") if n in variable.dims}
+        )
+        own = ("time", "space") if index == 0 else ("time",)
         for name in ("individuals", "keypoints"):
-            each = each if name in each.dims else each.expand_dims(name)
-        if {*each.dims} != {*own, "individuals", "keypoints"} or not {*own} <= {*each.coords}:
+            variable = variable if name in variable.dims else variable.expand_dims(name)
+        if {*variable.dims} != {*own, "individuals", "keypoints"} or not {*own} <= {
+            *variable.coords
+        }:
             raise ParameterError(
-                f"{each.name} has the dimensions {', '.join(map(str, each.dims))}, and "
+                f"{variable.name} has the dimensions {', '.join(map(str, variable.dims))}, and "
                 f"{', '.join(own)}, individuals and keypoints are accepted"
             )
-        found[place] = each.transpose(*own, "individuals", "keypoints")
+        found[index] = variable.transpose(*own, "individuals", "keypoints")
     missing = {"x", "y"} - {*map(str, found[0]["space"].values)}
     if missing:
         raise ParameterError(f"position has no {' and no '.join(sorted(missing))} in space")

@@ -81,7 +81,11 @@ _LONGEST = 200
 """Letters of a name of a column; to compare longer ones takes long, and they tell nothing."""
 
 _ANGLES = ("heading", "theta", "angle", "orientation", "alpha", "yaw")
-_PLACES = {"{id}": r"(?P<id>.+?)", "{part}": r"(?P<part>[^.]+)", "{n}": r"[ _#.]?(?P<id>\d+)"}
+_PLACEHOLDERS = {
+    "{id}": r"(?P<id>.+?)",
+    "{part}": r"(?P<part>[^.]+)",
+    "{n}": r"[ _#.]?(?P<id>\d+)",
+}
 _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$")
 
 
@@ -96,8 +100,8 @@ def plain(name: str) -> tuple[str, str]:
 
 def _matches(pattern: str, names: Iterable[str]) -> Iterator[re.Match[str]]:
     text = re.escape(pattern).replace(r"\*", ".*")
-    for place, expression in _PLACES.items():
-        text = text.replace(re.escape(place), expression)
+    for placeholder, expression in _PLACEHOLDERS.items():
+        text = text.replace(re.escape(placeholder), expression)
     compiled = re.compile(text, re.IGNORECASE)
     return (found for name in names if (found := compiled.fullmatch(name)))
 
@@ -111,22 +115,26 @@ def _as_written(found: re.Match[str]) -> str:
 
 def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
     """Return the column of y for one of x, or None; `boat` takes the place of {id}."""
-    one = (
+    by_letter = (
         f"{name[:at]}{chr(ord(x) + 1)}{name[at + 1 :]}" for at, x in enumerate(name) if x in "xX"
     )
-    every = name.replace("x", "y").replace("X", "Y")
-    changed = (each for each in [*[*one][::-1], every] if each.replace("{id}", boat) in names)
-    return next(changed, None) if every != name else None
+    throughout = name.replace("x", "y").replace("X", "Y")
+    changed = (
+        candidate
+        for candidate in [*[*by_letter][::-1], throughout]
+        if candidate.replace("{id}", boat) in names
+    )
+    return next(changed, None) if throughout != name else None
 
 
 def quaternion(names: Iterable[str]) -> list[str] | None:
     """Return the columns x, y, z and w of the first quaternion among names, None if none is."""
-    there = {name.casefold(): name for name in names if len(name) <= _LONGEST}
-    for key in there:
-        for place in (at for at, letter in enumerate(key) if letter == "w"):
-            four = [f"{key[:place]}{axis}{key[place + 1 :]}" for axis in "xyzw"]
-            if all(each in there for each in four):
-                return [there[each] for each in four]
+    by_key = {name.casefold(): name for name in names if len(name) <= _LONGEST}
+    for key in by_key:
+        for index in (at for at, letter in enumerate(key) if letter == "w"):
+            four = [f"{key[:index]}{axis}{key[index + 1 :]}" for axis in "xyzw"]
+            if all(axis_name in by_key for axis_name in four):
+                return [by_key[axis_name] for axis_name in four]
     return None
 
 
@@ -153,35 +161,43 @@ def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
     return form
 
 
-def _fields_of(one: Format, names: list[str], there: Set[str]) -> dict[str, Any] | None:
+def _fields_of(program: Format, names: list[str], present: Set[str]) -> dict[str, Any] | None:
     """Return the fields of a layout for a program's table, None if it is another's."""
-    columns = dict(one.columns)
-    y, pattern = columns.pop("y", None), columns.pop("x")
-    found = {name: next(_matches(each, names), None) for name, each in columns.items()}
-    pairs = [each for each in _matches(pattern, names) if y or _as_y(each[0], there)]
+    columns = dict(program.columns)
+    y, x_pattern = columns.pop("y", None), columns.pop("x")
+    found = {field: next(_matches(pattern, names), None) for field, pattern in columns.items()}
+    pairs = [match for match in _matches(x_pattern, names) if y or _as_y(match[0], present)]
     if not pairs or None in found.values():
         return None
     first = pairs[0]
     boat, x = first.groupdict().get("id", ""), _as_written(first)
-    form: dict[str, Any] = {name: each[0] for name, each in found.items() if each}
-    form |= {"x": x, "y": y or _as_y(x, there, boat)} | dict(one.fields)
+    form: dict[str, Any] = {field: match[0] for field, match in found.items() if match}
+    form |= {"x": x, "y": y or _as_y(x, present, boat)} | dict(program.fields)
     form |= {"id": ""} if "{id}" in x else {}
     if "part" in first.groupdict():
-        same = [each for each in pairs if each.groupdict().get("id", "") == boat]
-        form.pop("confidence", None)
-        found_points = key_points({each["part"]: _as_written(each)[:-1] for each in same})
-        if not found_points:
-            return {name: form[name] for name in form if name not in ("x", "y")}
-        form |= found_points
-        used = [form["x"]] if isinstance(form["x"], str) else form["x"]
-        stems = {each[:-1] for each in (*used, *form.get("heading", [])[::2])}
-        for word in ("likelihood", "score", "confidence"):
-            sure = sorted(f"{stem}{word}" for stem in stems)
-            if {each.replace("{id}", boat) for each in sure} <= there:
-                form["confidence"] = sure
-    elif "{id}" in x:
-        angles = (each for word in _ANGLES for each in _matches(f"*{word}{{n}}*", names))
-        form.update(("heading", _as_written(each)) for each in islice(angles, 1))
+        points = [match for match in pairs if match.groupdict().get("id", "") == boat]
+        return _with_key_points(form, points, boat, present)
+    if "{id}" in x:
+        angles = (match for word in _ANGLES for match in _matches(f"*{word}{{n}}*", names))
+        form.update(("heading", _as_written(match)) for match in islice(angles, 1))
+    return form
+
+
+def _with_key_points(
+    form: dict[str, Any], points: list[re.Match[str]], boat: str, present: Set[str]
+) -> dict[str, Any]:
+    """Return fields with the center, heading and confidence of a boat's key points."""
+    form.pop("confidence", None)
+    found = key_points({match["part"]: _as_written(match)[:-1] for match in points})
+    if not found:
+        return {field: form[field] for field in form if field not in ("x", "y")}
+    form |= found
+    used = [form["x"]] if isinstance(form["x"], str) else form["x"]
+    stems = {column[:-1] for column in (*used, *form.get("heading", [])[::2])}
+    for word in ("likelihood", "score", "confidence"):
+        sure = sorted(f"{stem}{word}" for stem in stems)
+        if {column.replace("{id}", boat) for column in sure} <= present:
+            form["confidence"] = sure
     return form
 
 
@@ -193,18 +209,18 @@ def recognized(names: list[str]) -> dict[str, Any]:
         by_plain.setdefault(plain(name)[0], name)
     form: dict[str, Any] = {}
     for name, words in WORDS.items():
-        found = (each[0] for word in words for each in _matches(word, by_plain))
-        form.update((name, by_plain[each]) for each in islice(found, 1))
-    there = set(names)
-    y = _as_y(form["x"], there) if "x" in form else None
-    has_place = y is not None
-    form = form | {"y": y} if has_place else {n: form[n] for n in form if n != "x"}
-    for one in FORMATS:
-        known = _fields_of(one, names, there)
+        found = (match[0] for word in words for match in _matches(word, by_plain))
+        form.update((name, by_plain[called]) for called in islice(found, 1))
+    present = set(names)
+    y = _as_y(form["x"], present) if "x" in form else None
+    has_position = y is not None
+    form = form | {"y": y} if has_position else {n: form[n] for n in form if n != "x"}
+    for program in FORMATS:
+        known = _fields_of(program, names, present)
         # Any pair of columns may be a key point's.
         if known and "id" in form and _are_corners(known, names):
             continue
-        if known and not (has_place and "{" in one.columns["x"] and _is_loose(known)):
+        if known and not (has_position and "{" in program.columns["x"] and _is_loose(known)):
             form |= known
             break
     if "heading" not in form and "quaternion" not in form and (four := quaternion(names)):
@@ -219,7 +235,7 @@ def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:
     x = known.get("x", "")
     if "{id}" not in x:
         return False
-    return {each["id"] for each in _matches(x.replace("{id}", "{n}"), names)} == {"1", "2"}
+    return {match["id"] for match in _matches(x.replace("{id}", "{n}"), names)} == {"1", "2"}
 
 
 def _is_loose(known: Mapping[str, Any]) -> bool:

@@ -60,10 +60,10 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _layout(form: Form) -> TrackLayout:
-    def value(name: str, each: Any) -> Any:
-        return tuple(each) if isinstance(each, list) else None if each == "" else each
+    def value(given: Any) -> Any:
+        return tuple(given) if isinstance(given, list) else None if given == "" else given
 
-    return TrackLayout(pool="wide", **{name: value(name, each) for name, each in form.items()})
+    return TrackLayout(pool="wide", **{name: value(given) for name, given in form.items()})
 
 
 def _toml(value: Any) -> str:
@@ -152,7 +152,7 @@ def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -
     words = "check: outer and inner radius in cm, here about all positions"
     doubts["pool"] = ([round(radius, 1), 0.0], words)
     words = "check: the pool's, in units of the file, here of all positions"
-    doubts["center"] = ([round(float(each), 2) for each in center], words)
+    doubts["center"] = ([round(float(coordinate), 2) for coordinate in center], words)
     if unit in CM:
         form["cm_per_unit"] = CM[unit]
     else:

@@ -55,7 +55,7 @@ _KINDS: dict[Any, Rule] = {
         "the columns x, y, z and w of a quaternion",
     ),
     tuple[str, ...]: (
-        lambda value: _are(lambda each: isinstance(each, str), value),
+        lambda value: _are(lambda name: isinstance(name, str), value),
         "a list of names",
     ),
     tuple[tuple[float, float], ...]: (

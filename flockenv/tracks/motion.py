@@ -27,14 +27,14 @@ _MOST_BROKEN = 0.5
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocities of boats, and what they are differences of.
+    """Velocities of boats, and the times and presence of the poses that they come from.
 
     Attributes
     ----------
     stamps : float64 array, shape (t, n)
         Times of poses in s.
-    there : bool array, shape (t, n)
-        Whether there is a pose.
+    present : bool array, shape (t, n)
+        Whether a boat has a pose.
     velocity : float64 array, shape (t, n, 3)
         [cm/s, cm/s, rad/s], NaN where there is no neighbor in time.
     broken : int
@@ -113,13 +113,13 @@ class Motion:
     def _check_unit(self, pose: Floats, layout: TrackLayout) -> None:
         """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
         turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
-        whole = TURN[layout.heading_unit]
+        own_turn = TURN[layout.heading_unit]
         for unit, turn in TURN.items():
             # A full turn of the smaller unit, and headings over more than half of one.
-            least = TURN["rad"] * turn / whole
-            if turn >= whole or np.nanmax(np.abs(turned)) > 1.003 * least:
+            least = TURN["rad"] * turn / own_turn
+            if turn >= own_turn or np.nanmax(np.abs(turned)) > 1.003 * least:
                 continue
-            other = _with(pose, pose[..., 2] + turned * (whole / turn - 1.0))
+            other = _with(pose, pose[..., 2] + turned * (own_turn / turn - 1.0))
             if np.ptp(turned[self.present]) > 0.5 * least and self.cosine(other) > self.cosine(
                 pose
             ):
@@ -159,11 +159,11 @@ def bows_of(axis: Floats, motion: Motion) -> Floats:
 
 def unwrapped(heading: Floats) -> Floats:
     """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
-    whole = heading.copy()
-    for boat in whole.T:
+    continuous = heading.copy()
+    for boat in continuous.T:
         present = ~np.isnan(boat)
         boat[present] = np.unwrap(boat[present])
-    return whole
+    return continuous
 
 
 def in_water(pool: Any, indices: Floats, margin_cm: float) -> NDArray[np.bool_]:

@@ -174,7 +174,7 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
 
 
 def _check_no_part(table: Table, layout: TrackLayout) -> None:
-    """Refuse a part of a quaternion, a sine or a cosine in place of a heading.
+    """Refuse a part of a quaternion, a sine or a cosine in index of a heading.
 
     Names of columns do not matter: the squares of neighboring parts add up to 1.
     """
@@ -183,16 +183,16 @@ def _check_no_part(table: Table, layout: TrackLayout) -> None:
         return
     boat = _names_beside(table, layout)[0] if layout.is_wide else ""
     names: list[Any] = [*table.rows]
-    place = names.index(table.name_of(columns[0].replace("{id}", boat)))
-    beside = {name: _part(table, name, layout) for name in names[max(0, place - 3) : place + 4]}
+    index = names.index(table.name_of(columns[0].replace("{id}", boat)))
+    beside = {name: _part(table, name, layout) for name in names[max(0, index - 3) : index + 4]}
     parts = {name: part for name, part in beside.items() if part is not None}
-    own = parts.pop(names[place], None)
+    own = parts.pop(names[index], None)
     if own is None or not np.std(own) > 0.0:
         return
     for others in (*combinations(parts, 3), *combinations(parts, 1)):
         total = own + np.sum([parts[name] for name in others], axis=0)
         if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(own):
-            together = [*map(str, (names[place], *others))]
+            together = [*map(str, (names[index], *others))]
             four = quaternion(together)
             raise ParameterError(
                 f"heading = {columns[0]!r} is a part of a quaternion: quaternion = {four} instead"
@@ -223,11 +223,11 @@ def _check_turn(heading: Floats, strange: Any, layout: TrackLayout) -> None:
     share = strange.sum() / max(1, np.isfinite(heading).sum())
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
         return
-    largest, said = np.abs(heading[strange]).max(), layout.heading_unit
-    units = (u for u in TURN if TURN[u] > TURN[said] and largest <= FULL_TURN[u])
+    largest, unit_given = np.abs(heading[strange]).max(), layout.heading_unit
+    units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= FULL_TURN[u])
     unit = next((f"heading_unit = {u!r} if they are in {UNIT[u]}, " for u in units), "")
     raise ParameterError(
-        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {UNIT[said]}: "
+        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {UNIT[unit_given]}: "
         f"{unit}wrapped = false if they count whole turns"
     )
 

@@ -167,7 +167,7 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
     rows = cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
     _check_width(names, rows[height:], layout.skip + height + 1)
-    names += [f"unnamed {place}" for place in range(len(names), max(map(len, rows)))]
+    names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
     unique, twice = _unique(names)
     texts = {name for name in unique if layout.id and _key(name) == _key(layout.id)}
     none = [*NONE, *(word.upper() for word in NONE), "NaN", "None", *layout.missing]
@@ -210,8 +210,8 @@ def _check_width(names: list[str], rows: list[list[str]], first: int) -> None:
 def _unique(names: list[Any]) -> tuple[list[Any], set[Any]]:
     """Return names made unique, and those that were repeated."""
     seen, twice, unique = set[Any](), set[Any](), []
-    for place, name in enumerate(names):
-        unique.append(f"{name} {place}" if name in seen else name)
+    for index, name in enumerate(names):
+        unique.append(f"{name} {index}" if name in seen else name)
         twice |= {name} & seen
         seen.add(name)
     return unique, twice
@@ -231,7 +231,7 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
         columns = zip(name[2:], rows[last - 1][2:], rows[last][2:], strict=False)
         return [*rows[last][:2], *map(_joined, columns)], last + 1
     # A separator at the end of the line leaves an empty name.
-    return [name or f"unnamed {place}" for place, name in enumerate(rows[0])], 1
+    return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
 
 
 def _joined(levels: Any) -> str:
