@@ -79,6 +79,8 @@ _MADE = {
 def _prints_help_alone() -> bool:
     """Return whether this process is the command line that prints its help or version and ends."""
     program, *words = getattr(sys, "argv", None) or [""]
+    if program == "-m":  # `python -m`: its package is imported before the module has a path.
+        program = sys.orig_argv[-len(words) - 1]
     name = os.path.basename(program).removesuffix(".exe")
     return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
 

@@ -62,6 +62,13 @@ def test_libraries_are_imported_where_they_are_used(code, absent):
     assert not found & {*OPTIONAL, *absent}
 
 
+def test_the_module_prints_its_help_without_gymnasium():
+    command = [sys.executable, "-X", "importtime", "-m", "flockenv", "--help"]
+    imported = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    assert "flockenv.cli" in imported
+    assert "gymnasium" not in imported
+
+
 def test_the_names_of_the_package_are_those_of_its_modules():
     assert {*flockenv.__all__} <= {*dir(flockenv)}
     for name in flockenv.__all__:
