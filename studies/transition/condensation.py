@@ -139,6 +139,12 @@ STUDY = Study(
 )
 
 
+def whole_blocks(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs of blocks that are complete."""
+    runs = table.groupby(["n_boats", "seed"])["c4"].transform("size")
+    return table[runs == runs.max()]
+
+
 def outside(table: pd.DataFrame, hour: int = HOURS) -> pd.Series:
     """Return the coverage outside of jams in an hour; NaN for flocks without jams."""
     in_jams = table[f"in_jams_{hour}"]
@@ -234,11 +240,7 @@ def cells(table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(options: Options, found: pd.DataFrame) -> None:
     """Draw coverage outside of jams and |m| against coverage, a column for noise and size."""
-    columns = [
-        (c4, n, own) for (c4, n), own in found.groupby(["c4", "n_boats"]) if own["runs"].min() >= 2
-    ]
-    if not columns:
-        return
+    columns = [(c4, n, own) for (c4, n), own in found.groupby(["c4", "n_boats"])]
     with picture(options, "condensation", height_cm=9.5) as figure:
         panels = figure.subplots(2, len(columns), sharex=True, sharey="row", squeeze=False)
         for (upper, lower), (c4, n, own) in zip(panels.T, columns, strict=True):
@@ -260,7 +262,7 @@ def draw(options: Options, found: pd.DataFrame) -> None:
 
 def script(options: Options) -> None:
     """Make the runs, judge and draw them."""
-    if len(table := STUDY.results(options, optional=True)):
+    if len(table := whole_blocks(STUDY.results(options, optional=True))):
         write_claims(options, "condensation", judge(table))
         found = cells(table)
         text = found.to_csv(index=False, float_format="%.3g", lineterminator="\n")

@@ -88,3 +88,8 @@ def test_the_time_of_a_change_is_that_of_ten_minutes(script: ModuleType) -> None
     assert (row["in_jams_1"], row["in_jams_2"]) == pytest.approx((0.1, 0.0))
     assert row["changed_min"] == pytest.approx(55.0, abs=0.5)
     assert script.hours(samples[::-1], rotates=True)["changed_min"] == pytest.approx(115.0, abs=0.5)
+
+
+def test_a_block_that_is_not_whole_is_not_judged(script: ModuleType) -> None:
+    table = pd.DataFrame({"c4": 0.1, "n_boats": 100, "seed": [0, 0, 0, 1, 1]})
+    assert script.whole_blocks(table)["seed"].tolist() == [0, 0, 0]
