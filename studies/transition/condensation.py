@@ -254,7 +254,7 @@ def draw(options: Options, found: pd.DataFrame) -> None:
                     curve(axes, x, points[names].itertuples(index=False), label=start, **style)
             upper.set_ylim(0.0, 0.65)
             lower.set(ylim=(-0.03, 1.05), xlabel="coverage")
-        panels[0, 0].set_ylabel("coverage outside of jams")
+        panels[0, 0].set_ylabel("coverage\noutside of jams")
         panels[1, 0].set_ylabel("|m|")
         handles, labels = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3, title="started")
