@@ -205,10 +205,18 @@ def test_contacts_are_there_at_once(open_live):
     lengths = live.script(f"""
         const {{hull_radius_cm: radius, hull_half_length_cm: half}} = {run}.lengths;
         const forces = {run}.contacts({run}.length - 1).map(({{force}}) => force);
-        return forces.map((force) => Math.min(force / 20, 1 + half / radius))""")
-    assert sum(length > 0.3 for length in lengths) > 10
+        return forces.map((force) => Math.min(force / 40, 0.45 * (1 + half / radius)))""")
+    assert sum(length > 0.15 for length in lengths) > 10
     live.click("#play")
     live.until("return page.time > 89.5")
+
+
+def test_the_clock_of_a_still_picture_shows_its_time_and_no_speed(open_live):
+    live = open_live().go("", plays=True)
+    live.until("return document.getElementById('clock').textContent.includes('real time')")
+    live.script("document.querySelector(\"a[data-lesson='forces']\").click()")
+    live.until("return page.other.lesson === 'forces' && !page.changing")
+    assert live.text("#clock") == "89.0 s"
 
 
 def test_plots_without_data_are_not_there_and_the_expected_order_is(open_live):

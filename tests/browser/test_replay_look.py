@@ -48,14 +48,15 @@ def test_a_switch_of_colors_has_a_key_and_a_legend(page):
 
 
 def test_a_forces_drawn_area_reports_its_size(page, law):
-    """A bar is at most a boat long, and wider for what is more."""
+    """A bar is less than half a boat long, and wider for what is more."""
     page.choose("#trails", "0")
     page.click("#forces")
     page.wait_until_drawn()
     hull_px = 2 * law.parameters.boat_radius_cm * page.script("return player.panels[0].scene.scale")
     scale = page.script("return player.forceScale")
     assert page.text(".force-key", 0) == f"force {scale:g} cm/s²"
-    assert page.find(".force-bar", 0).size["width"] == pytest.approx(hull_px, abs=1.0)
+    key = page.find(".force-bar", 0).size
+    assert (key["width"], key["height"]) == pytest.approx((0.5 * hull_px, 0.2 * hull_px), abs=1.0)
     sample = np.repeat(np.arange(len(law)), law.contacts.count)
     points = law.contacts.point_cm
     # Bars of other contacts must not lie across.
@@ -63,7 +64,7 @@ def test_a_forces_drawn_area_reports_its_size(page, law):
         np.hypot(*(points[sample == k] - p).T) < 40.0 for k, p in zip(sample, points, strict=True)
     ]
     alone = np.flatnonzero([each.sum() == 1 for each in near])
-    longest = 1.0 + law.parameters.boat_shape
+    longest = 0.45 * (1.0 + law.parameters.boat_shape)
     shown = []
     for force in np.linspace(0.5, 3.0, 6) * scale:
         c = alone[np.abs(law.contacts.force[alone] - force).argmin()]
@@ -78,12 +79,12 @@ def test_a_forces_drawn_area_reports_its_size(page, law):
             0.5 * np.flatnonzero([page.color(0, *at) == FORCE for at in line])[[0, -1]]
             for line in (along, across)
         )
-        shown.append((float(law.contacts.force[c]) / scale, end, right - left))
+        shown.append((0.5 * float(law.contacts.force[c]) / scale, end, right - left))
     assert min(shown)[0] < longest < max(shown)[0]
     for widths, length, width in shown:
         assert length == pytest.approx(hull_px * min(widths, longest), abs=2.0)
         # Both edges are blended with the mark around the bar.
-        assert 0.0 <= 0.15 * hull_px * max(widths / longest, 1.0) - width < 3.0
+        assert 0.0 <= 0.2 * hull_px * max(widths / longest, 1.0) - width < 3.0
 
 
 def test_trails_can_be_switched_off(page):

@@ -1,16 +1,18 @@
-// Contact forces as bars, whose area is in proportion to the force: at most a boat long, and wider for what is more.
+// Contact forces as bars, whose area is in proportion to the force: less than half a boat long, and wider for what is more.
 
 import { roundNumber } from "./words.mjs";
 
-/** Width of the bars that are no longer than a boat, in widths of a hull. */
-const NARROWEST = 0.15;
+/** Length of the bar of the scale's force, and width of the bars that are not longer than the longest, in widths of a hull. */
+const [LENGTH, NARROWEST] = [0.5, 0.2];
+/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam are no line. */
+const LONGEST = 0.45;
 /** Bars shorter than this part of a hull's width are left out. */
-const SHORTEST = 0.05;
+const SHORTEST = 0.025;
 /** Largest number of forces that the scale is chosen from. */
 const MOST_SAMPLES = 20_000;
 
 /**
- * The force, in cm/s², that is drawn as long as a hull is wide: a round number near what nine in ten contacts
+ * The force, in cm/s², that is drawn half as long as a hull is wide: a round number near what nine in ten contacts
  * stay below. The runs of a page share it.
  */
 export function forceScale(runs) {
@@ -27,9 +29,9 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** A force's bar, in hull widths; `longest`: a boat's length. A bar is as wide as a boat at most; 0 long for no bar. */
-export function barOf(force, scale, longest) {
-  const widths = force / scale;
+/** A force's bar on a boat of this length, in hull widths. A bar is as wide as a boat at most; 0 long for no bar. */
+export function barOf(force, scale, boat) {
+  const [widths, longest] = [(LENGTH * force) / scale, LONGEST * boat];
   const length = widths < SHORTEST ? 0 : Math.min(widths, longest);
   return { length, width: Math.min(NARROWEST * Math.max(widths / longest, 1), 1) };
 }

@@ -1,5 +1,6 @@
 // Words of a run's panel: its legend around the picture, and a card with a boat's numbers.
 
+import { barOf } from "./forces.mjs";
 import { Scene } from "./scene.mjs";
 import { element, fixed, wrapped } from "./words.mjs";
 
@@ -129,7 +130,7 @@ export class Panel {
       }
     }
     this.forceKey = element("div", "force-key");
-    this.forceKey.title = "A bar lies on the boat that is pushed. It grows with the force: at most a boat long, and wider for what is more";
+    this.forceKey.title = "A bar lies on the boat that is pushed. It grows with the force: at most half a boat long, and wider for what is more";
     this.forceBar = element("span", "force-bar");
     this.forceWords = element("span");
     this.forceKey.append(this.forceBar, this.forceWords);
@@ -191,7 +192,9 @@ export class Panel {
   #showForceKey(forceScale) {
     this.forceKey.hidden = forceScale === null || !this.run.hasForces;
     if (!this.forceKey.hidden) {
-      this.forceBar.style.width = `${2 * this.run.lengths.hull_radius_cm * this.scene.scale}px`;
+      const hull = 2 * this.run.lengths.hull_radius_cm * this.scene.scale;
+      const { length, width } = barOf(forceScale, forceScale, Infinity);
+      Object.assign(this.forceBar.style, { width: `${length * hull}px`, height: `${Math.max(width * hull, 2)}px` });
       this.forceWords.textContent = `force ${forceScale} cm/s²`;
     }
   }

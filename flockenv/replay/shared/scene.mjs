@@ -5,7 +5,7 @@ import { drawForces } from "./forces.mjs";
 const MARGIN = 0.022;
 const TRAIL_PIECES = 6;
 
-/** Colors of runs: of the laws that lead them, as in plots, and of others. */
+/** Colors of runs: those of the laws that lead them, as in plots, and others. */
 const LAWS = ["paper-law", "damped-law", "tuned-law", "learned"];
 const OTHERS = ["run-1", "run-2"];
 
@@ -43,7 +43,7 @@ export function fitted(canvas) {
   return context;
 }
 
-/** The name of the color of a pose: of the direction in which a boat heads around the middle. */
+/** The name of the color of a pose, which shows the direction in which a boat heads around the center. */
 export function tintOf([x, y, heading], circlesFrom) {
   // The sine of its angle in the local frame, clockwise from the outward direction.
   const along = Math.sin(Math.atan2(y, x) - heading);
@@ -68,7 +68,7 @@ export class Scene {
   }
 
   /**
-   * `forceScale` is the force drawn as long as a hull is wide; null draws none. `coloring`: whether color shows
+   * `forceScale` is the force drawn half as long as a hull is wide; null draws none. `coloring`: whether color shows
    * the "direction" in which boats circle, or their "role".
    */
   draw(time, { trailSeconds, forceScale, boat, coloring, palette }) {
