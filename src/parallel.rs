@@ -21,6 +21,10 @@ pub(crate) fn note_process() {
 /// thread, or to be woken. Each thread has a block of the items, from one call to the next the same ones, which are in
 /// its cache, and helps with the ends of other blocks when it is done with its own.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    // WebAssembly has neither threads nor processes, and asking for a process's number would end the program.
+    if cfg!(target_family = "wasm") {
+        return items.into_iter().map(work).collect();
+    }
     let threads = rayon::current_num_threads().min(items.len());
     let is_fork = *FIRST_PROCESS.get_or_init(id) != id() && rayon::current_thread_index().is_none();
     let pool = if is_fork { pool_of_fork() } else { None };

@@ -38,7 +38,7 @@ export class Core {
     return this.#said();
   }
 
-  /** All parameters of a request, of which no flock starts. */
+  /** All parameters of a request; no flock starts. */
   check(request) {
     return this.#ask(request, () => this.exports.check());
   }
@@ -74,9 +74,20 @@ export class Core {
     return taken;
   }
 
-  /** Notes the contacts, and what a boat observes, as they are now. */
+  /** Notes the contacts, and what a boat observes, at this moment. */
   look(flock, boat) {
     this.#done(this.exports.look(flock, boat));
+  }
+
+  /** Starts a training; returns how far it is, and its policy. */
+  train(asked) {
+    return this.#ask(asked, () => this.exports.train());
+  }
+
+  /** Takes so many branches of the training; returns as `train`. */
+  learn(branches) {
+    this.#done(this.exports.learn(branches));
+    return this.#said();
   }
 
   /** The quantity at this index of the table, of boats with an order at an angle and of a target of this sign. */

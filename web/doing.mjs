@@ -1,12 +1,12 @@
-// One sentence of what a flock does, for those who do not see it.
+// A sentence about what a flock does, for those who do not see it.
 
 import { tintOf } from "../flockenv/replay/shared/scene.mjs";
 
 /** The least shares of boats, and what they are called. */
 const SHARES = [[1, "all"], [0.9, "nearly all"], [0.6, "most"]];
-const WAYS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
+const DIRECTIONS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
 
-/** Says of a run, at a sample, how many boats head which way. */
+/** Says of a run, at a sample, how many boats head in which direction. */
 export function doing(run, sample, palette) {
   const { outer_radius_cm: outer, inner_radius_cm: inner } = run.lengths;
   const boats = `${run.boats} boat${run.boats > 1 ? "s" : ""}${run.leaders > 0 ? `, ${run.leaders} of them lead` : ""}`;
@@ -17,8 +17,8 @@ export function doing(run, sample, palette) {
   for (const pose of run.posesAt(run.time[sample])) {
     counts[tintOf(pose, Number(palette["circles-from"]))] += 1;
   }
-  const [way, most] = Object.entries(counts).sort(([, one], [, other]) => other - one)[0];
+  const [direction, most] = Object.entries(counts).sort(([, one], [, other]) => other - one)[0];
   const word = SHARES.find(([least]) => most >= least * run.boats)?.[1];
   const mixed = `${counts.clockwise} clockwise, ${counts["counter-clockwise"]} counter-clockwise`;
-  return `${boats}; ${word ? `${word} ${WAYS[way]}` : mixed}.`;
+  return `${boats}; ${word ? `${word} ${DIRECTIONS[direction]}` : mixed}.`;
 }

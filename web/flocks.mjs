@@ -1,12 +1,12 @@
-// The flocks that are shown, and those beside them: what is asked of the simulator, and what it answers.
+// The flocks that are shown, and those beside them: questions to the simulator, and its answers.
 
 import { opposedTargets } from "./controls.mjs";
 import { GrowingRun } from "./growing_run.mjs";
-import { Laws, YOU } from "./laws.mjs";
+import { Laws, TRAINED, YOU } from "./laws.mjs";
 import { differences, LATEST, requestsOf, textOf, withChange } from "./request.mjs";
 
 /** Samples per second. */
-const SAMPLING = 10;
+export const SAMPLING = 10;
 /** Seconds after the start that a map leaves out: boats start at random and at rest. */
 const SETTLING = 30;
 /** Most changes of a schedule in a link. */
@@ -16,7 +16,7 @@ export const NO_BOAT = 1e6;
 /** Fields whose change makes another flock of a map's. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
-/** What is wanted after a change of one field. `values`: those of the parameters now; `laws`: those that there are. */
+/** The flocks that are wanted after a change of one field. `values`: the parameters now; `laws`: the known laws. */
 export function changed(base, values, laws, name, value) {
   const wanted = { ...base, flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
@@ -51,7 +51,7 @@ export function changed(base, values, laws, name, value) {
   return wanted;
 }
 
-/** Flocks beside each other are called by what distinguishes them. */
+/** Names flocks that stand beside each other by what distinguishes them. */
 function distinguished(described, copies) {
   const parts = described.map(({ name }) => name.split(", "));
   const isPair = parts.length > copies;
@@ -71,6 +71,8 @@ export class Flocks {
   /** The flocks that a map of order shows together. */
   signature = "";
   isRecorded = false;
+  /** The policy that the visitor trained, as a file's text; null for none. */
+  trained = null;
 
   /** `kinds`: those of the parameters; `laws`: the simulator's table; `series`: the names of the quantities; `statistics`: what is counted of substeps; `version`: that of the package. */
   constructor(simulator, { kinds, laws, series, statistics, phases, version }) {
@@ -81,7 +83,11 @@ export class Flocks {
     return !this.isRecorded && this.shown?.flock.leaders === YOU;
   }
 
-  /** Those that are seen: of a visitor's flocks not the ones that the law leads beside them. */
+  get areTrained() {
+    return !this.isRecorded && this.shown?.flock.leaders === TRAINED;
+  }
+
+  /** The runs with a picture: all but the flocks that the law leads beside those of a visitor. */
   get seen() {
     return this.areYours ? this.runs.slice(0, this.shown.copies) : this.runs;
   }
@@ -109,11 +115,12 @@ export class Flocks {
     return this.shown.flock.leaders ?? this.laws.atEverySubstep;
   }
 
-  /** Lets the simulator open or change the flocks; returns whether they continue from their present state. */
+  /** Lets the simulator open or change the flocks; returns whether they continue from their state. */
   async become(wanted, kind) {
     // Changes made meanwhile start from this.
     this.asked = wanted;
-    const requests = requestsOf(wanted, this.kinds);
+    const requests = requestsOf(wanted, this.kinds).map((each) =>
+      (each.leaders === TRAINED && this.trained ? { ...each, trained: this.trained } : each));
     const { continues, values, taken } = await this.simulator.ask(kind, { requests }).catch((error) => {
       this.asked = this.shown;
       throw error;
@@ -166,10 +173,16 @@ export class Flocks {
     }
   }
 
+  /** Lets the leaders that the visitor trains follow a newer policy from now on. */
+  async teach(policy) {
+    this.trained = policy;
+    await this.simulator.ask("teach", { policy });
+  }
+
   /** Means of the flocks count from now on. */
-  countAnew() {
+  restartMeans() {
     this.past.start = Number(this.runs[0].end.toFixed(1));
-    this.runs.forEach((run) => { run.countAnew(); });
+    this.runs.forEach((run) => { run.restartMeans(); });
   }
 
   /** Shows a recording's run in place of them. */

@@ -2,15 +2,15 @@
 
 import { changedFlock, linkTo } from "./request.mjs";
 
-/** The link to what is seen of flocks at a time, in s. */
+/** The link to the flocks at a time, in s. */
 export function linkOf(flocks, other, time) {
   const { other: moment, isWhole: _, ...shown } = flocks.linked(Number(time.toFixed(1)));
   return linkTo({ ...shown, other: { ...moment, ...other } });
 }
 
 /**
- * Has the flocks become those of a link, with what changed on the way, and run to its moment. What the simulator
- * refuses is left out, one parameter after another, and named in `linked.ignored`. `isWanted` says whether to go on.
+ * Makes the flocks those of a link, with what changed on the way, and lets them run to its moment. Leaves out what the
+ * simulator refuses, one parameter after another, and names it in `linked.ignored`. `isWanted` says whether to go on.
  */
 export async function follow(flocks, linked, isWanted) {
   const { start = "0", now = start, flocks: copies = "1" } = linked.other;
@@ -24,7 +24,7 @@ export async function follow(flocks, linked, isWanted) {
     if (fields) {
       await changedTo(flocks, fields, linked);
     } else if (time === Number(start) && time > 0) {
-      flocks.countAnew();
+      flocks.restartMeans();
     }
   }
 }

@@ -23,7 +23,7 @@ export class Game {
     return seconds >= ROUND_SECONDS;
   }
 
-  /** Rounds of other flocks, by what links have for one, are another game. */
+  /** Starts another game if the flock, as a link has it, is another one. */
   play({ seed: _, ...flock }) {
     const kind = JSON.stringify(Object.entries(flock).sort());
     if (kind !== this.#flock) {
@@ -32,7 +32,7 @@ export class Game {
     }
   }
 
-  /** Counts a round; returns what to say of it. */
+  /** Counts a round; returns a sentence about it. */
   end(yours, law) {
     this.rounds.push([yours, law]);
     const [you, it] = [signed(yours), signed(law)];

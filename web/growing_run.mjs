@@ -9,10 +9,10 @@ export const MOST_LEADERS = 8;
 const KEPT_SAMPLES = 6000;
 /** Most numbers in the poses and velocities of a run. */
 const KEPT_NUMBERS = 4_000_000;
-/** Contacts are kept of so many samples. */
+/** Samples whose contacts are kept. */
 const CONTACT_SAMPLES = 40;
 
-/** A series of so many numbers per sample, as the columns of recordings are read. */
+/** A series with some numbers per sample, read like the columns of recordings. */
 class GrowingColumn {
   constructor(stride, capacity) {
     Object.assign(this, { stride, length: 0, values: new Float64Array(stride * capacity) });
@@ -40,7 +40,7 @@ class GrowingColumn {
     this.length -= samples;
   }
 
-  /** The numbers from a sample on, of which each sample has the first `width`. */
+  /** The first `width` numbers of every sample from this one on. */
   from(sample, width = this.stride) {
     const count = this.length - sample;
     const numbers = new Float64Array(count * width);
@@ -82,14 +82,14 @@ export class GrowingRun extends Run {
     return this.sums[key] / this.counted;
   }
 
-  /** Other parameters from now on. */
+  /** Takes other parameters from now on. */
   describe(described) {
     Object.assign(this, described, { changedAt: this.end });
-    this.countAnew();
+    this.restartMeans();
   }
 
-  /** Means are those from now on. */
-  countAnew() {
+  /** Restarts the means. */
+  restartMeans() {
     Object.assign(this, { sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
@@ -138,7 +138,7 @@ export class GrowingRun extends Run {
     }
   }
 
-  /** Contacts of the latest sample up to this one of which they are known. */
+  /** Contacts of the latest sample, up to this one, that has them. */
   contacts(sample) {
     const known = this.latestContacts.findLast(({ time }) => time <= this.time[sample] + 1e-9);
     const numbers = known && this.time[sample] - known.time < 0.5 ? known.numbers : [];

@@ -1,6 +1,6 @@
 // The heading that a visitor asks of the leaders: a thumb, and the arrow keys wherever the focus is.
 
-/** Elements that use arrow keys themselves: text, and an open list of keys. */
+/** Elements that need arrow keys themselves: text, and the open list of keys. */
 const KEEPS_ARROWS = "textarea, input[type='text'], input[type='number'], [contenteditable], dialog[open]";
 /** Direction of each key: degrees, clockwise. */
 const TURNS = { ArrowLeft: -15, ArrowRight: 15 };
@@ -18,7 +18,7 @@ export class Helm {
     this.#isYours = isYours;
     this.#onTurn = onTurn;
     thumb.addEventListener("input", () => this.#turn(Number(thumb.value)));
-    // Before whatever has the focus, such as a choice that an arrow would change.
+    // Before the focused element, such as a choice that an arrow would change.
     document.addEventListener("keydown", (event) => this.#key(event), { capture: true });
     this.center();
   }

@@ -2,6 +2,8 @@
 
 /** The visitor, where links and requests have a law's name. */
 export const YOU = "you";
+/** The leaders that the visitor trained. */
+export const TRAINED = "trained";
 
 export class Laws {
   /** `listed`: the simulator's table. The first law acts at every substep, the others at each decision of a leader. */
@@ -11,11 +13,11 @@ export class Laws {
     this.ofEach = names.slice(1);
   }
 
-  /** Choices for all leaders together: of laws with the same words the first, and the visitor. */
+  /** Choices for all leaders together: the first of laws with the same words, what was trained, and the visitor. */
   get ofAll() {
     const alike = [this.atEverySubstep, ...this.ofEach].filter((name, index, names) =>
       names.findIndex((each) => this.words(each) === this.words(name)) === index);
-    return [...alike, YOU];
+    return [...alike, TRAINED, YOU];
   }
 
   /** A law in words, which do not say how often it acts. */
@@ -24,10 +26,13 @@ export class Laws {
     if (kind === YOU) {
       return kind;
     }
+    if (kind === TRAINED) {
+      return "what you trained";
+    }
     return kind.endsWith(" law") ? `the ${kind}` : `${kind} steering`;
   }
 
-  /** A law for each of so many leaders: those of a list, or the one law; one for all where there are not several. */
+  /** A law for each of several leaders: those of a list, or the one law. One law if there are not several leaders. */
   forEach(policy, leaders) {
     const given = policy.split(",").map((name) => (this.ofEach.includes(name) ? name : this.ofEach[0]));
     return leaders > 1 ? Array.from({ length: leaders }, (_, k) => given[k] ?? given.at(-1)).join(",") : given[0];

@@ -1,8 +1,8 @@
-// The page's start and its lessons: a link each, a sentence before and one after, with links of their own.
+// The page's start and its lessons: each has a link, and sentences above and below the picture, which may have links.
 
 import { element } from "../flockenv/replay/shared/words.mjs";
 
-/** The start of the page without a link: a flock that circles. */
+/** The flock of the page without a link: it circles. */
 export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=6&start=180&speed=4";
 const OPENING_WORDS = {
   before: "These boats only bump into each other, and yet they circle together. How long they back up in each cycle decides it: try the slider.",
@@ -39,6 +39,13 @@ export const LESSONS = [
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=14&beside.leaders=learned&speed=16",
     before: "Four leaders by the paper's law, and beside them four that learned by trial and error where to head.",
     after: "In signed order, over 256 flocks at 0.31 s, the learned leaders reach 0.60, the law 0.38.",
+  },
+  {
+    name: "train",
+    title: "Train leaders",
+    link: "#lesson=train&n_boats=10&n_leaders=4&pool=narrow&bw_s=0.3&seed=1&leaders=trained&speed=8",
+    before: "These four leaders head straight ahead: they know nothing yet. Press train, and they learn what to do with their rudders.",
+    after: "In pairs of flocks they try opposite rudders and keep what raises the order. The flock follows them at once.",
   },
   {
     name: "forces",

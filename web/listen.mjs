@@ -4,25 +4,28 @@ import { colors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
 import { linkOf } from "./follow.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
+import { Training } from "./training.mjs";
 
 /** Connects a page to the visitor's buttons, keys, files and links. */
 export function listen(page) {
   buttons(page);
   keys(page);
   files(page);
+  page.training = trainings(page);
   document.addEventListener("click", (event) => {
-    // A link to what is shown already shows it again.
+    // A link to the flock that is shown already starts it again.
     const link = event.target.closest?.("a[href^='#']");
     if (link && link.getAttribute("href") === location.hash) {
       page.follow(location.hash);
     }
   });
-  // Not the address now: the link of what is shown may have been written since.
+  // The event's own address: the page may have written its link since.
   window.addEventListener("hashchange", ({ newURL }) => page.follow(new URL(newURL).hash));
-  new ResizeObserver(() => page.show()).observe(byId("runs"));
+  new ResizeObserver(() => { page.show(); page.training.draw(); }).observe(byId("runs"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     page.view.palette = colors();
     page.show();
+    page.training.draw();
   });
 }
 
@@ -36,13 +39,20 @@ function buttons(page) {
   byId("colors").addEventListener("change", () => page.remember("colors", byId("colors").value));
   byId("boat").addEventListener("change", () => page.pin(byId("boat").value === "" ? null : Number(byId("boat").value)));
   byId("scrub").addEventListener("input", () => page.seek(Number(byId("scrub").value)));
-  // Plots that were folded in have had no size.
+  // Plots had no size while they were folded.
   for (const name of ["more", "about-flock"]) {
     byId(name).addEventListener("toggle", () => page.show());
   }
   for (const button of document.querySelectorAll("[data-copies]")) {
     button.addEventListener("click", () => copy(page, button));
   }
+}
+
+function trainings(page) {
+  const training = new Training(page);
+  byId("train").addEventListener("click", () => training.toggle());
+  byId("save-policy").addEventListener("click", () => training.save());
+  return training;
 }
 
 function keys(page) {

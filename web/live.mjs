@@ -23,7 +23,7 @@ export class LivePage {
   wanted = [];
   changing = false;
   broken = false;
-  /** The link that is followed now: a later one takes its place. */
+  /** Number of the link that is followed now: a later one takes its place. */
   followed = 0;
   /** Whether the page paused, for a link that asks for a still picture or a round of the game, and not the visitor. */
   isHeld = false;
@@ -40,7 +40,7 @@ export class LivePage {
     this.view = new View(this.flocks, this, about.orders, (time) => this.seek(time));
     this.playback = new Playback(this);
     this.hand = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());
-    const meanings = Object.fromEntries(described.fields.map(({ name, meaning, accepted }) => [name, `${meaning} Accepted: ${accepted}`]));
+    const meanings = Object.fromEntries(described.fields.map(({ name, meaning }) => [name, meaning]));
     this.controls = new Controls(meanings, this.flocks.laws, (name, value) => this.set(name, value));
     byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
     byId("color-key").append(...colorKey());
@@ -114,7 +114,7 @@ export class LivePage {
     await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open"));
   }
 
-  /** Starts again, with a new thread where the old one stopped; a game with the next round's flocks, if one is over. */
+  /** Starts again, with a new thread if the old one stopped; after a round of a game, with the next round's flocks. */
   async again() {
     if (this.broken) {
       this.broken = false;
@@ -126,7 +126,7 @@ export class LivePage {
     }
   }
 
-  /** One change after another, of what was wanted meanwhile the last. */
+  /** Makes one change after another; of those wanted meanwhile, the last of each name. */
   async #change() {
     if (this.changing) {
       return;
@@ -225,7 +225,7 @@ export class LivePage {
     this.show();
   }
 
-  /** Asks what a boat observes, where no time passes. */
+  /** Asks what a boat observes while the flock stands still. */
   async #look(boat) {
     await this.attempt(async () => {
       const { taken } = await this.simulator.ask("look", { boat });

@@ -9,14 +9,8 @@ import { Simulator } from "./simulator.mjs";
 const text = (id) => document.getElementById(id).textContent;
 
 async function start() {
-  for (const needed of ["Worker", "WebAssembly", "DecompressionStream"]) {
-    if (!(needed in globalThis)) {
-      throw new Error(`this browser has no ${needed}, in which the simulator runs`);
-    }
-  }
-  const packed = Uint8Array.from(atob(text("wasm")), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  const simulator = new Simulator(text("thread"), await new Response(stream).arrayBuffer());
+  const thread = new TextDecoder().decode(await globalThis.unpacked("thread"));
+  const simulator = new Simulator(thread, await globalThis.unpacked("wasm"));
   const about = JSON.parse(text("about"));
   const described = await simulator.start();
   const sheet = new CSSStyleSheet();

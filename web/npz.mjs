@@ -1,4 +1,4 @@
-// Named arrays in an .npz file: a zip of .npy entries. What is read is data, whatever it says.
+// Named arrays in an .npz file: a zip of .npy entries. Nothing that is read is executed.
 
 const MOST_BYTES = 1 << 29;
 const PART = 4096;
@@ -122,7 +122,7 @@ function directoryEntry(view, offset) {
   const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(offset + at, true));
   const nameAt = (at, long) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, long));
   const name = nameAt(offset + 46, length);
-  // Of the bits only "lengths follow" and "names are UTF-8" are known.
+  // Only the bits "lengths follow" and "names are UTF-8" are known.
   const isKnown = [0, 8].includes(method) && version <= 63 && (flags & ~0x808) === 0 && packed !== 0xffffffff;
   if (!isKnown || view.getUint16(offset + 34, true) !== 0) {
     throw new Error(`${name} is packed in an unknown way`);
@@ -192,13 +192,13 @@ function readNpy(bytes) {
 function textsOf(content, width) {
   const letters = new Uint32Array(content);
   return Array.from({ length: width === 0 ? 0 : letters.length / width }, (_, k) => {
-    // NumPy leaves out zeros at the end alone.
+    // NumPy drops zeros only at the end.
     const points = letters.subarray(k * width, (k + 1) * width);
     const end = points.findLastIndex((point) => point > 0) + 1;
     if (points.some((point) => point > 0x10ffff)) {
       throw new Error("an array holds letters that there are not");
     }
-    // A part at a time: a call takes so many arguments only.
+    // In parts: the number of arguments of a call is limited.
     const parts = Array.from({ length: Math.ceil(end / PART) }, (_, part) => String.fromCodePoint(...points.subarray(part * PART, Math.min((part + 1) * PART, end))));
     return parts.join("");
   });

@@ -1,4 +1,4 @@
-// Order against noise: where the flock is, and what it has shown so far.
+// Order against noise: the flock now, and its orders so far.
 
 import { fitted } from "../flockenv/replay/shared/scene.mjs";
 import { plain } from "../flockenv/replay/shared/words.mjs";
@@ -14,13 +14,13 @@ export class OrderMap {
   #signature = "";
   #expected = null;
 
-  /** `orders`: curves of [backward duration in s, mean order], each with the flock whose they are. */
+  /** `orders`: curves of [backward duration in s, mean order], each with its flock. */
   constructor(canvas, orders) {
     this.canvas = canvas;
     this.orders = orders;
   }
 
-  /** Shows what is expected of a flock, and forgets another one's marks; null for none. */
+  /** Shows the order that is expected of a flock, null for none, and forgets another flock's marks. */
   expect(flock, signature) {
     const { bw_s: _, seed: __, ...rest } = flock ?? {};
     const isOf = ({ points: _, ...each }) => Object.entries({ n_leaders: "0", ...rest }).every(([name, value]) => String(each[name]) === value);
@@ -33,7 +33,7 @@ export class OrderMap {
     this.#hide();
   }
 
-  /** A map with nothing on it is not there. */
+  /** Hides a map that has nothing on it. */
   #hide() {
     this.canvas.closest("figure").hidden = !this.#expected && !this.dot;
   }

@@ -21,7 +21,7 @@ export class Playback {
   #rate = { since: 0, passed: 0, words: "" };
   #isOver = false;
 
-  /** `page`: what is played, and says what there is to say. */
+  /** `page`: what is played; it shows sentences. */
   constructor(page) {
     this.#page = page;
     this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
@@ -44,7 +44,7 @@ export class Playback {
     return this.#page.other.lesson === "steer" && this.#page.flocks.areYours;
   }
 
-  /** Pauses at what stands still until the visitor acts, as a round does; what comes after it plays on. */
+  /** Pauses at a still picture or a round, which wait for the visitor; plays again after it. */
   hold(isStill) {
     const wasHeld = this.#page.isHeld;
     this.#page.isHeld = isStill || this.#isGame;

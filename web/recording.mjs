@@ -7,7 +7,7 @@ const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
 /** Bounds of a flock's poses and velocities. */
 const WITHIN_REACH = [-1e9, 1e9];
 const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
-/** NumPy's names of kinds of numbers; those of texts are what files have. */
+/** NumPy's names of kinds of numbers; texts have the names that files have. */
 const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
 
 const kindOf = (descr) => KINDS[descr] ?? descr;
@@ -149,8 +149,8 @@ function checkRudder(rudder, shape) {
 }
 
 /**
- * Returns the result of `read` for the recording's parameters as TOML, if the arrays are those of a recording. `format` is what
- * it must say that it is; `phases` are the names of phases, and `quantities` and `statistics` those that there are.
+ * Returns the result of `read` for the recording's parameters as TOML, if the arrays are those of a recording. `format` is the
+ * format that it must have; `phases`, `quantities` and `statistics` are the known names.
  */
 export async function checkedArrays(arrays, { format, phases, quantities, statistics }, read) {
   const hasContacts = checkStored(arrays, format);

@@ -1,4 +1,4 @@
-// The request in the page's link: parameters by name, a seed, the leaders' steering, and a second flock beside.
+// The page's link as a request: parameters by name, a seed, the leaders' steering, and a second flock beside the first.
 
 import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
 
@@ -22,9 +22,9 @@ export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
 const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
 /** Fields of a request that are no parameters. */
 const STRINGS = ["preset", "seed", "leaders"];
-/** Of the second flock: what of it differs from the first. */
+/** Prefix of the fields in which the second flock differs from the first. */
 const BESIDE = "beside.";
-/** Of a change on the way: when, and what is another from then on; nothing for the preset's own. */
+/** A change on the way: its time, and the field that changes then; an empty value is the preset's own. */
 const CHANGE = /^at\.(\d{1,4}(?:\.\d)?)\.(.+)$/;
 
 /**
@@ -135,7 +135,7 @@ export function requestsOf({ flock, beside, copies = 1 }, kinds) {
   return kindsOfFlock.flatMap((each) => Array.from({ length: copies }, (_, copy) => requestOf({ ...each, ...seedOf(each, copy) }, kinds)));
 }
 
-/** The seed of a copy of a flock. What is no seed stays, for the simulator to refuse. */
+/** The seed of a copy of a flock. Other text stays, and the simulator refuses it. */
 function seedOf({ seed = "0" }, copy) {
   return copy > 0 && /^\d+$/.test(seed) ? { seed: String(BigInt(seed) + BigInt(copy)) } : {};
 }
@@ -157,7 +157,7 @@ export function valuesOfToml(toml) {
     try {
       return [name, JSON.parse(json)];
     } catch {
-      // Not what it should be, for the simulator to refuse.
+      // The simulator refuses it.
       return [name, value.trim()];
     }
   }));

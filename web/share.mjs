@@ -1,7 +1,7 @@
-// A flock taken along: the file of its recording, and a file that is dropped onto the page.
+// A flock's recording as a file, a recording that is dropped onto the page, and the texts of a flock.
 
 import { GrowingRun } from "./growing_run.mjs";
-import { YOU } from "./laws.mjs";
+import { TRAINED, YOU } from "./laws.mjs";
 import { array, readNpz, writeNpz } from "./npz.mjs";
 import { checkedArrays } from "./recording.mjs";
 import { tomlOf, valuesOfToml } from "./request.mjs";
@@ -24,7 +24,7 @@ export function recordingOf(run, { format, version, policy, recorded, statistics
     const values = Float64Array.from({ length: samples }, (_, k) => run.value(name, first + k));
     return [`order_${name}`, array.reals(values, [samples])];
   }));
-  // A recording that is played may not know them.
+  // A recording that is played may not have them.
   const known = statistics.every((_, index) => Number.isFinite(run.statistics[index])) ? statistics : [];
   const counted = Object.fromEntries(known.map(({ name, kind }, index) => {
     const value = run.statistics[index];
@@ -110,10 +110,12 @@ export function showTexts(flocks, time) {
   const { flock, beside } = isTold ? first : flocks.shown;
   const isYours = flock.leaders === YOU;
   const { leaders: _, ...lawful } = flock;
-  const texts = [isYours ? lawful : flock];
+  const given = [isYours ? lawful : flock];
   if (beside && !isYours) {
-    texts.push({ ...flock, ...beside });
+    given.push({ ...flock, ...beside });
   }
+  const isTrained = given.some(({ leaders }) => leaders === TRAINED);
+  const texts = given.map((each) => (each.leaders === TRAINED ? { ...each, leaders: flocks.trained ? "policy.json" : "straight ahead" } : each));
   const seconds = Math.max(SECONDS, 60 * Math.ceil((time + 1) / 60));
   const commands = texts.map((each) => commandLine(each, seconds, told));
   const byId = (id) => document.getElementById(id);
@@ -121,6 +123,7 @@ export function showTexts(flocks, time) {
   byId("python").value = pythonText(texts, seconds, flocks.kinds, told);
   byId("same").textContent = [
     isYours ? "How you steered is in the recording alone: these run the law in your place. " : "",
+    isTrained && flocks.trained ? "policy.json is the file of your training, which led with earlier policies on the way. " : "",
     commands.includes("") ? "No command gives each leader a policy of its own, as Python does. " : "",
     isTold ? "" : "These start as the flock is now: the link alone knows how leaders or the preset changed on the way. ",
     flocks.linked().isWhole ? "" : "So much changed on the way that the link holds the parameters of now alone. ",

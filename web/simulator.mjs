@@ -1,9 +1,9 @@
-// The simulator as the page sees it: questions and answers, and a new thread where the old one does not answer.
+// The simulator as the page sees it: questions and answers, and a new thread if the old one does not answer.
 
 /** Time in ms after which the thread of an unanswered question counts as lost. */
 const PATIENCE = 15_000;
 
-/** Something that the simulator does not do, in words; `field` names the parameter that is to blame, if one is. */
+/** Why the simulator did not answer; `field` names the parameter that is to blame, if one is. */
 export class Unanswered extends Error {
   constructor({ words, field = "", refused = false }) {
     super(words);
@@ -28,7 +28,7 @@ export class Simulator {
     return oldest ? performance.now() - oldest.asked : 0;
   }
 
-  /** Ends the thread, in the middle of whatever it does: its questions get these words. */
+  /** Ends the thread at once: its open questions are answered with these words. */
   stop(words) {
     this.worker?.terminate();
     for (const { reject, waited } of this.open.values()) {
@@ -38,7 +38,7 @@ export class Simulator {
     this.open.clear();
   }
 
-  /** Starts a thread, in place of the one there is; returns what the simulator says of itself. */
+  /** Starts a thread, in place of the present one; returns the simulator's declarations. */
   async start() {
     this.worker?.terminate();
     const address = URL.createObjectURL(new Blob([this.script], { type: "text/javascript" }));

@@ -6,23 +6,32 @@ import { isOwn } from "./request.mjs";
 const OPTIONS = { n_boats: "--n-boats", n_leaders: "--n-leaders", pool: "--pool", bw_s: "--bw-s" };
 const shellWord = (text) => (/^[\w.:=+-]+$/.test(text) ? text : `'${text}'`);
 
-/** Whether commands and Python have words for what changed on the way. */
+/** Whether commands and Python can say what changed on the way. */
 export function isSchedule(changes) {
   const isFixed = (name) => !isOwn(name) || name === "n_leaders";
   return changes.every(({ fields }) => Object.entries(fields).every(([name, value]) => value !== "" && !isFixed(name)));
 }
 
+/** Words of a command for a flock's parameters. */
+function fieldWords(flock) {
+  return Object.entries(flock).filter(([name]) => isOwn(name)).map(([name, value]) => {
+    const isList = value.includes(",") || value.includes(";");
+    return Object.hasOwn(OPTIONS, name) ? `${OPTIONS[name]} ${shellWord(isList ? `(${value.split(",").join(", ")})` : value)}` :
+      `--set ${shellWord(`${name}=${isList ? listed(value) : value}`)}`;
+  });
+}
+
+/** The command that trains leaders of a flock from nothing, with these settings; none for other presets than the training's. `values`: those of all parameters. */
+export function trainingCommand({ preset = "simulation", ...flock }, values, { flock_hours: hours, ...settings }, seed) {
+  const named = Object.fromEntries(Object.keys(OPTIONS).map((name) => [name, values[name]]));
+  const set = Object.entries({ action_mode: "rudder", ...settings }).map(([name, value]) => `--set ${name}=${value}`);
+  const words = [...fieldWords({ ...named, ...flock }), `--seed ${seed}`, `--flock-hours ${hours}`, ...set];
+  return preset === "simulation" ? `flockenv train --algorithm branches ${words.join(" ")}` : "";
+}
+
 /** The command that simulates a flock and changes it on the way, for so many seconds; none for leaders with policies of their own. */
 export function commandLine(flock, seconds, changes = []) {
-  const words = ["flockenv run", ...(flock.preset ? [`--preset ${flock.preset}`] : [])];
-  for (const [name, value] of Object.entries(flock).filter(([name]) => isOwn(name))) {
-    const isList = value.includes(",") || value.includes(";");
-    if (Object.hasOwn(OPTIONS, name)) {
-      words.push(`${OPTIONS[name]} ${shellWord(isList ? `(${value.split(",").join(", ")})` : value)}`);
-    } else {
-      words.push(`--set ${shellWord(`${name}=${isList ? listed(value) : value}`)}`);
-    }
-  }
+  const words = ["flockenv run", ...(flock.preset ? [`--preset ${flock.preset}`] : []), ...fieldWords(flock)];
   const { leaders = "" } = flock;
   words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
   for (const { time, fields } of changes) {

@@ -20,7 +20,7 @@ const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
 const WORDS_EVERY = 250;
 /** Time in ms between two sentences for those who do not see the flocks. */
 const TELL_EVERY = 5000;
-/** Force, in cm/s², that a bar as long as a hull is wide stands for. */
+/** Force, in cm/s², that a bar half as long as a hull is wide stands for. */
 const FORCE = 20;
 
 /** The quantities that the simulator describes, as charts and tables have them. */
@@ -77,6 +77,7 @@ export class View {
     const { runs, seen, besides, areYours, isRecorded, shown } = this.#flocks;
     const isPair = seen.length === 2 && besides === 1;
     document.body.classList.toggle("you", areYours);
+    document.body.classList.toggle("trains", this.#flocks.areTrained);
     document.body.classList.toggle("pair", isPair);
     document.body.classList.toggle("many", seen.length > 1 && !isPair);
     document.body.classList.toggle("recorded", isRecorded);
@@ -144,7 +145,7 @@ export class View {
     this.#showObserved();
   }
 
-  /** The mean so far, large; of a pair both, of which a wide window shows that of its own pool, and of a game both. */
+  /** The mean so far, large. Below a pair stand both means, of which a wide window shows the picture's own; in a game, both. */
   #score(index, time) {
     const { areYours, besides, runs, seen } = this.#flocks;
     const line = (words, value, className = "") => {
@@ -167,7 +168,7 @@ export class View {
     return [line(words(seen[index]), mean(seen[index]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each"))];
   }
 
-  /** What the flocks do, for those who do not see it: the pictures' names, and a sentence that is read now and then. */
+  /** Says what the flocks do to those who do not see it: in the pictures' names, and in a sentence that is read now and then. */
   #tellWhatIsDone(time, isPlaying) {
     const told = this.panels.map(({ canvas, run }, index) => {
       const words = doing(run, run.sampleAt(time), this.palette);
@@ -176,10 +177,12 @@ export class View {
       const isNamed = this.panels.every((each) => each.run === run || each.run.name !== run.name);
       return this.panels.length > 1 ? `${run.name}${isNamed ? "" : `, flock ${index + 1}`}: ${words}` : words;
     }).join(" ");
+    const score = (each) => `${Array.from(each.children, ({ textContent }) => textContent).filter(Boolean).join(", ")}.`;
+    const said = [told, ...(this.#flocks.areYours ? this.#scores.map(score) : [])].join(" ");
     const isDue = !isPlaying || performance.now() - this.#told > TELL_EVERY;
-    if (isDue && told !== byId("doing").textContent) {
+    if (isDue && said !== byId("doing").textContent) {
       this.#told = performance.now();
-      byId("doing").textContent = told;
+      byId("doing").textContent = said;
     }
   }
 

@@ -42,7 +42,7 @@ export const ANSWERS = {
     return { continues: false, values, taken: taken(requests.length) };
   },
 
-  /** Changes all flocks; they start again together where one of them has to. */
+  /** Changes all flocks; if one of them has to start again, all do. */
   change({ requests }) {
     try {
       const said = requests.map((request, flock) => core.change(flock, request));
@@ -70,7 +70,39 @@ export const ANSWERS = {
     return { ...ANSWERS.look({ boat }), milliseconds: performance.now() - start, memory: core.memory };
   },
 
-  /** The contacts, and what a boat observes, as they are now. */
+  /** Lets the leaders that the visitor trains follow this policy from now on. */
+  teach({ policy }) {
+    shown.forEach((request, flock) => {
+      if (request.leaders === "trained") {
+        core.change(flock, Object.assign(request, { trained: policy }));
+      }
+    });
+    return {};
+  },
+
+  train: ({ asked }) => ({ training: core.train(asked) }),
+
+  /** Goes on with the training for so many milliseconds, or to its end. */
+  learn({ milliseconds }) {
+    const start = performance.now();
+    let training = core.learn(1);
+    while (!training.has_ended && performance.now() - start < milliseconds) {
+      training = core.learn(1);
+    }
+    return { training };
+  },
+
+  /** The mean of the quantity at this index, of so many in each sample, over so many samples of a flock from its start. */
+  judge({ request, samples, index, quantities }) {
+    core.open(0, request);
+    core.take(0);
+    advanced(0, samples);
+    const values = core.take(0).series.filter((_, place) => place % quantities === index);
+    core.close(0);
+    return { mean: values.reduce((sum, value) => sum + value, 0) / values.length };
+  },
+
+  /** The contacts, and what a boat observes, at this moment. */
   look({ boat }) {
     for (const flock of shown.keys()) {
       core.look(flock, boat);

@@ -237,7 +237,7 @@ export class Player {
     this.show();
   }
 
-  /** Does what the page's link says, and reports what of it cannot be done. */
+  /** Does what the page's link says, and reports what it cannot do. */
   #followLink() {
     const requested = readLink(location.hash, { start: this.start, end: this.end, speeds: SPEEDS });
     this.controls.status.textContent = requested.ignored.join(" ");

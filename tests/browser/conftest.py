@@ -182,6 +182,14 @@ class Page:
 
 
 @pytest.fixture
+def downloads(chromium, tmp_path) -> Path:
+    """Return the folder into which the browser saves until the test ends."""
+    behavior = {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
+    chromium.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
+    return tmp_path
+
+
+@pytest.fixture
 def emulated(chromium) -> Iterator[Callable[[str, str], None]]:
     """Set a feature of the media, such as a color scheme, until the test ends."""
 

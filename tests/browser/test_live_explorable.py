@@ -136,8 +136,11 @@ def test_a_round_waits_for_the_visitor_and_the_next_lesson_plays(open_live):
         live.until("return page.playing === arguments[0]", plays)
         if lesson == "steer":
             assert live.script("return page.time") == 0.0
-            names = [each.split(":")[0] for each in live.text("#doing").split(". ")]
+            *flocks, score = live.text("#doing").split(". ")
+            names = [each.split(":")[0] for each in flocks]
             assert names == ["you, flock 1", "you, flock 2", "you, flock 3"]
+            # The score is heard, too.
+            assert score == "you –, the law –, 0 of 300 s."
 
 
 def test_rounds_of_the_game_are_scored_against_the_law(open_live):

@@ -13,7 +13,7 @@ def test_every_scene_is_a_link_to_a_flock(open_live):
     names = live.script(
         "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
     )
-    assert names == ["steer", "noise", "leaders", "learned", "forces", "opposed"]
+    assert names == ["steer", "noise", "leaders", "learned", "train", "forces", "opposed"]
     for name in names:
         live.click(f"#lessons a[data-lesson='{name}']")
         live.until(

@@ -383,6 +383,9 @@ def test_a_screen_reader_hears_names_values_and_what_the_flock_does(open_live):
     assert slider == "0.8 seconds"
     tree = tree_of(live)
     assert [name for role, name, _ in tree if role == "slider"] == ["backward duration"]
+    # No range of a field that the slider does not reach.
+    title = live.find("#bw_s").get_attribute("title")
+    assert title == "Duration of the backward phase: the source of disorder."
     pictures = [name for role, name, _ in tree if role in ("image", "img")]
     said = {
         f"27 boats; {share} {way}."

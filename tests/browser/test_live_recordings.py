@@ -1,7 +1,6 @@
 """Law: the live page saves and loads recordings, and refuses what is none in words."""
 
 import base64
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,13 +19,6 @@ def shown_statistics(live) -> dict[str, float]:
             (row) => [...row.children].slice(0, 2).map((cell) => cell.textContent))"""
     )
     return {name: float(value) for name, value in rows}
-
-
-@pytest.fixture
-def downloads(chromium, tmp_path) -> Path:
-    behavior = {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
-    chromium.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
-    return tmp_path
 
 
 def test_a_recording_is_saved_loaded_and_played(live, downloads):

@@ -18,8 +18,8 @@ test("opposed leaders are two halves, the larger one clockwise", () => {
 const laws = new Laws(["paper's law at every substep", "paper's law", "tuned law", "learned"].map((name) => ({ name })));
 
 test("laws that differ only in how often they act are offered once for all leaders, and each for one of them", () => {
-  assert.deepEqual(laws.ofAll, ["paper's law at every substep", "tuned law", "learned", "you"]);
-  assert.deepEqual(laws.ofAll.map((name) => laws.words(name)), ["the paper's law", "the tuned law", "learned steering", "you"]);
+  assert.deepEqual(laws.ofAll, ["paper's law at every substep", "tuned law", "learned", "trained", "you"]);
+  assert.deepEqual(laws.ofAll.map((name) => laws.words(name)), ["the paper's law", "the tuned law", "learned steering", "what you trained", "you"]);
   assert.deepEqual(laws.ofEach, ["paper's law", "tuned law", "learned"]);
 });
 
@@ -42,7 +42,7 @@ test("a lesson has a short sentence or two before and after, and so has the open
 });
 
 test("every link of a lesson is followed whole, and stays in its lesson", () => {
-  assert.equal(LESSONS.length, 6);
+  assert.equal(LESSONS.length, 7);
   assert.equal(LESSONS[0].name, "steer");
   assert.deepEqual(readLink(OPENING, FIELDS).ignored, []);
   for (const { name, link, before, after } of LESSONS) {

@@ -85,7 +85,7 @@ test("the score leaves out what was simulated before anybody looked, and a link 
   assert.deepEqual(flocks.linked().other, {});
   await flocks.runTo(5, () => true);
   assert.equal(flocks.runs[0].end, 5);
-  flocks.countAnew();
+  flocks.restartMeans();
   assert.ok(Number.isNaN(flocks.runs[0].mean("psi_o")));
   assert.deepEqual(flocks.linked(), { ...first, changes: [], other: { start: "5" }, isWhole: true });
   assert.deepEqual(flocks.linked(5.5).other, { start: "5", now: "5.5" });

@@ -30,7 +30,6 @@ fn field(each: &Field<FlockParameters>) -> Json {
         "name": each.name,
         "kind": kind_name(each.kind),
         "meaning": each.doc.split_whitespace().collect::<Vec<_>>().join(" "),
-        "accepted": each.accepted(),
     })
 }
 
@@ -60,7 +59,7 @@ pub(crate) fn all() -> Json {
     })
 }
 
-/// The values of all parameters, and lengths that a picture needs, in cm; no number for none.
+/// The values of all parameters, and lengths that a picture needs, in cm; null for a wall that is not there.
 pub(crate) fn values(parameters: &FlockParameters) -> Json {
     let fields = FlockParameters::FIELDS.iter().zip(parameters.values());
     let values: serde_json::Map<_, _> = fields

@@ -1,9 +1,9 @@
-//! Values of the core as JSON, in which the page asks and is answered.
+//! Values of the core as JSON, in which the page asks and the simulator answers.
 
 use flockenv::parameters::{Kind, Value};
 use serde_json::{Value as Json, json};
 
-/// A value as JSON; what JSON has no number for is text.
+/// A value as JSON; numbers that are not finite are text.
 pub(crate) fn written(value: &Value) -> Json {
     match value {
         Value::None | Value::Other => Json::Null,

@@ -1,9 +1,9 @@
-//! How leaders steer on the page: one policy for all, one that the visitor steers, or a policy for each.
+//! How leaders steer on the page: one policy for all, the visitor, or a policy for each.
 
 use flockenv::boat::DampedLaw;
-use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
+use flockenv::environment::observation::{Block, LEAN_FEATURES, ObservationLayout, observe_flock};
 use flockenv::parameters::FlockParameters;
-use flockenv::policies::{Law, ObservedLaw, Pilot};
+use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,6 +12,12 @@ pub(crate) const EVERY_SUBSTEP: &str = Law::EVERY_SUBSTEP;
 
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
+
+/// The leaders that the visitor trained, by the name that requests have for them.
+pub(crate) const TRAINED: &str = "trained";
+
+/// The numbers of a policy that has not learned anything: rudders of 0.
+const UNTRAINED: [f64; LEAN_FEATURES + 1] = [0.0; LEAN_FEATURES + 1];
 
 /// How the leaders of a flock steer.
 pub(crate) enum Leaders {
@@ -32,11 +38,12 @@ pub(crate) struct Observing {
 }
 
 impl Leaders {
-    /// The policy of this name, or the policies whose names commas separate, one for each leader.
+    /// The policy of this name, or the policies whose names commas separate, one for each leader. `trained`: that of
+    /// the visitor's training in JSON; those of none head straight ahead.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for unknown names, and flocks that the policy is not made for.
-    pub fn named(name: &str, parameters: &FlockParameters) -> Result<Self> {
+    pub fn named(name: &str, trained: Option<&str>, parameters: &FlockParameters) -> Result<Self> {
         if name.contains(',') {
             return Self::each(&name.split(',').collect::<Vec<_>>(), parameters);
         }
@@ -48,6 +55,14 @@ impl Leaders {
             "you" => {
                 let damped = Law::Damped(DampedLaw::default());
                 Pilot::new(damped, parameters, CONTROL_HZ).map(Self::You)
+            }
+            TRAINED => {
+                let law = match trained {
+                    Some(json) => LeaningLaw::from_json(json)?,
+                    None => LeaningLaw::new(parameters.pool.name(), None, None, &UNTRAINED)?,
+                };
+                let law = Law::Leaning(Box::new(law));
+                Pilot::new(law, parameters, CONTROL_HZ).map(Self::Law)
             }
             _ => Pilot::new(law(name, parameters)?, parameters, CONTROL_HZ).map(Self::Law),
         }

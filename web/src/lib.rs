@@ -9,6 +9,7 @@ mod json;
 mod leaders;
 mod live;
 mod request;
+mod training;
 
 use flockenv::analysis::quantities::Formula;
 use flockenv::geometry::{Pose, Velocity};
@@ -17,6 +18,7 @@ use flockenv::{Flock, FlockError, OrderParameters};
 use live::{Columns, Live};
 use serde_json::{Value as Json, json};
 use std::cell::RefCell;
+use training::Training;
 
 /// How many flocks the page runs side by side: three of a game, and the law's.
 const FLOCKS: usize = 6;
@@ -28,6 +30,7 @@ struct Page {
     flocks: [Option<Live>; FLOCKS],
     /// The flock that was last checked: it takes the states of a recording.
     checked: Option<Flock>,
+    training: Option<Training>,
 }
 
 thread_local! {
@@ -87,7 +90,7 @@ pub extern "C" fn text_length() -> usize {
     with(|page| page.text.len())
 }
 
-/// Says what there is: parameters, policies, quantities, what leaders observe, and colors.
+/// Says which parameters, policies, quantities, entries of an observation and colors there are.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> u32 {
     with(|page| page.say(Ok(describe::all())))
@@ -190,6 +193,30 @@ pub extern "C" fn close(flock: usize) {
             *slot = None;
         }
     });
+}
+
+/// Starts a training from a request, and says where it is.
+#[unsafe(no_mangle)]
+pub extern "C" fn train() -> u32 {
+    with(|page| {
+        let training = page.request().and_then(Training::new);
+        let said = training.and_then(|training| page.training.insert(training).said());
+        page.say(said)
+    })
+}
+
+/// Takes so many branches of the training, and says where it is then.
+#[unsafe(no_mangle)]
+pub extern "C" fn learn(branches: u32) -> u32 {
+    with(|page| {
+        let none = || FlockError::parameter("training", "none", "a training that has started");
+        let training = page.training.as_mut().ok_or_else(none);
+        let said = training.and_then(|training| {
+            (0..branches).try_for_each(|_| training.advance())?;
+            training.said()
+        });
+        page.say(said)
+    })
 }
 
 /// The derived quantity in this place of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,

@@ -55,9 +55,9 @@ impl Live {
     /// A flock from its start, with its first sample.
     ///
     /// # Errors
-    /// As for [`Flock::new`] and [`Leaders::named`].
+    /// As for [`Flock::new`] and [`Request::leaders`].
     pub fn new(request: Request) -> Result<Self> {
-        let leaders = Leaders::named(&request.leaders, &request.parameters)?;
+        let leaders = request.leaders()?;
         let mut live = Self {
             flock: Flock::new(request.parameters, request.seed)?,
             leaders,
@@ -82,13 +82,13 @@ impl Live {
         &mut self.columns
     }
 
-    /// Has the flock become what is wanted: from where it is if that is possible, which it returns, else from its
-    /// start.
+    /// Changes the flock to what is wanted, from where it is if that is possible, and otherwise from its start. Returns
+    /// whether it continued.
     ///
     /// # Errors
     /// As for [`Live::new`]; the flock is unchanged then.
     pub fn change(&mut self, request: Request) -> Result<bool> {
-        let leaders = Leaders::named(&request.leaders, &request.parameters)?;
+        let leaders = request.leaders()?;
         let (old, new) = (self.parameters(), &request.parameters);
         let continues = request.seed == self.flock.seed()
             && new.n_boats == old.n_boats
@@ -113,7 +113,7 @@ impl Live {
         Ok(true)
     }
 
-    /// Rudders amidships, where they are held, until the next decision.
+    /// Holds rudders amidships until the next decision, if the leaders hold rudders.
     fn start_steering(&mut self) {
         let is_held = !matches!(self.leaders, Leaders::EverySubstep);
         let amidships = vec![0.0; self.parameters().n_leaders];
@@ -165,7 +165,7 @@ impl Live {
         Ok(taken)
     }
 
-    /// Takes a sample, then has the leaders decide.
+    /// Takes a sample, then lets the leaders decide.
     fn sample(&mut self) -> Result<()> {
         let now = self.rudders();
         let flock = &self.flock;

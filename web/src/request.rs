@@ -1,9 +1,9 @@
 //! What the page asks for: parameters by name, a seed, and how leaders steer.
 
 use crate::json::read;
-use crate::leaders::EVERY_SUBSTEP;
+use crate::leaders::{EVERY_SUBSTEP, Leaders};
 use flockenv::geometry::resized_gyration_radius_cm;
-use flockenv::parameters::{FlockParameters, Preset};
+use flockenv::parameters::{Field, FlockParameters, Preset};
 use flockenv::{FlockError, Result};
 use serde_json::{Map, Value as Json};
 
@@ -13,10 +13,11 @@ const SHOWN: usize = 40;
 /// A request as it is written. The seed is text: JavaScript has no whole numbers of 64 bits.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Written {
+pub(crate) struct Written {
     preset: Option<String>,
     seed: Option<String>,
     leaders: Option<String>,
+    trained: Option<String>,
     #[serde(default)]
     parameters: Map<String, Json>,
 }
@@ -28,7 +29,35 @@ pub(crate) struct Request {
     /// Its seed.
     pub seed: u64,
     /// How its leaders steer, by name.
-    pub leaders: String,
+    leaders: String,
+    /// The policy that the visitor trained, in JSON, if there is one.
+    trained: Option<String>,
+}
+
+/// Sets the fields whose values are given by name.
+///
+/// # Errors
+/// [`FlockError::Parameter`] for what is unreadable or out of range.
+pub(crate) fn set_given<T>(
+    values: &mut T,
+    fields: &[Field<T>],
+    given: &Map<String, Json>,
+) -> Result<()> {
+    for field in fields {
+        let Some(json) = given.get(field.name) else {
+            continue;
+        };
+        (field.set)(values, &read(field.kind, json)).map_err(|error| match error {
+            FlockError::Kind { .. } => {
+                let given = json
+                    .as_str()
+                    .map_or_else(|| json.to_string(), str::to_owned);
+                FlockError::parameter(field.name, shown(&given), field.accepted())
+            }
+            other => other,
+        })?;
+    }
+    Ok(())
 }
 
 impl Request {
@@ -39,6 +68,14 @@ impl Request {
     pub fn read(text: &str) -> Result<Self> {
         let written: Written = serde_json::from_str(text)
             .map_err(|error| FlockError::parameter("request", error, "JSON"))?;
+        Self::checked(written)
+    }
+
+    /// A request that has been read.
+    ///
+    /// # Errors
+    /// As for [`Self::read`].
+    pub fn checked(written: Written) -> Result<Self> {
         let preset: Preset = written.preset.as_deref().unwrap_or("simulation").parse()?;
         let seed = written.seed.as_deref().unwrap_or("0");
         let seed = seed.parse().map_err(|_| {
@@ -46,20 +83,11 @@ impl Request {
         })?;
         let defaults = FlockParameters::preset(preset);
         let mut parameters = defaults.clone();
-        for field in FlockParameters::FIELDS {
-            if let Some(json) = written.parameters.get(field.name) {
-                let outcome = (field.set)(&mut parameters, &read(field.kind, json));
-                outcome.map_err(|error| match error {
-                    FlockError::Kind { .. } => {
-                        let given = json
-                            .as_str()
-                            .map_or_else(|| json.to_string(), str::to_owned);
-                        FlockError::parameter(field.name, shown(&given), field.accepted())
-                    }
-                    other => other,
-                })?;
-            }
-        }
+        set_given(
+            &mut parameters,
+            FlockParameters::FIELDS,
+            &written.parameters,
+        )?;
         if !written.parameters.contains_key("gyration_radius_cm") {
             parameters.gyration_radius_cm = resized_gyration_radius_cm(
                 &defaults,
@@ -72,7 +100,16 @@ impl Request {
             parameters,
             seed,
             leaders: written.leaders.unwrap_or(EVERY_SUBSTEP.to_owned()),
+            trained: written.trained,
         })
+    }
+
+    /// Its leaders.
+    ///
+    /// # Errors
+    /// As for [`Leaders::named`].
+    pub fn leaders(&self) -> Result<Leaders> {
+        Leaders::named(&self.leaders, self.trained.as_deref(), &self.parameters)
     }
 }
 

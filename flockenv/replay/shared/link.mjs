@@ -4,7 +4,7 @@
 const EVERY = 1000;
 const SHOWN = 40;
 
-/** A part of a link, cut to what a sentence may hold. */
+/** A part of a link, cut to the length that a sentence may have. */
 export const cut = (text) => (text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text);
 
 /** Says that a part of a link is ignored, and why. */

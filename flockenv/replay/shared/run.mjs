@@ -1,7 +1,7 @@
-// A run: what the recording says at each of its samples, and in between for the picture.
+// A run: the recording's numbers at each sample, and poses in between for the picture.
 
 export class Run {
-  /** `time`: that of each sample in s, where it is no series in quanta. */
+  /** `time`: the time of each sample in s, if it is no series in quanta. */
   constructor(described, columns, time = timesOf(columns.get("time_s"))) {
     Object.assign(this, described);
     this.columns = columns;
@@ -78,12 +78,12 @@ export class Run {
     return this.ids?.[boat] ?? `boat ${boat}`;
   }
 
-  /** Value of a series at a sample; undefined where there is none. */
+  /** Value of a series at a sample; undefined without the series. */
   value(key, sample) {
     return this.columns.get(key)?.at(sample);
   }
 
-  /** Mean of a series up to a sample, in the analysis windows where there are any; undefined where there is no series. */
+  /** Mean of a series up to a sample, in the analysis windows if there are any; undefined without the series. */
   meanUpTo(key, sample) {
     const column = this.columns.get(key);
     if (!column) {

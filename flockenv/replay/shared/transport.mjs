@@ -1,4 +1,4 @@
-// Playing and pausing: the time that passes between pictures, and the button that shows which of the two it is.
+// Playing and pausing: the time that passes between pictures, and the button that shows whether the page plays.
 
 /** A page in the background gets no frames; it continues where it was, after so many ms at most. */
 const LONGEST_FRAME = 250;

@@ -10,7 +10,7 @@ export function element(kind, className = "", text = "") {
   return node;
 }
 
-/** A number with a real minus sign; what rounds to zero has no sign, what is not there is a dash. */
+/** A number with a real minus sign; zero has no sign, and a missing number is a dash. */
 export function fixed(value, decimals, plus = false) {
   if (value === undefined || Number.isNaN(value)) {
     return "–";

@@ -1,0 +1,156 @@
+// A training that the visitor starts: leaders that learn rudders from nothing, judged now and then in other flocks.
+
+import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { SAMPLING } from "./flocks.mjs";
+import { TRAINED } from "./laws.mjs";
+import { LearningCurve } from "./learning_curve.mjs";
+import { requestOf } from "./request.mjs";
+import { download, showTexts } from "./share.mjs";
+import { Simulator } from "./simulator.mjs";
+import { trainingCommand } from "./texts.mjs";
+
+/** Settings in which trainings differ from `flockenv train --algorithm branches` with rudders. */
+export const SETTINGS = { flock_hours: 60, hold_s: 0.8, seen_s: 0.8, trial_s: 8, branch_s: 16, offset: 1, step: 0.03 };
+/** For how many s each flock judges, and how often they do until the end. */
+const [JUDGED_SECONDS, JUDGMENTS] = [120, 12];
+/** Time in ms that the training has between two looks at whether it should go on. */
+const SLICE = 200;
+/** Time in ms between two sentences for those who do not see the curve. */
+const SAY_EVERY = 5000;
+
+export class Training {
+  /** The training's progress; null before the first. */
+  progress = null;
+  seed = 0;
+  isRunning = false;
+  settings = { ...SETTINGS };
+  /** How many flocks judge, by the seeds from 0 on. */
+  judges = 64;
+  curve = new LearningCurve(byId("curve"));
+  #page;
+  #simulator;
+  /** The flock whose training began, as a link has it, and the request for those that judge. */
+  #trained = null;
+  #judged = null;
+  #isAtWork = false;
+  #told = -Infinity;
+
+  constructor(page) {
+    this.#page = page;
+    this.#simulator = new Simulator(page.simulator.script, page.simulator.bytes);
+  }
+
+  /** Starts a training of the flock that is shown, stops the one that runs, or goes on with it. */
+  async toggle() {
+    this.isRunning = !this.isRunning;
+    this.#show();
+    if (!this.isRunning || this.#isAtWork) {
+      return;
+    }
+    this.#isAtWork = true;
+    try {
+      await this.#goOn();
+      this.#say(`${this.progress.has_ended ? "The training is over." : "Stopped."} ${this.#words}`);
+    } catch (error) {
+      this.progress = null;
+      this.#say(`No training: ${error.message}.`);
+    }
+    this.isRunning = this.#isAtWork = false;
+    this.#show();
+    showTexts(this.#page.flocks, this.#page.time);
+  }
+
+  async #goOn() {
+    if (!this.progress || this.progress.has_ended || this.#isOther) {
+      await this.#start();
+    }
+    while (this.isRunning && !this.progress.has_ended) {
+      const { training } = await this.#simulator.ask("learn", { milliseconds: SLICE });
+      await this.#took(training);
+    }
+  }
+
+  /** The flock that is shown, as a link has it, without what a training chooses itself. */
+  get #flock() {
+    const { seed: _, leaders: __, ...flock } = this.#page.shown.flock;
+    return flock;
+  }
+
+  /** Whether the flock that is shown is not the one whose training began. */
+  get #isOther() {
+    return JSON.stringify(this.#flock) !== JSON.stringify(this.#trained);
+  }
+
+  async #start() {
+    const { flocks, about } = this.#page;
+    this.seed = this.progress?.has_ended && !this.#isOther ? this.seed + 1 : 0;
+    this.#trained = this.#flock;
+    const flock = requestOf(this.#trained, flocks.kinds);
+    const provenance = {
+      command: trainingCommand(this.#trained, flocks.values, this.settings, this.seed),
+      flockenv: about.version, results_version: about.results_version,
+    };
+    if (!this.#simulator.worker) {
+      await this.#simulator.start();
+    }
+    const asked = { flock: { ...flock, seed: String(this.seed) }, options: this.settings, provenance };
+    const { training } = await this.#simulator.ask("train", { asked });
+    this.#say("Measuring how the paper's law leads.");
+    this.#judged = { ...flock, parameters: { ...flock.parameters, ...training.physics } };
+    this.curve.clear(training.end, await this.#judge({ leaders: flocks.laws.atEverySubstep }));
+    await this.#took(training);
+  }
+
+  async #took(training) {
+    this.progress = training;
+    await this.#page.flocks.teach(training.policy);
+    if (training.hours >= this.curve.next(JUDGMENTS)) {
+      this.curve.add(training.hours, await this.#judge({ leaders: TRAINED, trained: training.policy }));
+    }
+    if (performance.now() - this.#told > SAY_EVERY) {
+      this.#say(`${fixed(training.hours, 0)} of ${fixed(training.end, 0)} flock-hours. ${this.#words}`);
+    }
+    this.#show();
+  }
+
+  /** Mean signed order over the flocks that judge, which have the training's physics. */
+  async #judge(steered) {
+    const { series } = this.#page.flocks;
+    let sum = 0;
+    for (let seed = 0; seed < this.judges; seed += 1) {
+      const request = { ...this.#judged, ...steered, seed: String(seed) };
+      const question = { request, samples: SAMPLING * JUDGED_SECONDS, index: series.indexOf("signed_order"), quantities: series.length };
+      sum += (await this.#simulator.ask("judge", question)).mean;
+    }
+    return sum / this.judges;
+  }
+
+  get #words() {
+    const { last, law } = this.curve;
+    return `Signed order in ${this.judges} other flocks: your leaders ${fixed(last, 2, true)}, the paper's law ${fixed(law, 2, true)}.`;
+  }
+
+  /** Draws the curve, and names what the button does next. */
+  #show() {
+    const waits = this.progress && !this.progress.has_ended ? "go on" : "train";
+    byId("train").textContent = this.isRunning ? "stop" : waits;
+    byId("save-policy").disabled = !this.progress;
+    this.draw();
+  }
+
+  draw() {
+    this.curve.draw(this.#page.view.palette);
+    byId("curve").setAttribute("aria-label", this.progress ? `Learning curve. ${this.#words}` : "Learning curve: nothing has been learned yet");
+  }
+
+  /** Saves the newest policy through the browser. */
+  save() {
+    download(new TextEncoder().encode(this.progress.policy), "policy.json");
+    this.#page.say("policy.json holds your leaders: flockenv run --policy policy.json leads a flock with them.");
+  }
+
+  #say(words) {
+    this.#told = performance.now();
+    byId("trained").textContent = words;
+  }
+}
