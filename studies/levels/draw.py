@@ -134,6 +134,8 @@ def curves(figure: Figure) -> None:
 
 PLOTS = {
     "scores": Plot([ENTRIES, ORDERS, LAWS], scores, (6.8, 4.6)),
+    "matrix": Plot([PAIRS], matrix, (6.8, 6.8)),
+    "curves": Plot([CURVES, AREAS], curves, (6.8, 4.2)),
     "profile": Plot([ORDERS], profile, (6.8, 3.6)),
 }
 script = drawing(__name__, PLOTS)

@@ -130,3 +130,24 @@ def test_the_page_has_the_committed_rows(script) -> None:
     assert script.page(rows, text) == text
     given = {(entry.name, entry.budget) for entry in script.entries(script.ENTRIES)}
     assert given == {*zip(rows["entry"], rows["budget"].astype(str), strict=True)}
+
+
+def test_the_page_names_what_the_tables_say(script) -> None:
+    """The entries of which each two differ, the best one, and the areas under the curves."""
+    folder = script.RESULTS
+    pairs, entries, areas = (
+        pd.read_csv(folder / f"{name}.csv", dtype={"budget": str})
+        for name in ("pairs", "entries", "areas")
+    )
+    pairs, entries, areas = (
+        table[(table["level"] == "order-easy") & (table["budget"] == "30")]
+        for table in (pairs, entries, areas)
+    )
+    text = (script.HERE / "README.md").read_text("utf-8")
+    *names, last = script.told_apart(pairs)
+    assert f"Each two differ of {', '.join(names)} and {last}.**" in text
+    assert f"- **Best.** {entries['entry'].iloc[0]} has " in text
+    listed = (f"{row.entry} {row.area:.2f}" for row in areas.itertuples())
+    assert ", ".join(listed).replace("-", "−") in text
+    trained = (f"{row.entry} {row.trainings}" for row in entries.itertuples())
+    assert f"{', '.join(trained)} trainings" in text

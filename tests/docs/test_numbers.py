@@ -135,23 +135,23 @@ def entries() -> list[Number]:
     """Numbers of what learns from nothing."""
     page, folder = "studies/levels/README.md", "studies/levels/results/"
     pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
-    found = []
-    for words, better, worse in (
-        ("of linear evolution is {} above that of A2C", "linear evolution", "A2C"),
-        ("and {} above that of paired branches", "linear evolution", "paired branches"),
-        ("Paired branches are {} above A2C", "paired branches", "A2C"),
-    ):
-        row = {"better": better, "worse": worse}
-        for place, end in enumerate(("", "_low", "_high")):
-            shown = ["#"] * 3
-            shown[place] = "{}"
-            mean_and_ends = f"{shown[0]} ({shown[1]} to {shown[2]})"
-            text = words.format(mean_and_ends)
-            found.append(Number(page, text, pairs, row, f"difference{end}"))
+    few = {"level": "order-easy", "budget": 30}
+
+    def told_apart(rows: Any) -> float:
+        return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
+
+    def small(rows: Any) -> float:
+        return (rows["p_of_all_pairs"] < 0.05).sum()
+
     return [
-        *found,
-        Number(page, "training of TRPO has {},", table, {"entry": "TRPO"}, "score"),
-        Number(page, "that of PPO {}.", table, {"entry": "PPO"}, "score"),
+        Number(page, "flock-hours, {} of # pairs of", pairs, few, told_apart, "d"),
+        Number(page, "flock-hours, # of {} pairs of", pairs, few, len, "d"),
+        Number(page, "Of {} pairs # differ", pairs, few, len, "d"),
+        Number(page, "Of # pairs {} differ", pairs, few, told_apart, "d"),
+        Number(page, "design. {} of them have", pairs, few, small, "d"),
+        Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
+        Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
+        Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
         Number(page, "branches have {} (# to #): one", table, {"budget": 100}, "score"),
         Number(page, "branches have # ({} to #): one", table, {"budget": 100}, "score_low"),
         Number(page, "branches have # (# to {}): one", table, {"budget": 100}, "score_high"),
