@@ -9,6 +9,7 @@ pub mod profile;
 pub mod slide;
 pub mod solvers;
 pub mod speed;
+pub mod threads;
 pub mod wall_push;
 
 use crate::Configuration;

@@ -125,12 +125,6 @@ pub fn measure(effort: Effort) -> Table {
     .concat();
     for scene in Scene::ALL {
         add_rows(&mut table, scene, 27, &exact, seeds, timed_s);
-        // In turns of its own: a second thread would disturb the others.
-        let threads = [
-            Configuration::rapier(STEP_S),
-            Configuration::box2d_with_two_workers(STEP_S),
-        ];
-        add_rows(&mut table, scene, 27, &threads, 1, effort.choose(6.0, 24.0));
         // Their steps take so much longer that one seed is as long as three of the others.
         add_rows(&mut table, scene, 27, &inexact, 1, effort.choose(6.0, 24.0));
     }

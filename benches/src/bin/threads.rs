@@ -1,0 +1,20 @@
+//! How long a step takes where engines may use two threads: `threads FOLDER [--trial]` writes threads.csv. A program of its
+//! own, since rapier's threads are a feature that it is compiled with.
+
+use flockenv_benches::measure::{Effort, threads};
+use std::path::Path;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let folder = arguments.get(1).expect("threads FOLDER [--trial]");
+    let is_trial = arguments.iter().any(|argument| argument == "--trial");
+    let effort = if is_trial {
+        Effort::Trial
+    } else {
+        Effort::Full
+    };
+    // Rapier takes the threads of the global pool, Box2D starts its own.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads::THREADS);
+    pool.build_global().expect("the first pool");
+    threads::measure(effort).write(Path::new(folder), "threads.csv");
+}
