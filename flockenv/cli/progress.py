@@ -3,12 +3,18 @@
 import functools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import typer
 from rich.progress import Progress
 
 from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_interrupts
 from flockenv.cli.console import echo, errors
+
+
+def held_by(folder: Path) -> str:
+    """Return what an interrupted training says of its checkpoint."""
+    return f"{folder} holds the last checkpoint: --resume continues from it."
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option, option_of, takes
 from flockenv.cli.parameters import changed_fields
-from flockenv.cli.progress import progress
+from flockenv.cli.progress import held_by, progress
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.policies.names import TUNED_LAW
 from flockenv.statistics import paired_difference
@@ -104,8 +104,8 @@ def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "Trai
     from flockenv.training import ppo
 
     out = options.out
-    kept = f"{out} holds the last checkpoint: --resume continues from it."
-    with progress("training", 1.0, options.shows_nothing, ends=False, kept=kept) as advance:
+    quiet, kept = options.shows_nothing, held_by(out)
+    with progress("training", 1.0, quiet, ends=False, kept=kept) as advance:
         reported = 0.0
 
         def report(now: "Progress") -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option_of
+from flockenv.cli.progress import held_by
 from flockenv.comparison.report import overlap_note
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
@@ -46,7 +47,10 @@ def train_branches(
         training = _training(given)
         if (out / CHECKPOINT).exists():
             raise ParameterError(f"{out} holds a run already: resume it, or name another folder")
-    policy = train(training, out, command, _lines(printing.shows_nothing))
+    try:
+        policy = train(training, out, command, _lines(printing.shows_nothing))
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(held_by(out)) from None
     compared = compare_with_laws(policy, training.parameters, flocks)
     orders = {name: each["signed_order"] for name, each in compared.items()}
     _write(out, training, orders)

@@ -1,6 +1,7 @@
 """`flockenv train --algorithm branches` needs nothing but the package, and goes on where it was."""
 
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -55,6 +56,21 @@ def test_it_needs_no_other_package_and_resumes_to_the_same_policy(cli, tmp_path:
         "flockenv train --algorithm branches --pool narrow --n-leaders 2 --flock-hours 0.07 "
         "--seed 3 --set pairs=2 --set branch_s=32 --set hold_s=8 --set trial_s=16 --set n_boats=6"
     )
+
+
+def test_an_interrupt_says_that_resume_goes_on(
+    cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lines = train_branches._lines
+    press = lambda progress: signal.raise_signal(signal.SIGINT)  # noqa: E731 - after a round
+    monkeypatch.setattr(train_branches, "_lines", lambda is_quiet: press)
+    out = tmp_path / "run"
+    done = cli("train", *TINY, "--flock-hours", "5", "--out", out)
+    assert done.returncode == 130
+    assert f"Interrupted. {out} holds the last checkpoint: --resume continues" in done.stderr
+    monkeypatch.setattr(train_branches, "_lines", lines)
+    more = ["--algorithm", "branches", "--resume", "--flock-hours", "0.03", "--episodes", "2"]
+    cli.succeeds("train", *more, "--out", out)
 
 
 def test_overlaps_beyond_the_tolerance_are_said_in_one_line(
