@@ -76,6 +76,7 @@ class FlockParameters:
     discs: tuple[tuple[float, float, float], ...] = _declared("discs")
     walls: tuple[tuple[float, float, float, float], ...] = _declared("walls")
     leader_speed_factor: float = _declared("leader_speed_factor")
+    current_relaxation_s: float = _declared("current_relaxation_s")
 
     if not TYPE_CHECKING:  # Editors complete the fields, as the dataclass declares them.
 

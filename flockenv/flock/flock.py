@@ -125,6 +125,15 @@ class Flock(HintsAtNames):
         return self._in_core.time_s
 
     @property
+    def current_cm_s(self) -> float:
+        """Speed of the water's current in cm/s, counter-clockwise positive (Section 4.5).
+
+        It belongs to the time of `velocity`. Poses and velocities that are set start in water at
+        rest if the water has inertia (``current_relaxation_s``).
+        """
+        return self._in_core.current_cm_s
+
+    @property
     def in_analysis_window(self) -> bool:
         """Whether the flock is in the second half of fw or the first half of nop1 now."""
         return self._in_core.in_analysis_window

@@ -10,7 +10,7 @@ use crate::parameters::{FlockParameters, Pool, Targets};
 pub enum Change {
     /// The direction that leaders follow from now on, or that of each.
     Target(Targets),
-    /// The parameters from now on. Boats keep their headings and velocities; where the pool changes, each boat keeps
+    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the pool changes, each boat keeps
     /// its angle about the center and its share of the way between the walls. Boats that obstacles then overlap are
     /// an error.
     Parameters(Box<FlockParameters>),
@@ -30,6 +30,7 @@ impl Flock {
                 next.branch(self.noise_seed());
                 // A smaller pool may let hulls overlap a little; the contact solver parts them.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
+                next.integrator.keep_water(self.integrator.water_cm_s);
                 if !self.parameters().has_same_water(parameters) {
                     next.refuse_overlapped_obstacles()?;
                 }

@@ -153,6 +153,11 @@ impl Flock {
         &self.integrator.velocities
     }
 
+    /// Speed of the water's current in cm/s at the time of the velocities, counter-clockwise positive (Section 4.5).
+    pub fn current_cm_s(&self) -> f64 {
+        self.integrator.current_cm_s()
+    }
+
     /// Statistics of the substeps so far.
     pub fn statistics(&self) -> &Statistics {
         &self.integrator.statistics

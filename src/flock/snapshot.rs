@@ -9,6 +9,8 @@ use crate::geometry::{Pose, Velocity};
 use crate::integrator::Checkpoint;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, refused, seal, unseal};
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const MAGIC: Magic = *b"flockst4";
@@ -24,7 +26,52 @@ struct Snapshot {
     motion: Checkpoint,
 }
 
+/// A snapshot as bytes hold it: the speed of the water follows if the water has inertia.
+struct Stored(Snapshot);
+
+impl Serialize for Stored {
+    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+        let Self(state) = self;
+        let mut parts = to.serialize_tuple(1 + usize::from(state.has_inert_water()))?;
+        parts.serialize_element(state)?;
+        if state.has_inert_water() {
+            parts.serialize_element(&state.motion.water_cm_s)?;
+        }
+        parts.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for Stored {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        from.deserialize_tuple(2, Parts).map(Self)
+    }
+}
+
+/// Reads the parts of a snapshot.
+struct Parts;
+
+impl<'de> Visitor<'de> for Parts {
+    type Value = Snapshot;
+
+    fn expecting(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
+        to.write_str("a snapshot")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> std::result::Result<Snapshot, A::Error> {
+        let ended = || A::Error::invalid_length(0, &self);
+        let mut state: Snapshot = parts.next_element()?.ok_or_else(ended)?;
+        if state.has_inert_water() {
+            state.motion.water_cm_s = parts.next_element()?.ok_or_else(ended)?;
+        }
+        Ok(state)
+    }
+}
+
 impl Snapshot {
+    fn has_inert_water(&self) -> bool {
+        self.parameters.current_relaxation_s > 0.0
+    }
+
     /// The parameters that the flock was made with, before its step changed.
     fn as_made(&self) -> FlockParameters {
         FlockParameters {
@@ -61,6 +108,7 @@ impl Snapshot {
             && motion.velocities.iter().all(Velocity::is_in_range)
             && motion.warm_start.iter().all(CachedImpulse::is_finite)
             && last.rudder.iter().flatten().all(|s| s.abs() <= 1.0)
+            && motion.water_cm_s.abs() <= self.parameters.current_cap_cm_s
             && vectors
                 .flatten()
                 .chain([&motion.step_length_s, cutoff])
@@ -74,13 +122,13 @@ impl Snapshot {
 /// A flock is stored as what its snapshot holds, under the seal of whatever it is a part of.
 impl Serialize for Flock {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
-        self.state().serialize(to)
+        Stored(self.state()).serialize(to)
     }
 }
 
 impl<'de> Deserialize<'de> for Flock {
     fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        let state = Snapshot::deserialize(from)?.checked();
+        let state = Stored::deserialize(from)?.0.checked();
         let state = state.map_err(|error| match error {
             FlockError::Snapshot(why) => refused(why),
             other => refused(other.to_string()),
@@ -92,7 +140,7 @@ impl<'de> Deserialize<'de> for Flock {
 impl Flock {
     /// The whole state as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
-        seal(&MAGIC, &self.state())
+        seal(&MAGIC, &Stored(self.state()))
     }
 
     fn state(&self) -> Snapshot {
@@ -139,7 +187,7 @@ impl Flock {
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
     pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
-        let state = unseal::<Snapshot>(&MAGIC, bytes)?.checked()?;
+        let state = unseal::<Stored>(&MAGIC, bytes)?.0.checked()?;
         Ok(Self::from_checked(state, noise_seed))
     }
 }

@@ -19,6 +19,9 @@ pub(crate) struct Checkpoint {
     pub neighbor_reference: (Vec<Vec2>, f64),
     /// Memory of the leapfrog scheme.
     pub last: LastSubstep,
+    /// Speed of water with inertia in cm/s, which a snapshot stores last and only with inertia.
+    #[serde(skip)]
+    pub water_cm_s: f64,
     /// Divisor of impulses that gives forces, in s.
     pub step_length_s: f64,
     /// Running statistics.
@@ -48,6 +51,7 @@ impl Integrator {
             .0
             .extend_from_slice(neighbors.reference());
         into.neighbor_reference.1 = neighbors.cutoff();
+        into.water_cm_s = self.water_cm_s;
         into.step_length_s = self.step_length_s;
         into.statistics = self.statistics;
     }
@@ -59,6 +63,7 @@ impl Integrator {
         self.contacts.set_warm_start(&checkpoint.warm_start);
         let (reference, cutoff) = &checkpoint.neighbor_reference;
         self.contacts.detector.neighbors.restore(reference, *cutoff);
+        self.water_cm_s = checkpoint.water_cm_s;
         self.step_length_s = checkpoint.step_length_s;
         self.statistics = checkpoint.statistics;
     }

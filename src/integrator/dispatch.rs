@@ -34,8 +34,9 @@ impl Integrator {
     /// Stops what only creeps. Once a second, at whole seconds, so that it costs nothing and pauses change nothing.
     #[inline(never)]
     fn bring_to_rest(&mut self) {
+        let stop = |speed: f64| if speed.abs() < REST { 0.0 } else { speed };
+        self.water_cm_s = stop(self.water_cm_s);
         for velocity in &mut self.velocities {
-            let stop = |speed: f64| if speed.abs() < REST { 0.0 } else { speed };
             velocity.linear = velocity.linear.map(stop);
             velocity.angular = stop(velocity.angular);
         }

@@ -51,8 +51,9 @@ impl Integrator {
         ))
     }
 
-    /// Fills `drives` for a substep: preferred speed and rudder of its phase, water, noise.
-    pub(super) fn fill_drives(&mut self, substep: &Substep) {
+    /// Fills `drives` for a substep: preferred speed and rudder of its phase, noise, and the water a time after the
+    /// present velocities.
+    pub(super) fn fill_drives(&mut self, substep: &Substep, ahead_s: f64) {
         let normal = Drive {
             preferred_speed: self.phase_speed(false, substep.phase),
             rudder: self.parameters.turning_bias,
@@ -72,24 +73,63 @@ impl Integrator {
         for (drive, factor) in self.drives.iter_mut().zip(&self.speed_factors) {
             drive.preferred_speed *= factor;
         }
-        self.fill_water(|state, boat| state.velocities[boat].linear);
+        self.fill_water(ahead_s, |state, boat| state.velocities[boat].linear);
     }
 
-    /// Sets the water in `drives` as boats with these velocities move it: counter-clockwise with the
-    /// speed −κ·(mean tangential velocity of the boats), capped (Section 4.5).
-    pub(super) fn fill_water(&mut self, velocity: impl Fn(&Self, usize) -> Vec2) {
-        let p = &self.parameters;
-        if p.current_gain == 0.0 {
+    /// Sets the water in `drives` a time after the present velocities, as boats with the given velocities move it:
+    /// counter-clockwise with the speed −κ·(mean tangential velocity of the boats), capped (Section 4.5), which water
+    /// with inertia approaches exponentially.
+    pub(super) fn fill_water(&mut self, ahead_s: f64, velocity: impl Fn(&Self, usize) -> Vec2) {
+        if self.parameters.current_gain == 0.0 && self.water_cm_s == 0.0 {
             return;
         }
-        let sum: f64 = (0..self.poses.len())
-            .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
-            .sum();
-        let cap = p.current_cap_cm_s;
-        let current = (-p.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap);
+        self.driven_water_cm_s = self.driven_water(velocity);
+        let current = self.water_after(ahead_s);
         for boat in 0..self.poses.len() {
             self.drives[boat].water = self.tangent(boat) * current;
         }
+    }
+
+    /// Speed of the water in cm/s that boats with these velocities would keep up.
+    fn driven_water(&self, velocity: impl Fn(&Self, usize) -> Vec2) -> f64 {
+        let sum: f64 = (0..self.poses.len())
+            .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
+            .sum();
+        let cap = self.parameters.current_cap_cm_s;
+        (-self.parameters.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap)
+    }
+
+    /// Speed of the water in cm/s after it has followed what drives it for a time.
+    fn water_after(&self, seconds: f64) -> f64 {
+        let relaxation_s = self.parameters.current_relaxation_s;
+        if relaxation_s == 0.0 {
+            return self.driven_water_cm_s;
+        }
+        let followed = -libm::expm1(-seconds / relaxation_s);
+        self.water_cm_s + followed * (self.driven_water_cm_s - self.water_cm_s)
+    }
+
+    /// Moves water with inertia on by a time, after a substep that was taken.
+    pub(super) fn move_water(&mut self, seconds: f64) {
+        if self.parameters.current_relaxation_s > 0.0 {
+            self.water_cm_s = self.water_after(seconds);
+        }
+    }
+
+    /// Continues with the water of a flock with other parameters, as far as these allow it.
+    pub(crate) fn keep_water(&mut self, water_cm_s: f64) {
+        if self.parameters.current_relaxation_s > 0.0 {
+            let cap = self.parameters.current_cap_cm_s;
+            self.water_cm_s = water_cm_s.clamp(-cap, cap);
+        }
+    }
+
+    /// Speed of the water in cm/s at the time of the velocities, counter-clockwise positive.
+    pub(crate) fn current_cm_s(&self) -> f64 {
+        if self.parameters.current_relaxation_s > 0.0 {
+            return self.water_cm_s;
+        }
+        self.driven_water(|state, boat| state.velocities[boat].linear)
     }
 
     /// Counter-clockwise unit tangent at a boat; zero at the pool's center.

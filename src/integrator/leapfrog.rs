@@ -22,7 +22,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     let kick = 0.5 * seconds(half_ticks);
     let start = 2 * substep.start - flock.last.length.min(2 * substep.start);
     flock.draw_noise(substep.start, start, 2 * substep.start + substep.length);
-    flock.fill_drives(substep);
+    flock.fill_drives(substep, 0.5 * kick);
     blend_drives(flock, substep);
     center_water(flock, kick);
     centered_velocities(flock, kick);
@@ -40,6 +40,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
             .add_persistent_acceleration(&flock.inertia, kick, persistent);
     }
     flock.step_length_s = kick;
+    flock.move_water(kick);
     flock.drift(dt);
     remember(flock, substep);
     Ok(())
@@ -73,7 +74,7 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
 /// Replaces the water by that which the boats move in the middle of the kick: taken from velocities
 /// half a kick old, it would cost the scheme its second order.
 fn center_water(flock: &mut Integrator, kick: f64) {
-    flock.fill_water(|flock, boat| {
+    flock.fill_water(0.5 * kick, |flock, boat| {
         let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
         let drive = &flock.drives[boat];
         let free = flock.motion.centered_change(velocity, axis, drive, kick);

@@ -9,10 +9,11 @@ use crate::contact::NotTaken;
 pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
     let dt = seconds(substep.length);
     flock.draw_substep_noise(substep);
-    flock.fill_drives(substep);
+    flock.fill_drives(substep, dt);
     explicit_velocities(flock, dt);
     flock.solve_contacts(substep)?;
     flock.step_length_s = dt;
+    flock.move_water(dt);
     flock.drift(dt);
     Ok(())
 }

@@ -20,7 +20,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     let dt = seconds(substep.length);
     flock.step_length_s = dt;
     flock.draw_substep_noise(substep);
-    flock.fill_drives(substep);
+    flock.fill_drives(substep, dt);
     explicit_velocities(flock, dt);
     let divisibility = flock.divisibility(dt);
     let (contacts, statistics) = (&mut flock.contacts, &mut flock.statistics);
@@ -39,6 +39,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
         flock
             .velocities
             .copy_from_slice(&flock.contacts.solver.velocities);
+        flock.move_water(dt);
         flock.drift(dt);
         return Ok(());
     }
@@ -46,6 +47,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
         return Err(NotTaken::TooLong);
     }
     contacts.clear_warm_start();
+    flock.move_water(dt);
     flock.drift(dt);
     flock.velocities.copy_from_slice(&flock.free);
     Ok(())

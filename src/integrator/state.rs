@@ -29,6 +29,10 @@ pub(crate) struct Integrator {
     pub(crate) free: Vec<Velocity>,
     pub(crate) inertia: Vec<InverseInertia>,
     pub(crate) last: LastSubstep,
+    /// Speed in cm/s of water with inertia at the time of the velocities, counter-clockwise positive; 0 without inertia.
+    pub(crate) water_cm_s: f64,
+    /// Speed in cm/s that this substep's boats would keep up in the water.
+    pub(super) driven_water_cm_s: f64,
     pub(crate) statistics: Statistics,
     /// Length of the last change of velocity in s: what impulses are divided by to give forces.
     pub(crate) step_length_s: f64,
@@ -56,17 +60,20 @@ impl Integrator {
             free: Vec::with_capacity(n),
             inertia: vec![inertia; n],
             last: LastSubstep::default(),
+            water_cm_s: 0.0,
+            driven_water_cm_s: 0.0,
             statistics: Statistics::default(),
             step_length_s: 0.0,
             parameters: parameters.clone(),
         }
     }
 
-    /// Sets poses and velocities, and forgets earlier motion.
+    /// Sets poses and velocities, in water at rest, and forgets earlier motion.
     pub(crate) fn place(&mut self, poses: &[Pose], velocities: &[Velocity]) {
         self.poses.copy_from_slice(poses);
         self.velocities.copy_from_slice(velocities);
         self.last = LastSubstep::default();
+        (self.water_cm_s, self.driven_water_cm_s) = (0.0, 0.0);
         self.step_length_s = 0.0;
         self.contacts.forget();
         self.update_boats();

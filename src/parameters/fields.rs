@@ -84,6 +84,9 @@ declare_fields! {
     /// Leaders' preferred speeds over those of the normal boats (Section 2.6: "similar"). The strength of their rudder is
     /// c2, which no boat without a rudder has.
     leader_speed_factor: f64 = 1.0, "", Range::Within(0.0, 10.0, "0 to 10"), "Section 2.6 (similar speed and power)";
+    /// Time in which the water current follows the flock: it approaches what `current_gain` sets exponentially, from
+    /// rest; 0: it follows at once.
+    current_relaxation_s: f64 = 0.0, "s", Range::NonNegative, "Section 4.5, off";
 }
 
 impl FlockParameters {

@@ -120,6 +120,11 @@ impl PyFlock {
     }
 
     #[getter]
+    fn current_cm_s(&self) -> Result<f64> {
+        Ok(self.0.read()?.current_cm_s())
+    }
+
+    #[getter]
     fn in_analysis_window(&self) -> Result<bool> {
         let flock = self.0.read()?;
         Ok(flock.schedule().in_analysis_window(flock.time()))

@@ -269,3 +269,36 @@ def test_a_flock_from_a_state_is_one_that_was_put_there():
     assert given.snapshot() == put.snapshot()
     with pytest.raises(TypeError, match="state"):
         Flock.from_state(parameters, 9, pose)
+
+
+def test_water_with_inertia_comes_with_copies_and_starts_at_rest():
+    """After 5 s of 10 s it is far from what the boats drive, and still not at rest."""
+    parameters = flockenv.FlockParameters(
+        n_boats=5, current_gain=0.5, current_cap_cm_s=9.0, current_relaxation_s=10.0
+    )
+    flock = Flock(parameters, 4)
+    assert flock.current_cm_s == 0.0
+    flock.advance(5.0)
+    water = flock.current_cm_s
+    assert 0.0 < abs(water) < 9.0
+    for other in (copy.copy(flock), pickle.loads(pickle.dumps(flock))):
+        assert other.current_cm_s == water
+        other.advance(1.0)
+        assert flock.current_cm_s == water != other.current_cm_s
+    flock.set_state(flock.pose, flock.velocity)
+    assert flock.current_cm_s == 0.0
+
+
+def test_water_without_inertia_is_a_share_of_the_mean_tangential_velocity():
+    flock = Flock(flockenv.FlockParameters(n_boats=5, current_gain=0.5, current_cap_cm_s=9.0), 4)
+    flock.advance(5.0)
+    x, y = flock.pose[:, :2].T
+    along = (x * flock.velocity[:, 1] - y * flock.velocity[:, 0]) / np.hypot(x, y)
+    assert flock.current_cm_s == pytest.approx(-0.5 * along.mean(), rel=1e-12)
+    assert abs(flock.current_cm_s) > 0.01
+
+
+@pytest.mark.parametrize("relaxation_s", [-1.0, math.nan, math.inf, 2e6])
+def test_a_relaxation_time_out_of_range_is_refused(relaxation_s):
+    with pytest.raises(ParameterError, match=r"current_relaxation_s.*at least 0"):
+        flockenv.FlockParameters(current_relaxation_s=relaxation_s)

@@ -204,6 +204,29 @@ fn in_parts_of_7_bits(mut number: u64) -> Vec<u8> {
 }
 
 #[test]
+fn water_with_inertia_is_stored_and_kept_below_its_cap() {
+    let parameters = FlockParameters {
+        current_gain: 0.5,
+        current_cap_cm_s: 3.0,
+        current_relaxation_s: 2.5,
+        ..FlockParameters::default()
+    };
+    let mut flock = Flock::new(parameters, 3).unwrap();
+    flock.advance(20.0, None).unwrap();
+    let (bytes, water) = (flock.snapshot(), flock.current_cm_s());
+    assert!(water != 0.0);
+    let read = Flock::from_snapshot(&bytes, None).unwrap();
+    assert_eq!(read.current_cm_s(), water);
+    assert_eq!(read.snapshot(), bytes);
+    for other in [3.1, -3.1, f64::NAN] {
+        assert!(Flock::from_snapshot(&forged(&bytes, water, other), None).is_err());
+    }
+    let mut cut = bytes[..bytes.len() - 8].to_vec();
+    reseal(&mut cut);
+    assert!(Flock::from_snapshot(&cut, None).is_err());
+}
+
+#[test]
 fn states_with_numbers_that_no_boat_has_are_refused() {
     let batch = batch(settings(12), &[1], 0);
     let flock = flock(&batch, 0);

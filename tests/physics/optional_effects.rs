@@ -13,6 +13,7 @@ fn all_on(scheme: Scheme, noise: Noise) -> FlockParameters {
         speed_spread_cm_s: 4.0,
         current_gain: 0.4,
         current_cap_cm_s: 3.0,
+        current_relaxation_s: 2.5,
         leader_speed_factor: 1.2,
         ..busy(scheme, noise)
     }
@@ -32,11 +33,13 @@ fn run(p: &FlockParameters, seed: u64, durations: &[f64]) -> Vec<u64> {
 }
 
 #[test]
-fn a_cap_without_a_current_changes_no_bit() {
+fn a_cap_and_inertia_without_a_current_change_no_bit() {
     for (scheme, noise) in kinds() {
         let plain = busy(scheme, noise);
-        let capped = changed(plain.clone(), |p| p.current_cap_cm_s = 0.5);
-        assert_eq!(run(&plain, 6, &[4.0]), run(&capped, 6, &[4.0]));
+        let still = changed(plain.clone(), |p| {
+            (p.current_cap_cm_s, p.current_relaxation_s) = (0.5, 2.5);
+        });
+        assert_eq!(run(&plain, 6, &[4.0]), run(&still, 6, &[4.0]));
     }
 }
 
