@@ -158,9 +158,10 @@ class Plot:
         """Draw into a file."""
         with mpl.rc_context(page_style()):
             figure = Figure(figsize=self.size, layout="constrained")
+            digest = self.digest()  # Before a folder is made: it names a table that is missing.
             self.draw(figure)
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_png(figure, path, 150, **{DATA: self.digest()})
+            write_png(figure, path, 150, **{DATA: digest})
 
 
 def listed(

@@ -263,7 +263,8 @@ def draw(options: Options, found: pd.DataFrame) -> None:
 def script(options: Options) -> None:
     """Make the runs, judge and draw them."""
     if len(table := whole_blocks(STUDY.results(options, optional=True))):
-        write_claims(options, "condensation", judge(table))
+        if claims := judge(table):  # A trial is too short for jams.
+            write_claims(options, "condensation", claims)
         found = cells(table)
         text = found.to_csv(index=False, float_format="%.3g", lineterminator="\n")
         write(options.folder / "condensation.csv", text.encode())
