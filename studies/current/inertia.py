@@ -172,11 +172,15 @@ def judge(table: pd.DataFrame) -> Claims:
         least=0.0,
     )
     claims.ours = False
+    v0 = flockenv.FlockParameters.preset("experiment").speed_cm_s
     claims.add(
         "The current lowers velocity correlations in the ordered state",
         f"mean C_v / v0², bw = 0.8 to 1.2 s, k = 0, {INERT} minus {WEAK}",
         bca(
-            [over(arm(table, words, 0), "c_v", *ORDERED_S)[:, None] for words in (INERT, WEAK)],
+            [
+                over(arm(table, words, 0), "c_v", *ORDERED_S)[:, None] / v0**2
+                for words in (INERT, WEAK)
+            ],
             lambda strong, weak: strong[..., 0].mean(-1) - weak[..., 0].mean(-1),
         ),
         most=0.0,
@@ -199,7 +203,8 @@ def draw(options: Options, table: pd.DataFrame) -> None:
             axes.axhline(0.3, color="0.6", linestyle="--", zorder=0)
             axes.set(title=f"{leaders} leaders", xlabel="bw (s)")
         panels[0].set_ylabel("mean Ψ_o")
-        panels[0].legend()
+        handles, labels = panels[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=3)
         figure.supxlabel("shaded: Ψ_o falls through 0.3", fontsize=8)
 
 
