@@ -13,8 +13,6 @@ import { trainingCommand } from "./texts.mjs";
 export const SETTINGS = { flock_hours: 60, hold_s: 0.8, seen_s: 0.8, trial_s: 8, branch_s: 16, offset: 1, step: 0.03 };
 /** For how many s each flock judges, and how often they do until the end. */
 const [JUDGED_SECONDS, JUDGMENTS] = [120, 12];
-/** Time in ms that the training has between two looks at whether it should go on. */
-const SLICE = 200;
 /** Time in ms between two sentences for those who do not see the curve. */
 const SAY_EVERY = 5000;
 
@@ -24,6 +22,8 @@ export class Training {
   seed = 0;
   isRunning = false;
   settings = { ...SETTINGS };
+  /** Time in ms that the training has between two looks at whether it should go on. */
+  slice = 200;
   /** How many flocks judge, by the seeds from 0 on. */
   judges = 64;
   curve = new LearningCurve(byId("curve"));
@@ -65,7 +65,7 @@ export class Training {
       await this.#start();
     }
     while (this.isRunning && !this.progress.has_ended) {
-      const { training } = await this.#simulator.ask("learn", { milliseconds: SLICE });
+      const { training } = await this.#simulator.ask("learn", { milliseconds: this.slice });
       await this.#took(training);
     }
   }
