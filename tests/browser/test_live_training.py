@@ -101,7 +101,8 @@ def test_it_stops_and_goes_on_to_the_same_policy(open_live):
 
 
 def test_the_flock_moves_on_while_leaders_learn(open_live):
-    live = opened(open_live(), flock_hours=1e4)  # More than any machine makes meanwhile.
+    # More than any machine makes meanwhile, in steps that so long a training can bear.
+    live = opened(open_live(), flock_hours=1e4, pairs=32, step=0.03)
     live.click("#train")
     live.click("#play")
     live.until("return page.training.progress?.hours > 0")
