@@ -10,9 +10,9 @@ use crate::parameters::{FlockParameters, Pool, Targets};
 pub enum Change {
     /// The direction that leaders follow from now on, or that of each.
     Target(Targets),
-    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the pool changes, each boat keeps
-    /// its angle about the center and its share of the way between the walls. Boats that obstacles then overlap are
-    /// an error.
+    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the
+    /// pool changes, each boat keeps its angle about the center and its share of the way between the walls. Boats that
+    /// obstacles then overlap are an error.
     Parameters(Box<FlockParameters>),
 }
 

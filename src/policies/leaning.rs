@@ -199,7 +199,12 @@ impl LeaningLaw {
         LeanFeatures::check_pool(Some(&self.pool))?;
         let weights = LeanFeatures::names().zip(self.weights);
         for (name, value) in weights.chain([("bias", self.bias)]) {
-            FlockError::unless(value.abs() <= 1e9, name, value, "a finite number")?;
+            FlockError::unless(
+                value.abs() <= 1e9,
+                name,
+                value,
+                "a finite number from -1e9 to 1e9",
+            )?;
         }
         let Some(period) = self.decision_period_s else {
             return Ok(());
