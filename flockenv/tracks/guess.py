@@ -19,6 +19,7 @@ from flockenv.tracks.table import (
     cells_of,
     check_ending,
     ending,
+    has_decimal,
     is_value,
     listed,
     read_table,
@@ -46,7 +47,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         form = _spelling(path, doubts)
     except ParameterError as error:
         raise ParameterError(f"{path} cannot be read as a table: {error}") from error
-    table = read_table(path, _layout(form))
+    table = read_table(path, TrackLayout(pool="wide", **form))
     form |= recognized(table.names) if "header" not in doubts else {}
     try:
         _guess_fields(table, form, doubts)
@@ -57,13 +58,6 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     first = "# Guessed from the table beside this file. Check the lines that say so."
     write_text(description, "\n".join([first, *lines, *checks]) + "\n")
     return checks
-
-
-def _layout(form: Form) -> TrackLayout:
-    def value(given: Any) -> Any:
-        return tuple(given) if isinstance(given, list) else None if given == "" else given
-
-    return TrackLayout(pool="wide", **{name: value(given) for name, given in form.items()})
 
 
 def _toml(value: Any) -> str:
@@ -79,7 +73,7 @@ def _guess_fields(table: Table, form: Form, doubts: Doubts) -> None:
     if missing not in ([], ["id"]):
         doubts["pool"] = ("", "fill in: outer and inner radius in cm")
     else:
-        layout = _layout({"heading": "", **form, "confidence": ""})
+        layout = TrackLayout(pool="wide", **{"heading": "", **form, "confidence": ""})
         if "id" in form and names_nobody(table, layout):
             form["id"] = ""
         rows = long_table(table, layout) if layout.is_wide else table
@@ -116,7 +110,9 @@ def _spelling(path: Path, doubts: Doubts) -> Form:
     if mark and mark != ("\t" if ending(path).startswith(".tsv") else ","):
         form["separator"] = mark
     form |= {"skip": skip} if skip else {}
-    if mark not in ("", ",") and any(_has_comma(line, mark) for line in lines[1:]):
+    if mark not in ("", ",") and any(
+        has_decimal(cell.strip(), ",") for line in lines[1:] for cell in line.split(mark)
+    ):
         form["decimal"] = ","
     first = next(iter(cells_of(text, mark or ",", skip, 1)), [])
     if first and all(is_value(cell) or not cell for cell in first):
@@ -127,11 +123,6 @@ def _spelling(path: Path, doubts: Doubts) -> Form:
         if not is_mot:
             doubts["header"] = (names, "fill in: names of the columns, which the file lacks")
     return form
-
-
-def _has_comma(line: str, mark: str) -> bool:
-    cells = (cell.strip().lstrip("+-").partition(",") for cell in line.split(mark))
-    return any(whole.isdigit() and part.isdigit() for whole, _, part in cells)
 
 
 def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:

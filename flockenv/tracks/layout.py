@@ -2,82 +2,76 @@
 
 import math
 import os
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from numbers import Real
 from pathlib import Path
-from typing import Any, Literal
+from types import NoneType
+from typing import Any, Literal, get_args, get_origin
 
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
 
-Rule = tuple[Callable[[Any], bool], str]
-
-
-def _is_name(value: Any) -> bool:
-    return isinstance(value, str) and bool(value.strip())
-
-
-def _is_number(value: Any) -> bool:
-    return not isinstance(value, bool) and isinstance(value, Real) and math.isfinite(value)
-
-
-def _is_positive(value: Any) -> bool:
-    return _is_number(value) and value > 0.0
-
-
-def _are(holds: Callable[[Any], bool], values: Any, count: int | None = None) -> bool:
-    return isinstance(values, tuple) and all(map(holds, values)) and count in (None, len(values))
-
-
-def _among(*values: Any) -> Rule:
-    words = (value if value.isalpha() else repr(value) for value in values if value)
-    return lambda value: value in values, " or ".join(words)
-
-
-_COLUMN = "the name of a column"
 _Columns = str | tuple[str, ...]
-_Heading = str | tuple[str, str, str, str] | None
-_KINDS: dict[Any, Rule] = {
-    str: (_is_name, _COLUMN),
-    _Columns: (
-        lambda value: _is_name(value) or (value != () and _are(_is_name, value)),
-        f"{_COLUMN}, or a list of them",
-    ),
-    bool: (lambda value: isinstance(value, bool), "true or false"),
-    int: (lambda value: type(value) is int and 0 <= value <= 1000, "a number of lines up to 1000"),
-    float: (_is_positive, "a positive number"),
-    tuple[float, float]: (lambda value: _are(_is_number, value, 2), "two numbers"),
-    tuple[str, str]: (lambda value: _are(_is_name, value, 2), "the columns of width and height"),
-    tuple[str, str, str, str]: (
-        lambda value: _are(_is_name, value, 4),
-        "the columns x, y, z and w of a quaternion",
-    ),
-    tuple[str, ...]: (
-        lambda value: _are(lambda name: isinstance(name, str), value),
-        "a list of names",
-    ),
-    tuple[tuple[float, float], ...]: (
-        lambda value: _are(lambda point: _are(_is_number, point, 2), value),
-        "a list of points [x, y]",
-    ),
-    _Heading: (
-        lambda value: value is None or _is_name(value) or _are(_is_name, value, 4),
-        "a column, or the columns x, y of the tail and x, y of the head",
-    ),
-    Literal["rad", "deg", "turn"]: _among("rad", "deg", "turn"),
-    Literal["right", "up", "left", "down"]: _among("right", "up", "left", "down"),
-    Literal["cw", "ccw"]: _among("cw", "ccw"),
-    Literal[",", ";", "\t", " ", "|"]: _among(",", ";", "\t", " ", "|"),
-    Literal[".", ","]: _among(".", ","),
+_Four = tuple[str, str, str, str]
+_ACCEPTED: dict[Any, str] = {
+    str: "the name of a column",
+    _Columns: "the name of a column, or a list of them",
+    bool: "true or false",
+    int: "a number of lines up to 1000",
+    float: "a positive number",
+    tuple[float, float]: "two numbers",
+    tuple[str, str]: "the columns of width and height",
+    _Four: "the columns x, y, z and w of a quaternion",
+    str | _Four: "a column, or the columns x, y of the tail and x, y of the head",
+    tuple[str, ...]: "a list of names",
+    tuple[tuple[float, float], ...]: "a list of points [x, y]",
 }
-_KINDS |= {
-    kind | None: (lambda value, holds=holds: value is None or holds(value), words)
-    for kind, (holds, words) in _KINDS.items()
-    if kind != _Heading
-}
-"""Kinds of a layout's fields, by their annotation; FlockParameters has those of the others."""
+"""What a field accepts, by its annotation without None; FlockParameters checks the others."""
+
+
+def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
+    """Return whether a value is of an annotated kind.
+
+    Names are not blank and numbers positive, but for those inside of a list.
+    """
+    origin, kinds = get_origin(kind), get_args(kind)
+    if origin is Literal:
+        return value in kinds
+    if origin is tuple:
+        kinds = kinds[:1] * len(value) if kinds[-1] is ... and isinstance(value, tuple) else kinds
+        if not isinstance(value, tuple) or len(value) != len(kinds):
+            return False
+        return all(_is_of(one, item, inside=True) for one, item in zip(kinds, value, strict=True))
+    if kinds:
+        return any(_is_of(one, value) for one in kinds)
+    if kind is float:
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        return is_number and math.isfinite(value) and (inside or value > 0.0)
+    if kind is int:
+        return type(value) is int and 0 <= value <= 1000
+    return isinstance(value, kind) and (kind is not str or inside or bool(value.strip()))
+
+
+def _check(name: str, kind: Any, value: Any) -> None:
+    """Refuse a value that is not of the annotated kind of a field."""
+    if kind is Any or _is_of(kind, value):
+        return
+    if get_origin(kind) is Literal:
+        words = [word if word.isalpha() else repr(word) for word in get_args(kind) if word]
+        accepted = " or ".join(words)
+    else:
+        accepted = next(words for one, words in _ACCEPTED.items() if kind in (one, one | None))
+    raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {accepted}")
+
+
+def _plain(name: str, value: Any) -> Any:
+    """Return lists as tuples. Boats, and values that stand for none, may be written as numbers."""
+    if not isinstance(value, list | tuple):
+        return value
+    as_text = name in ("leaders", "unassigned", "missing")
+    plain = (_plain("", item) for item in value)
+    return tuple(str(v) if as_text and type(v) in (int, float) else v for v in plain)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,8 +80,8 @@ class TrackLayout:
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
-    columns such as ``nose_x``, and what is left out here is found by their names. A ParameterError
-    refuses a value out of range or of another kind.
+    columns such as ``nose_x``, and what is left out here is found by their names. Lists are taken
+    as tuples, and "" as None. A ParameterError refuses a value out of range or of another kind.
 
     Attributes
     ----------
@@ -162,11 +156,11 @@ class TrackLayout:
     x: _Columns = "x"
     y: _Columns = "y"
     box: tuple[str, str] | None = None
-    heading: _Heading = "heading"
-    quaternion: tuple[str, str, str, str] | None = None
+    heading: str | _Four | None = "heading"
+    quaternion: _Four | None = None
     heading_unit: Literal["rad", "deg", "turn"] = "rad"
     heading_zero: Literal["right", "up", "left", "down"] = "right"
-    heading_turns: Literal["cw", "ccw"] | None = None
+    heading_turns: Literal["cw", "ccw", None] = None
     axis: bool = False
     wrapped: bool = True
     cm_per_unit: float | None = None
@@ -181,20 +175,19 @@ class TrackLayout:
     )
     lost: tuple[tuple[float, float], ...] = ()
     missing: tuple[str, ...] = ()
-    separator: Literal[",", ";", "\t", " ", "|"] | None = None
+    separator: Literal[",", ";", "\t", " ", "|", None] = None
     decimal: Literal[".", ","] = "."
     skip: int = 0
     header: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for one in fields(self):
-            value = getattr(self, one.name)
-            holds, accepted = _KINDS.get(one.type, (None, ""))
-            if holds and not holds(value):
-                raise ParameterError(
-                    f"{one.name} = {short_repr(value)} is not accepted: {accepted}"
-                )
-        if len(columns_of(self.x)) != len(columns_of(self.y)):
+            value = _plain(one.name, getattr(self, one.name))
+            if value == "" and {None, NoneType} & {*get_args(one.type)}:
+                value = None
+            _check(one.name, one.type, value)
+            object.__setattr__(self, one.name, value)
+        if not 0 < len(columns_of(self.x)) == len(columns_of(self.y)):
             raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
         if (self.confidence is None) != (self.least_confidence is None):
             raise ParameterError("confidence and least_confidence need each other")
@@ -251,21 +244,11 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
 
     A ParameterError names a file that cannot be read, or is no layout.
     """
-    values = {name: _plain(name, value) for name, value in read_toml_file(path, str(path)).items()}
+    values = read_toml_file(path, str(path))
     try:
         refuse_unknown(values, [one.name for one in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
-        none = {name: None for name in ("id", "heading", "separator") if values.get(name) == ""}
-        return TrackLayout(**{**values, **none})
+        return TrackLayout(**values)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
-
-
-def _plain(name: str, value: Any) -> Any:
-    """Return lists as tuples. Boats, and values that stand for none, may be written as numbers."""
-    if not isinstance(value, list):
-        return value
-    as_text = name in ("leaders", "unassigned", "missing")
-    plain = (_plain("", item) for item in value)
-    return tuple(str(v) if as_text and type(v) in (int, float) else v for v in plain)

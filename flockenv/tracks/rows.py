@@ -1,5 +1,6 @@
 """Rows of tracks in cm and rad, and why some of them count for nothing."""
 
+import re
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,6 @@ import numpy as np
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.clock import times_of
-from flockenv.tracks.formats import quaternion
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import HEADING_ZERO, TURN, UNIT, in_water
 from flockenv.tracks.table import NONE, Floats, Table, listed
@@ -71,38 +71,28 @@ def names_nobody(table: Table, layout: TrackLayout) -> bool:
 def long_table(table: Table, layout: TrackLayout) -> Table:
     """Return one row per frame and boat, of a table with one row per frame."""
     pandas = require("pandas", "plot")
-    fields = [name for columns in layout.columns.values() for name in columns]
-    names = _names_beside(table, layout)
+    fields = dict.fromkeys(name for columns in layout.columns.values() for name in columns)
+    names = _names_beside(table, [*fields])
     rows, many = table.rows, len(names)
     columns: dict[str, Any] = {
         layout.frame: np.tile(table.column(layout.frame), many),
         "{id}": np.repeat(names, len(rows)),
     }
-    for field in dict.fromkeys(fields):
-        boats = [table.name_of(field.replace("{id}", name)) for name in names]
-        columns[field] = rows[boats].to_numpy().T.ravel()
+    for field in fields:
+        boats = [table.index_of(field.replace("{id}", name)) for name in names]
+        columns[field] = rows.iloc[:, boats].to_numpy().T.ravel()
     index = pandas.Index(np.tile(rows.index, many), name=rows.index.name)
     return Table(pandas.DataFrame(columns, index))
 
 
-def _names_beside(table: Table, layout: TrackLayout) -> list[str]:
-    """Return the names of the boats of a table with one row per frame."""
-    fields = [name for columns in layout.columns.values() for name in columns]
-    first, _, last = (part.casefold() for part in fields[0].partition("{id}"))
-    bare = [name.strip() for name in table.names]
-    names = [
-        name[len(first) : len(name) - len(last)]
-        for name in bare
-        if name.casefold().startswith(first)
-        and name.casefold().endswith(last)
-        and len(name) > len(first + last)
-    ]
+def _names_beside(table: Table, fields: list[str]) -> list[str]:
+    """Return the names that stand for {id} in the columns of a table with one row per frame."""
+    first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+    names = [found[1] for name in table.names if (found := first.fullmatch(name.strip()))]
     names = [n for n in names if all(field.replace("{id}", n) in table for field in fields)]
     if not names:
-        raise ParameterError(
-            f"no columns look like {' and '.join(map(repr, fields))}; there are "
-            f"{listed(table.names)}"
-        )
+        looks = " and ".join(map(repr, fields))
+        raise ParameterError(f"no columns look like {looks}; there are {listed(table.names)}")
     return names
 
 
@@ -174,42 +164,38 @@ def _turned(table: Table, layout: TrackLayout, columns: tuple[str, str, str, str
 
 
 def _check_no_part(table: Table, layout: TrackLayout) -> None:
-    """Refuse a part of a quaternion, a sine or a cosine in index of a heading.
+    """Refuse a part of a quaternion, a sine or a cosine in place of a heading.
 
     Names of columns do not matter: the squares of neighboring parts add up to 1.
     """
-    columns = layout.columns["heading"]
-    if len(columns) != 1:
+    heading = layout.columns["heading"]
+    if len(heading) != 1:
         return
-    boat = _names_beside(table, layout)[0] if layout.is_wide else ""
-    names: list[Any] = [*table.rows]
-    index = names.index(table.name_of(columns[0].replace("{id}", boat)))
-    beside = {name: _part(table, name, layout) for name in names[max(0, index - 3) : index + 4]}
-    parts = {name: part for name, part in beside.items() if part is not None}
-    own = parts.pop(names[index], None)
-    if own is None or not np.std(own) > 0.0:
+    fields = [name for columns in layout.columns.values() for name in columns]
+    boat = _names_beside(table, fields)[0] if layout.is_wide else ""
+    own = table.index_of(heading[0].replace("{id}", boat))
+    beside = range(max(0, own - 3), min(own + 4, len(table.names)))
+    squares = {index: _squares(table, table.names[index], layout) for index in beside}
+    parts = [index for index in beside if squares[index] is not None and index != own]
+    if squares[own] is None or not np.std(squares[own]) > 0.0:
         return
     for others in (*combinations(parts, 3), *combinations(parts, 1)):
-        total = own + np.sum([parts[name] for name in others], axis=0)
-        if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(own):
-            together = [*map(str, (names[index], *others))]
-            four = quaternion(together)
+        total = np.sum([squares[index] for index in (own, *others)], axis=0)
+        if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(squares[own]):
+            names = listed([table.names[index] for index in sorted((own, *others))])
             raise ParameterError(
-                f"heading = {columns[0]!r} is a part of a quaternion: quaternion = {four} instead"
-                if four and not layout.is_wide
-                else f"heading = {columns[0]!r} is a part of a turn: the squares of "
-                f"{listed(together)} add up to 1. Name the four columns of a quaternion, or make "
-                "angles of a sine and a cosine"
+                f"heading = {heading[0]!r} is a part of a turn: the squares of {names} add up to "
+                "1. Name the columns x, y, z and w in quaternion, or make angles of a sine and a "
+                "cosine"
             )
 
 
-def _part(table: Table, name: Any, layout: TrackLayout) -> Floats | None:
+def _squares(table: Table, name: str, layout: TrackLayout) -> Any:
     """Return the squares of a column that may be a part of turns, 0 for missing numbers."""
     try:
-        values = table.numbers(name, layout)
+        values = np.nan_to_num(table.numbers(name, layout))
     except ParameterError:  # A column of remarks, or a repeated name.
         return None
-    values = np.nan_to_num(values)
     return values**2 if len(values) and np.abs(values).max() <= 1.01 else None
 
 

@@ -6,7 +6,6 @@ import gzip
 import io
 import itertools
 import os
-from collections.abc import Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,22 +32,14 @@ NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan
 
 
 class Table:
-    """Rows of tracks, with columns found by name in any case.
+    """Rows of tracks, numbered by their line or row, with columns found by name in any case."""
 
-    Parameters
-    ----------
-    rows
-        Numbered by their line or row, with different names of columns.
-    twice
-        Names that several columns had.
-    """
-
-    def __init__(self, rows: "pd.DataFrame", twice: Set[Any] = frozenset()) -> None:
-        self.rows, self._twice = rows, twice
+    def __init__(self, rows: "pd.DataFrame") -> None:
+        self.rows = rows
         self.names = [*map(str, rows)]
-        self._by_key: dict[str, list[Any]] = {}
-        for name in dict.fromkeys(rows):
-            self._by_key.setdefault(_key(name), []).append(name)
+        self._by_key: dict[str, list[int]] = {}
+        for index, name in enumerate(self.names):
+            self._by_key.setdefault(_key(name), []).append(index)
 
     def __contains__(self, name: str) -> bool:
         return _key(name) in self._by_key
@@ -56,22 +47,20 @@ class Table:
     def __len__(self) -> int:
         return len(self.rows)
 
-    def name_of(self, name: str) -> Any:
-        """Return the name of a column, which may differ in case or blanks."""
+    def index_of(self, name: str) -> int:
+        """Return the index of a column, whose name may differ in case or blanks."""
         like = self._by_key.get(_key(name), [])
-        found = [name] if name in like else like
-        if len(found) == 1 and found[0] not in self._twice:
-            return found[0]
-        if found:
+        found = [index for index in like if self.names[index] == name] or like
+        if len(found) > 1:
             raise ParameterError(f"there are several columns {name!r}: give each its own name")
-        raise ParameterError(
-            f"column {name!r} is missing; there are {listed(self.names)}{_other_mark(self.names)}"
-        )
+        if not found:
+            hint = f"there are {listed(self.names)}{_other_mark(self.names)}"
+            raise ParameterError(f"column {name!r} is missing; {hint}")
+        return found[0]
 
     def column(self, name: str) -> "pd.Series[Any]":
-        """Return the column of a name, or of one that differs in case or blanks only."""
-        series: pd.Series[Any] = self.rows[self.name_of(name)]
-        return series
+        """Return the column of a name."""
+        return self.rows.iloc[:, self.index_of(name)]
 
     def numbers(self, name: str, layout: TrackLayout) -> Floats:
         """Return a column as numbers, NaN for missing and infinite ones."""
@@ -85,6 +74,28 @@ class Table:
         none = pandas.to_numeric(list(layout.missing), errors="coerce")
         values[np.isinf(values) | np.isin(values, none)] = np.nan
         return values
+
+
+def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
+    """Return texts as numbers, NaN for those that stand for none."""
+    texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
+    values = pandas.to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
+    none = NONE | {word.strip().lower() for word in layout.missing}
+    strange = texts[values.isna() & ~texts.str.lower().isin(none)]
+    if len(strange):
+        decimal = "," if layout.decimal == "." else "."
+        hint = f"; is decimal = {decimal!r}?" if has_decimal(strange.iloc[0], decimal) else ""
+        raise ParameterError(
+            f"column {name!r} holds other things than numbers: {short_repr(strange.iloc[0])} in "
+            f"{found.index.name} {strange.index[0]}{hint}"
+        )
+    return values
+
+
+def has_decimal(cell: str, mark: str) -> bool:
+    """Return whether a cell is a number with a decimal mark."""
+    whole, _, part = cell.lstrip("+-").partition(mark)
+    return whole.isdigit() and part.isdigit()
 
 
 def ending(path: Path) -> str:
@@ -114,13 +125,15 @@ def read_table(path: Path, layout: TrackLayout) -> Table:
     try:
         if ending(path) in _PARQUET:
             return plain_table(_read_parquet(pandas, path))
-        return _read_text(pandas, text_of(path), layout, _separator(path, layout))
+        separator = layout.separator or usual_separator(path)
+        return _read_text(pandas, text_of(path), layout, separator)
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"{path} cannot be read as a table: {error}") from error
 
 
-def _separator(path: Path, layout: TrackLayout) -> str:
-    return layout.separator or ("\t" if ending(path).startswith(".tsv") else ",")
+def usual_separator(path: Path) -> str:
+    """Return the separator of a text file that its ending says."""
+    return "\t" if ending(path).startswith(".tsv") else ","
 
 
 def _read_parquet(pandas: Any, path: Path) -> Any:
@@ -166,55 +179,35 @@ def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]
 def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:
     rows = cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
-    _check_width(names, rows[height:], layout.skip + height + 1)
-    names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
-    unique, twice = _unique(names)
-    texts = {name for name in unique if layout.id and _key(name) == _key(layout.id)}
-    none = [*NONE, *(word.upper() for word in NONE), "NaN", "None", *layout.missing]
-    table: pd.DataFrame = pandas.read_csv(
-        io.StringIO(text),
-        sep=r"\s+" if separator == " " else separator,
-        decimal=layout.decimal,
-        skiprows=layout.skip + height,
-        header=None,
-        names=unique,
-        index_col=False,
-        dtype=dict.fromkeys(texts, str),
-        keep_default_na=False,
-        # By name it is slow for thousands of columns.
-        na_values={name: none for name in unique if name not in texts} if texts else none,
-        skipinitialspace=True,
-        skip_blank_lines=False,
-        low_memory=False,
-    )
-    table.index = pandas.RangeIndex(layout.skip + height + 1, layout.skip + height + 1 + len(table))
-    table.index.name = "line"
-    blank = table.drop(columns=[*texts]).isna().to_numpy().all(axis=1)
-    for name in texts:
-        blank &= (table[name] == "").to_numpy()
-    # Some write units, or longer names, into the lines under the header.
-    under = [] if layout.header else [n for n, row in table.head(4).iterrows() if not _is_data(row)]
-    return Table(table[~blank & ~table.index.isin(under)], twice)
-
-
-def _check_width(names: list[str], rows: list[list[str]], first: int) -> None:
-    """Refuse rows with more values than there are names; `first` is the line of the first row."""
-    for line, row in enumerate(rows, first):
+    first = layout.skip + height + 1
+    for line, row in enumerate(rows[height:], first):
         if any(row[len(names) :]):
             raise ParameterError(
                 f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
                 f"every column needs a name{_other_mark(names)}"
             )
-
-
-def _unique(names: list[Any]) -> tuple[list[Any], set[Any]]:
-    """Return names made unique, and those that were repeated."""
-    seen, twice, unique = set[Any](), set[Any](), []
-    for index, name in enumerate(names):
-        unique.append(f"{name} {index}" if name in seen else name)
-        twice |= {name} & seen
-        seen.add(name)
-    return unique, twice
+    names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
+    is_id = [bool(layout.id) and _key(name) == _key(layout.id) for name in names]
+    table: pd.DataFrame = pandas.read_csv(
+        io.StringIO(text),
+        sep=r"\s+" if separator == " " else separator,
+        decimal=layout.decimal,
+        skiprows=first - 1,
+        header=None,
+        names=range(len(names)),
+        index_col=False,
+        dtype=dict.fromkeys(np.flatnonzero(is_id), str),
+        keep_default_na=False,
+        skipinitialspace=True,
+        skip_blank_lines=False,
+        low_memory=False,
+    )
+    lines = pandas.RangeIndex(first, first + len(table), name="line")
+    table = table.set_axis(names, axis=1).set_axis(lines)
+    blank = (table.isna() | (table == "")).all(axis=1)
+    # Some write units, or longer names, into the lines under the header.
+    under = [n for n, row in table.head(4).iterrows() if not any(map(is_value, row))]
+    return Table(table[~blank & ~table.index.isin([] if layout.header else under)])
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
@@ -238,10 +231,6 @@ def _joined(levels: Any) -> str:
     """Return the name of a column that is named in levels: individual, body part, coord."""
     *individual, part, coord = map(str, levels)
     return f"{'.'.join([*individual, part])}_{coord}"
-
-
-def _is_data(row: Any) -> bool:
-    return any(is_value(cell) for cell in row)
 
 
 def is_value(cell: Any) -> bool:
@@ -268,16 +257,13 @@ def plain_table(table: "pd.DataFrame") -> Table:
             "one name"
         )
     for level, name in enumerate(index.names):
-        if name is None or name == "line":
-            continue
         values = index.get_level_values(level)
         if name in table and not np.array_equal(values, table[name].to_numpy()):
             raise ParameterError(
                 f"the index and a column are both called {name!r}, and differ: rename one"
             )
-        table = table if name in table else table.assign(**{str(name): values})
-    table = table.reset_index(drop=True).rename_axis(index="row")
-    return Table(table, _unique(list(table.columns))[1])
+        table = table if name is None else table.assign(**{str(name): values})
+    return Table(table.reset_index(drop=True).rename_axis(index="row"))
 
 
 def _key(name: object) -> str:
@@ -298,22 +284,3 @@ def _other_mark(names: list[str]) -> str:
         return ": `skip` leaves out lines before the header, such as remarks"
     marks = [mark for mark in (";", "\t", "|", " ", ",") if len(names) == 1 and mark in names[0]]
     return f": the header looks like one with separator = {marks[0]!r}" if marks else ""
-
-
-def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
-    texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
-    none = texts.str.lower().isin(NONE | {word.strip().lower() for word in layout.missing})
-    point = texts.str.replace(layout.decimal, ".")
-    values = pandas.to_numeric(point.mask(none), errors="coerce")
-    strange = values.isna() & ~none
-    if strange.any():
-        line = strange.idxmax()
-        value = texts[line] if texts.index.is_unique else texts[strange].iloc[0]
-        decimal = "," if layout.decimal == "." else "."
-        whole, _, part = value.lstrip("-+").partition(decimal)
-        is_other = whole.isdigit() and part.isdigit()
-        raise ParameterError(
-            f"column {name!r} holds other things than numbers: {short_repr(value)} in "
-            f"{found.index.name} {line}{f'; is decimal = {decimal!r}?' if is_other else ''}"
-        )
-    return values
