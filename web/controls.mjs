@@ -58,6 +58,8 @@ export class Controls {
   #slider(name, words, { low, high, step, unit }) {
     const label = element("label");
     const [text, value, input] = [element("span", "", words), element("output"), element("input")];
+    // The slider itself says its value.
+    value.ariaLive = "off";
     Object.assign(input, { type: "range", min: low, max: high, step, id: name, title: this.meanings[name] ?? "" });
     input.setAttribute("aria-label", words.replace(/ \(.*/, ""));
     input.addEventListener("input", () => this.change(name, plain(Number(input.value)).replace("−", "-")));

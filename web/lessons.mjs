@@ -16,14 +16,14 @@ export const LESSONS = [
     name: "steer",
     title: "Lead them yourself",
     link: "#lesson=steer&pool=narrow&n_boats=12&n_leaders=4&bw_s=0.2&seed=1&flocks=3&leaders=you&beside.leaders=paper's law at every substep&speed=8",
-    before: "You turn the ringed boats of three flocks. Goal: more blue boats in five minutes than the law, a fixed rule. Start: ←, → or the slider.",
+    before: "Turn the ringed boats with the slider or arrow keys: the round starts. Goal: in five minutes more blue boats than the law, a fixed rule.",
     after: "Leaders lead by being in the way. Score: 1 if all others circle with the arrow, −1 if all go against it.",
   },
   {
     name: "noise",
     title: "Backing frees a jam",
     link: `${NOISE}&bw_s=0`,
-    before: `Boats that [never back up](${NOISE}&bw_s=0) jam at the wall. Let them back up [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8).`,
+    before: `Boats that never back up jam at the wall. Let them back up for {[0 s](${NOISE}&bw_s=0), [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8)}.`,
     after: "Backing frees boats that crowd the wall; too much ends the order. Sparse flocks need only random turning.",
   },
   {
@@ -58,7 +58,7 @@ export const LESSONS = [
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
-    before: `Leaders may disagree: try [two against two](${OPPOSED}&target=cw,cw,ccw,ccw) and [three against one](${OPPOSED}&target=cw,cw,cw,ccw).`,
+    before: `Leaders may disagree: try {[two against two](${OPPOSED}&target=cw,cw,ccw,ccw) and [three against one](${OPPOSED}&target=cw,cw,cw,ccw)}.`,
     after: "Two against two, chance decides; three against one, most flocks follow the three.",
   },
 ];
@@ -78,15 +78,24 @@ export function wordsOf(name) {
   return LESSONS.find((each) => each.name === name) ?? OPENING_WORDS;
 }
 
-/** Words with `[words](#link)` as links. */
+/** Words with `[words](#link)` as links; those between braces stay on one line, so that no finger meets two of them. */
 export function storyOf(words) {
-  return words.split(/(\[[^\]]*\]\(#[^)]*\))/).map((part) => {
-    const link = /^\[([^\]]*)\]\((#[^)]*)\)$/.exec(part);
-    if (!link) {
+  return words.split(/\{([^}]*)\}/).map((part, index) => {
+    if (index % 2 === 0) {
       return part;
     }
-    const anchor = element("a", "", link[1]);
-    anchor.href = link[2];
-    return anchor;
+    const line = element("span", "line");
+    line.append(...part.split(/(\[[^\]]*\]\(#[^)]*\))/).map(linked));
+    return line;
   });
+}
+
+function linked(part) {
+  const link = /^\[([^\]]*)\]\((#[^)]*)\)$/.exec(part);
+  if (!link) {
+    return part;
+  }
+  const anchor = element("a", "", link[1]);
+  anchor.href = link[2];
+  return anchor;
 }

@@ -136,8 +136,9 @@ async function open(page, file) {
     });
     flocks.show(run);
     page.playback.restart();
-    page.playback.seek(run.time[0]);
+    // Its picture comes first: those of other flocks have no run any more.
     page.showRuns();
+    page.playback.seek(run.time[0]);
     page.say(`${file.name} plays; “again” returns to the flock.`);
   } catch (error) {
     page.say(`${file.name.slice(0, 60)} ${error.message}.`);

@@ -67,8 +67,14 @@ export class View {
       byId("after").replaceChildren(...storyOf(after));
       byId("observes").open = name === "forces";
     }
-    for (const link of byId("lessons").querySelectorAll("a")) {
-      link.setAttribute("aria-current", String(link.dataset.lesson === name));
+    const lessons = byId("lessons");
+    for (const link of lessons.querySelectorAll("a")) {
+      const isShown = link.dataset.lesson === name;
+      link.setAttribute("aria-current", String(isShown));
+      if (isShown) {
+        // On a phone they are a row that scrolls.
+        lessons.scrollLeft = link.offsetLeft - (lessons.clientWidth - link.clientWidth) / 2;
+      }
     }
   }
 

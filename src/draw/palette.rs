@@ -98,7 +98,7 @@ declare_palette! {
     /// Leaders: their ring, or their hull where color shows the role.
     LEADER = "leader": hex(0xF0A202), hex(0xF0A202);
     /// Leaders with a counter-clockwise target, where others have a clockwise one.
-    OPPONENT = "opponent": hex(0x5B1A63), hex(0x5B1A63);
+    OPPONENT = "opponent": hex(0x5B1A63), hex(0xB050F8);
     /// Direction marks of leaders in amber.
     LEADER_MARK = "leader-mark": hex(0x1F2A36), hex(0x14191F);
     /// Outlines of hulls.

@@ -324,6 +324,20 @@ def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
         and not node.get("name", {}).get("value")
     ]
     assert unnamed == []
+    buttons = [name for role, name, _ in tree_of(live) if role == "button"]
+    assert sorted({*buttons}) == sorted(buttons)
+
+
+def test_a_control_is_called_what_stands_beside_it(open_live):
+    """Whoever speaks to the page says what the page shows."""
+    live = open_live().go(f"{FLOCK}&leaders=you")
+    shown = live.text("#steer label").removesuffix(live.text("#heading")).strip()
+    named = [name for role, name, _ in tree_of(live) if role == "slider"]
+    assert shown in named
+    # Its value is said once, by the slider.
+    assert live.script("return thumb.ariaValueText") == live.text("#heading")
+    outputs = "return [...document.querySelectorAll('output')].map((each) => each.ariaLive)"
+    assert {*live.script(outputs)} == {"off"}
 
 
 def test_less_motion_is_respected_and_it_plays_when_asked(open_live, emulated):
@@ -424,6 +438,23 @@ FINGERS = """
 def test_a_finger_of_44_pixels_hits_what_it_touches(open_live, fragment):
     live = open_live(PHONE).go(fragment)
     assert live.script(FINGERS) == []
+
+
+def test_a_finger_of_44_pixels_hits_what_every_lesson_has(open_live):
+    live = open_live(PHONE).go()
+    names = "return [...document.querySelectorAll('#lessons a')].map((a) => a.dataset.lesson)"
+    for name in live.script(names):
+        live.script("document.querySelector(`a[data-lesson='${arguments[0]}']`).click()", name)
+        live.until("return page.other.lesson === arguments[0] && !page.changing", name)
+        # The chosen lesson is seen in its row.
+        left, right, end = live.script(
+            """const [chosen, row] = [`a[data-lesson='${arguments[0]}']`, "#lessons"].map((each) =>
+                document.querySelector(each).getBoundingClientRect());
+            return [chosen.left - row.left, chosen.right - row.left, row.width]""",
+            name,
+        )
+        assert 0 <= left < right <= end + 1
+        assert (name, live.script(FINGERS)) == (name, [])
 
 
 def test_a_phone_shows_both_means_of_two_flocks(open_live):

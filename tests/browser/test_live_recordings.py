@@ -61,20 +61,51 @@ def test_a_recording_is_saved_loaded_and_played(live, downloads):
     assert live.parameters()["n_boats"] == "12"
 
 
-def test_a_file_is_dropped_onto_the_page(live, tmp_path):
+DROP = """
+    const [name, text] = arguments;
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const data = new DataTransfer();
+    data.items.add(new File([bytes], name));
+    const options = {bubbles: true, cancelable: true, dataTransfer: data};
+    document.body.dispatchEvent(new DragEvent("drop", options))"""
+
+
+@pytest.fixture
+def recording(tmp_path) -> flockenv.Recording:
     parameters = flockenv.FlockParameters(n_boats=5, n_leaders=1)
     recording = flockenv.simulate(parameters, 3, 4.0, contacts=True)
     recording.save(tmp_path / "dropped.npz")
-    drop = """
-        const [name, text] = arguments;
-        const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-        const data = new DataTransfer();
-        data.items.add(new File([bytes], name));
-        const options = {bubbles: true, cancelable: true, dataTransfer: data};
-        document.body.dispatchEvent(new DragEvent("drop", options))"""
+    return recording
+
+
+@pytest.mark.parametrize("lesson", ["steer", "learned", "train", "forces"])
+def test_a_file_is_dropped_onto_a_lesson_and_its_flocks_come_back(
+    live, tmp_path, recording, lesson
+):
+    live.script("document.querySelector(`a[data-lesson='${arguments[0]}']`).click()", lesson)
+    live.until("return page.other.lesson === arguments[0] && !page.changing", lesson)
+    live.script("if (!page.playing) page.toggle()")
+    flocks = live.script("return page.runs.length")
+    seen = len(live.driver.find_elements("css selector", ".run canvas"))
+    content = (tmp_path / "dropped.npz").read_bytes()
+    live.script(DROP, "dropped.npz", base64.b64encode(content).decode())
+    live.until("return document.getElementById('status').textContent.startsWith('dropped.npz')")
+    assert live.status() == "dropped.npz plays; “again” returns to the flock."
+    assert len(live.driver.find_elements("css selector", ".run canvas")) == 1
+    assert np.array_equal(live.rows("pose").reshape(-1, 5, 3), recording.pose)
+    live.click("#play")
+    live.until("return page.time > 1")
+    live.click("#again")
+    live.until("return !page.recorded")
+    assert live.script("return page.runs.length") == flocks
+    assert len(live.driver.find_elements("css selector", ".run canvas")) == seen
+    assert live.complaints() == []
+
+
+def test_a_file_is_dropped_onto_the_page(live, tmp_path, recording):
     for name, content in (("dropped.npz", None), ("picture.png", b"\x89PNG\r\n"), ("a", b"")):
         content = (tmp_path / name).read_bytes() if content is None else content
-        live.script(drop, name, base64.b64encode(content).decode())
+        live.script(DROP, name, base64.b64encode(content).decode())
         live.until(
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )

@@ -7,6 +7,8 @@ import pytest
 
 import flockenv
 
+from .conftest import PHONE
+
 pytestmark = pytest.mark.live
 
 FLOCK = "#lesson=train&n_boats=6&n_leaders=2&pool=narrow&bw_s=0.3&seed=1&leaders=trained"
@@ -46,6 +48,7 @@ def test_a_training_ends_in_a_curve_and_in_a_policy_that_leads_the_flock(open_li
 
     live = opened(open_live())
     assert not live.find("#save-policy").is_enabled()
+    assert float(live.find("#save-policy").value_of_css_property("opacity")) < 0.6
     assert live.text("#train") == "train"
     live.click("#train")
     until_over(live)
@@ -126,6 +129,21 @@ def test_less_motion_leaves_the_flock_still_and_trains(open_live, emulated):
     assert not live.script("return page.playing")
     label = live.find("#curve").get_attribute("aria-label")
     assert label.startswith("Learning curve. Signed order in 2 other flocks: your leaders ")
+
+
+def test_a_phone_shows_the_flock_the_button_and_the_curve_together(open_live):
+    live = opened(open_live(PHONE))
+    live.click("#train")
+    until_over(live)
+    live.script("scrollTo(0, 0)")
+    source = """
+        const boxes = [...arguments].map((each) => document.querySelector(each));
+        return boxes.map((each) => each.getBoundingClientRect().toJSON())"""
+    boxes = live.script(source, ".run canvas", "#train", "#curve", "#trained", "#controls")
+    tops, bottoms = ([each[side] for each in boxes] for side in ("top", "bottom"))
+    assert all(above <= below for above, below in zip(bottoms, tops[1:], strict=False))
+    assert tops[0] > 0
+    assert bottoms[-1] <= PHONE[1]
 
 
 def test_a_flock_without_leaders_is_refused_in_words(open_live):

@@ -29,17 +29,19 @@ fn times(matrix: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum())
 }
 
+/// A part of an sRGB color on a linear scale.
+fn linear(part: u8) -> f64 {
+    let share = f64::from(part) / 255.0;
+    if share <= 0.04045 {
+        share / 12.92
+    } else {
+        libm::pow((share + 0.055) / 1.055, 2.4)
+    }
+}
+
 /// CIE 1976 L*a*b* of a color as an eye sees it.
 fn lab(Rgb(r, g, b): Rgb, eye: [[f64; 3]; 3]) -> [f64; 3] {
-    let linear = [r, g, b].map(|each| {
-        let share = f64::from(each) / 255.0;
-        if share <= 0.04045 {
-            share / 12.92
-        } else {
-            libm::pow((share + 0.055) / 1.055, 2.4)
-        }
-    });
-    let seen = times(eye, linear).map(|each| each.clamp(0.0, 1.0));
+    let seen = times(eye, [r, g, b].map(linear)).map(|each| each.clamp(0.0, 1.0));
     let [x, y, z] = times(
         [
             [0.4124, 0.3576, 0.1805],
@@ -100,6 +102,28 @@ fn every_eye_tells_policies_and_other_runs_apart() {
         "run-1",
         "run-2",
     ]);
+}
+
+/// Relative luminance as WCAG 2 defines it.
+fn luminance(Rgb(r, g, b): Rgb) -> f64 {
+    let [r, g, b] = [r, g, b].map(linear);
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[test]
+fn boats_and_rings_stand_out_from_dark_water() {
+    let water = luminance(named("water").dark);
+    for name in [
+        "clockwise",
+        "counter-clockwise",
+        "radial",
+        "leader",
+        "opponent",
+        "force",
+    ] {
+        let contrast = (luminance(named(name).dark) + 0.05) / (water + 0.05);
+        assert!(contrast >= 3.0, "{name}: {contrast}");
+    }
 }
 
 #[test]
