@@ -5,8 +5,7 @@ point and ``*`` for anything. The column of y is that of x with one letter excha
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Set
-from itertools import islice
+from collections.abc import Iterable, Mapping, Set
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -80,6 +79,9 @@ _PARTS = {
 _LONGEST = 200
 """Letters of a name of a column; to compare longer ones takes long, and they tell nothing."""
 
+_TELLING = {"heading", "confidence", "quaternion", "box", "fps"}
+"""Fields that make key points and numbered columns better than plain columns of x and y."""
+
 _ANGLES = ("heading", "theta", "angle", "orientation", "alpha", "yaw")
 _PLACEHOLDERS = {
     "{id}": r"(?P<id>.+?)",
@@ -98,12 +100,17 @@ def plain(name: str) -> tuple[str, str]:
     return re.sub(r"[^a-z0-9]+", "_", base).strip("_"), unit.strip().lower()
 
 
-def _matches(pattern: str, names: Iterable[str]) -> Iterator[re.Match[str]]:
+def _matches(pattern: str, names: Iterable[str]) -> list[re.Match[str]]:
     text = re.escape(pattern).replace(r"\*", ".*")
     for placeholder, expression in _PLACEHOLDERS.items():
         text = text.replace(re.escape(placeholder), expression)
     compiled = re.compile(text, re.IGNORECASE)
-    return (found for name in names if (found := compiled.fullmatch(name)))
+    return [found for name in names if (found := compiled.fullmatch(name))]
+
+
+def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | None:
+    """Return the first match of the first pattern that has one."""
+    return next((found[0] for pattern in patterns if (found := _matches(pattern, names))), None)
 
 
 def _as_written(found: re.Match[str]) -> str:
@@ -115,42 +122,40 @@ def _as_written(found: re.Match[str]) -> str:
 
 def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
     """Return the column of y for one of x, or None; `boat` takes the place of {id}."""
-    by_letter = (
-        f"{name[:at]}{chr(ord(x) + 1)}{name[at + 1 :]}" for at, x in enumerate(name) if x in "xX"
-    )
-    throughout = name.replace("x", "y").replace("X", "Y")
-    changed = (
-        candidate
-        for candidate in [*[*by_letter][::-1], throughout]
-        if candidate.replace("{id}", boat) in names
-    )
-    return next(changed, None) if throughout != name else None
+    swapped = name.replace("x", "y").replace("X", "Y")
+    at = [index for index, letter in enumerate(name) if letter in "xX"]
+    by_letter = [f"{name[:index]}{swapped[index]}{name[index + 1 :]}" for index in reversed(at)]
+    others = (other for other in [*by_letter, swapped] if at)
+    return next((other for other in others if other.replace("{id}", boat) in names), None)
 
 
 def quaternion(names: Iterable[str]) -> list[str] | None:
     """Return the columns x, y, z and w of the first quaternion among names, None if none is."""
-    by_key = {name.casefold(): name for name in names if len(name) <= _LONGEST}
+    by_key = {name.casefold(): name for name in names}
     for key in by_key:
         for index in (at for at, letter in enumerate(key) if letter == "w"):
-            four = [f"{key[:index]}{axis}{key[index + 1 :]}" for axis in "xyzw"]
-            if all(axis_name in by_key for axis_name in four):
-                return [by_key[axis_name] for axis_name in four]
+            four = [by_key.get(f"{key[:index]}{axis}{key[index + 1 :]}", "") for axis in "xyzw"]
+            if all(four):
+                return four
     return None
 
 
-def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
-    """Return the fields x, y and heading for key points, given what their columns begin with.
+def key_points(
+    stems: Mapping[str, str], present: Set[str] = frozenset(), boat: str = ""
+) -> dict[str, Any]:
+    """Return the fields x, y, heading and confidence, given what columns of key points begin with.
 
     The center is a point in the middle, or the middle of head and tail, or the only point. Several
-    other points are ambiguous, and give no fields.
+    other points are ambiguous, and give no fields. A confidence is among the columns `present`,
+    with `boat` in the place of {id}.
     """
-
-    def part(kind: str) -> str | None:
-        return next((stems[name] for name in stems if plain(name)[0] in _PARTS[kind]), None)
-
-    head, tail, middle = part("head"), part("tail"), part("middle")
-    ends = [tail, head] if head and tail else []
-    used = [middle] if middle else ends or [*stems.values()]
+    by_part = {
+        part: next((stem for name, stem in stems.items() if plain(name)[0] in words), None)
+        for part, words in _PARTS.items()
+    }
+    ends = [by_part["tail"], by_part["head"]]
+    ends = [] if None in ends else ends
+    used = [by_part["middle"]] if by_part["middle"] else ends or [*stems.values()]
     if used is not ends and len(used) > 1:
         return {}
     form: dict[str, Any] = {axis: [f"{stem}{axis}" for stem in used] for axis in "xy"}
@@ -158,6 +163,10 @@ def key_points(stems: Mapping[str, str]) -> dict[str, Any]:
         form = {axis: columns[0] for axis, columns in form.items()}
     if ends:
         form["heading"] = [f"{stem}{axis}" for stem in ends for axis in "xy"]
+    for word in ("likelihood", "score", "confidence"):
+        sure = sorted(f"{stem}{word}" for stem in {*used, *ends})
+        if {column.replace("{id}", boat) for column in sure} <= present:
+            form["confidence"] = sure
     return form
 
 
@@ -165,62 +174,44 @@ def _fields_of(program: Format, names: list[str], present: Set[str]) -> dict[str
     """Return the fields of a layout for a program's table, None if it is another's."""
     columns = dict(program.columns)
     y, x_pattern = columns.pop("y", None), columns.pop("x")
-    found = {field: next(_matches(pattern, names), None) for field, pattern in columns.items()}
+    found = {field: _first([pattern], names) for field, pattern in columns.items()}
     pairs = [match for match in _matches(x_pattern, names) if y or _as_y(match[0], present)]
     if not pairs or None in found.values():
         return None
     first = pairs[0]
-    boat, x = first.groupdict().get("id", ""), _as_written(first)
-    form: dict[str, Any] = {field: match[0] for field, match in found.items() if match}
-    form |= {"x": x, "y": y or _as_y(x, present, boat)} | dict(program.fields)
-    form |= {"id": ""} if "{id}" in x else {}
-    if "part" in first.groupdict():
-        points = [match for match in pairs if match.groupdict().get("id", "") == boat]
-        return _with_key_points(form, points, boat, present)
-    if "{id}" in x:
-        angles = (match for word in _ANGLES for match in _matches(f"*{word}{{n}}*", names))
-        form.update(("heading", _as_written(match)) for match in islice(angles, 1))
-    return form
-
-
-def _with_key_points(
-    form: dict[str, Any], points: list[re.Match[str]], boat: str, present: Set[str]
-) -> dict[str, Any]:
-    """Return fields with the center, heading and confidence of a boat's key points."""
-    form.pop("confidence", None)
-    found = key_points({match["part"]: _as_written(match)[:-1] for match in points})
-    if not found:
-        return {field: form[field] for field in form if field not in ("x", "y")}
-    form |= found
-    used = [form["x"]] if isinstance(form["x"], str) else form["x"]
-    stems = {column[:-1] for column in (*used, *form.get("heading", [])[::2])}
-    for word in ("likelihood", "score", "confidence"):
-        sure = sorted(f"{stem}{word}" for stem in stems)
-        if {column.replace("{id}", boat) for column in sure} <= present:
-            form["confidence"] = sure
-    return form
+    groups, x = first.groupdict(), _as_written(first)
+    boat = groups.get("id", "")
+    form = {field: match[0] for field, match in found.items() if match} | dict(program.fields)
+    form |= {"id": ""} if "id" in groups else {}
+    if "part" in groups:
+        form.pop("confidence", None)
+        own = [match for match in pairs if match.groupdict().get("id", "") == boat]
+        stems = {match["part"]: _as_written(match)[:-1] for match in own}
+        return form | key_points(stems, present, boat)
+    form |= {"x": x, "y": y or _as_y(x, present, boat)}
+    angle = _first([f"*{word}{{n}}*" for word in _ANGLES], names) if "id" in groups else None
+    return form | ({"heading": _as_written(angle)} if angle else {})
 
 
 def recognized(names: list[str]) -> dict[str, Any]:
     """Return the fields of a layout that names of columns tell, "" for none."""
     names = [name for name in names if len(name) <= _LONGEST]
-    by_plain: dict[str, str] = {}
+    present, by_plain = set(names), dict[str, str]()
     for name in names:
         by_plain.setdefault(plain(name)[0], name)
-    form: dict[str, Any] = {}
-    for name, words in WORDS.items():
-        found = (match[0] for word in words for match in _matches(word, by_plain))
-        form.update((name, by_plain[called]) for called in islice(found, 1))
-    present = set(names)
+    found = {field: _first(words, by_plain) for field, words in WORDS.items()}
+    form: dict[str, Any] = {field: by_plain[match[0]] for field, match in found.items() if match}
     y = _as_y(form["x"], present) if "x" in form else None
-    has_position = y is not None
-    form = form | {"y": y} if has_position else {n: form[n] for n in form if n != "x"}
+    if y is None:
+        form.pop("x", None)
+    else:
+        form["y"] = y
     for program in FORMATS:
         known = _fields_of(program, names, present)
         # Any pair of columns may be a key point's.
-        if known and "id" in form and _are_corners(known, names):
+        if known is None or ("id" in form and _are_corners(known, names)):
             continue
-        if known and not (has_position and "{" in program.columns["x"] and _is_loose(known)):
+        if "y" not in form or "{" not in program.columns["x"] or _TELLING & known.keys():
             form |= known
             break
     if "heading" not in form and "quaternion" not in form and (four := quaternion(names)):
@@ -236,7 +227,3 @@ def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:
     if "{id}" not in x:
         return False
     return {match["id"] for match in _matches(x.replace("{id}", "{n}"), names)} == {"1", "2"}
-
-
-def _is_loose(known: Mapping[str, Any]) -> bool:
-    return not {"heading", "confidence", "quaternion", "box", "fps"} & known.keys()

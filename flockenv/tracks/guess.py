@@ -12,18 +12,18 @@ from flockenv.errors import ParameterError
 from flockenv.tracks.clock import PER_S, unit_of
 from flockenv.tracks.dataset import CM
 from flockenv.tracks.formats import MOT, plain, recognized
-from flockenv.tracks.layout import TrackLayout, description_of
+from flockenv.tracks.layout import TrackLayout, description_of, naming
 from flockenv.tracks.rows import FULL_TURN, long_table, names_nobody
 from flockenv.tracks.table import (
     Table,
-    cells_of,
     check_ending,
-    ending,
     has_decimal,
+    is_text,
     is_value,
     listed,
     read_table,
     text_of,
+    usual_separator,
 )
 
 Form = dict[str, Any]
@@ -43,16 +43,14 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     if description.exists():
         raise ParameterError(f"{description} is there already: it may be written by hand")
     doubts = Doubts()
-    try:
-        form = _spelling(path, doubts)
-    except ParameterError as error:
-        raise ParameterError(f"{path} cannot be read as a table: {error}") from error
-    table = read_table(path, TrackLayout(pool="wide", **form))
-    form |= recognized(table.names) if "header" not in doubts else {}
-    try:
+    with naming(path):
+        form = _spelling(path)
+        table = read_table(path, TrackLayout(pool="wide", **form))
+        if all(is_value(name) or name.startswith("unnamed") for name in table.names):
+            form["header"] = _header(len(table.names), form, doubts)
+            table = read_table(path, TrackLayout(pool="wide", **form))
+        form |= recognized(table.names) if "header" not in doubts else {}
         _guess_fields(table, form, doubts)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
     lines = [f"{name} = {_toml(value)}" for name, value in form.items() if name not in doubts]
     checks = [f"{name} = {_toml(value)}  # {words}" for name, (value, words) in doubts.items()]
     first = "# Guessed from the table beside this file. Check the lines that say so."
@@ -87,42 +85,35 @@ def _guess_fields(table: Table, form: Form, doubts: Doubts) -> None:
         doubts["heading"] = ("", "check: a column; without one headings are directions of motion")
 
 
-def _spelling(path: Path, doubts: Doubts) -> Form:
-    """Return separator, decimal, header and lines to skip of a text file, if they are not usual."""
-    if not ending(path).startswith((".csv", ".tsv", ".txt")):
+def _spelling(path: Path) -> Form:
+    """Return separator, decimal and lines to skip of a text file, if they are not usual."""
+    if not is_text(path):
         return {}
-    text = text_of(path)
-    lines, most, found = text.splitlines()[:100], 0, ("", 0)
-    for mark in (";", "\t", "|", ",", " "):
-        counts = [len(line.split(None if mark == " " else mark)) for line in lines]
-        # Names may hold blanks, too.
-        if max(counts, default=0) > most and (mark != " " or most < 3):
-            most = max(counts)
-            # The header is the first line with as many cells as the following ones.
-            found = (mark, counts.index(most) if most > 1 else 0)
-    mark, skip = found
+    lines = text_of(path).splitlines()[:100] or [""]
+    widths = {mark: [len(line.split(mark)) for line in lines] for mark in (";", "\t", "|", ",")}
+    if max(map(max, widths.values()), default=0) < 3:  # Names may hold blanks, too.
+        widths[" "] = [len(line.split()) for line in lines]
+    mark = max(widths, key=lambda mark: max(widths[mark]))
+    # The header is the first line with as many cells as the following ones.
+    is_motive = [line.startswith(f"{mark}Type{mark}") for line in lines[:4]]
+    skip = is_motive.index(True) if any(is_motive) else widths[mark].index(max(widths[mark]))
     form: Form = {}
-    motive = next(
-        (n for n, line in enumerate(lines[:4]) if line.startswith(f"{mark}Type{mark}")), 0
-    )
-    if motive and mark:
-        skip = motive
-    if mark and mark != ("\t" if ending(path).startswith(".tsv") else ","):
+    if mark != usual_separator(path):
         form["separator"] = mark
     form |= {"skip": skip} if skip else {}
-    if mark not in ("", ",") and any(
-        has_decimal(cell.strip(), ",") for line in lines[1:] for cell in line.split(mark)
-    ):
+    cells = (cell.strip() for line in lines[1:] for cell in line.split(mark))
+    if mark != "," and any(has_decimal(cell, ",") for cell in cells):
         form["decimal"] = ","
-    first = next(iter(cells_of(text, mark or ",", skip, 1)), [])
-    if first and all(is_value(cell) or not cell for cell in first):
-        # Names do not begin like numbers: there is no header.
-        is_mot = 6 <= len(first) <= len(MOT) and "separator" not in form
-        names = list(MOT[: len(first)]) if is_mot else [f"column {n}" for n in range(len(first))]
-        form["header"] = names
-        if not is_mot:
-            doubts["header"] = (names, "fill in: names of the columns, which the file lacks")
     return form
+
+
+def _header(count: int, form: Form, doubts: Doubts) -> list[str]:
+    """Return names of the columns of a file without a header, where names look like numbers."""
+    if 6 <= count <= len(MOT) and "separator" not in form:
+        return [*MOT[:count]]
+    names = [f"column {n}" for n in range(count)]
+    doubts["header"] = (names, "fill in: names of the columns, which the file lacks")
+    return names
 
 
 def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:
@@ -130,20 +121,26 @@ def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -
     names = [layout.columns[axis][0] for axis in ("x", "y")]
     points = np.stack([rows.numbers(name, layout) for name in names], axis=-1)
     points = points[np.isfinite(points).all(axis=1)]
-    marks = [[0.0, 0.0], [-1.0, -1.0]]
-    lost = [point for point in marks if 1 < (points == point).all(axis=1).sum() < len(points)]
-    for point in lost:
-        points = points[~(points == point).all(axis=1)]
+    lost = []
+    for mark in ([0.0, 0.0], [-1.0, -1.0]):
+        is_mark = (points == mark).all(axis=1)
+        if 1 < is_mark.sum() < len(points):
+            lost.append(mark)
+            points = points[~is_mark]
     if len(points) == 0:
         raise ParameterError("no row has a position")
     low, high = points.min(axis=0), points.max(axis=0)
     center = (low + high) / 2
     unit = plain(names[0])[1]
     radius = float(np.hypot(*(points - center).T).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
-    words = "check: outer and inner radius in cm, here about all positions"
-    doubts["pool"] = ([round(radius, 1), 0.0], words)
-    words = "check: the pool's, in units of the file, here of all positions"
-    doubts["center"] = ([round(float(coordinate), 2) for coordinate in center], words)
+    doubts["pool"] = (
+        [round(radius, 1), 0.0],
+        "check: outer and inner radius in cm, here about all positions",
+    )
+    doubts["center"] = (
+        [round(float(coordinate), 2) for coordinate in center],
+        "check: the pool's, in units of the file, here of all positions",
+    )
     if unit in CM:
         form["cm_per_unit"] = CM[unit]
     else:
@@ -158,19 +155,20 @@ def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -
 
 
 def _guess_time(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:
-    name, unit = plain(form["frame"])[0], unit_of(form["frame"])
+    if "fps" in form:
+        return
+    name, per_s = plain(form["frame"])[0], PER_S.get(unit_of(form["frame"]))
     try:
         counts = rows.numbers(form["frame"], layout)
     except ParameterError:  # Dates and clock times.
         return
-    is_whole = bool((counts[np.isfinite(counts)] % 1 == 0).all())
-    per_s = PER_S.get(unit)
-    if per_s is not None and (per_s != 1.0 or is_whole):
-        form.setdefault("fps", per_s)
-    elif "fps" not in form and per_s is None and is_whole:
-        is_frame = name.startswith(("frame", "step", "image", "bild"))
-        words = "frames per second" if is_frame else "how many of its units a second has"
-        doubts["fps"] = (25.0, f"{'check' if is_frame else 'fill in'}: {words}")
+    is_whole = (counts[np.isfinite(counts)] % 1 == 0).all()
+    if per_s and (per_s != 1.0 or is_whole):
+        form["fps"] = per_s
+    elif is_whole and name.startswith(("frame", "step", "image", "bild")):
+        doubts["fps"] = (25.0, "check: frames per second")
+    elif is_whole:
+        doubts["fps"] = (25.0, "fill in: how many of its units a second has")
 
 
 def _guess_turn(heading: Any, form: Form, doubts: Doubts) -> None:

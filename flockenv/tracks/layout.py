@@ -2,6 +2,8 @@
 
 import math
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from numbers import Real
 from pathlib import Path
@@ -245,10 +247,17 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     A ParameterError names a file that cannot be read, or is no layout.
     """
     values = read_toml_file(path, str(path))
-    try:
+    with naming(path):
         refuse_unknown(values, [one.name for one in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
         return TrackLayout(**values)
+
+
+@contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the name of a file before what a ParameterError says of its content."""
+    try:
+        yield
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error

@@ -16,7 +16,7 @@ from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import frames_of
 from flockenv.tracks.dataset import is_dataset, table_of
-from flockenv.tracks.layout import TrackLayout, description_of, read_layout
+from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
 from flockenv.tracks.motion import Motion, bows_of, unwrapped
 from flockenv.tracks.report import TrackReport
 from flockenv.tracks.rows import direction, names_nobody, rows_of
@@ -74,11 +74,8 @@ def read_tracks(
         description = description_of(path)
         check_ending(path)
         layout = read_layout(description)
-    table = read_table(path, layout)
-    try:
-        return _recording(table, layout, report)
-    except ParameterError as error:
-        raise ParameterError(f"{path}: {error}") from error
+    with naming(path):
+        return _recording(read_table(path, layout), layout, report)
 
 
 def _recording(

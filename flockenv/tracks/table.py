@@ -116,19 +116,21 @@ def check_ending(path: Path) -> None:
 
 
 def read_table(path: Path, layout: TrackLayout) -> Table:
-    """Return the rows of a text or Parquet file; a ParameterError names any other file.
-
-    Rows of a text file are numbered by their line.
-    """
+    """Return the rows of a text or Parquet file; those of a text are numbered by their line."""
     pandas = require("pandas", "plot")
     check_ending(path)
     try:
-        if ending(path) in _PARQUET:
+        if not is_text(path):
             return plain_table(_read_parquet(pandas, path))
         separator = layout.separator or usual_separator(path)
         return _read_text(pandas, text_of(path), layout, separator)
     except Exception as error:  # Parsers raise errors of many unrelated classes.
-        raise ParameterError(f"{path} cannot be read as a table: {error}") from error
+        raise ParameterError(f"it cannot be read as a table: {error}") from error
+
+
+def is_text(path: Path) -> bool:
+    """Return whether a file is a text, by its ending."""
+    return ending(path) not in _PARQUET
 
 
 def usual_separator(path: Path) -> str:
@@ -170,10 +172,7 @@ def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]
     if separator == " ":
         return [line.split() for line in lines]
     rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
-    try:
-        return [[cell.strip() for cell in row] for row in rows]
-    except csv.Error as error:  # Very long cells and unclosed quotes raise this.
-        raise ParameterError(f"line {skip + 1} and those after it are no table: {error}") from error
+    return [[cell.strip() for cell in row] for row in rows]
 
 
 def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:

@@ -68,7 +68,7 @@ def renamed(dataset, dimension, names):
         (
             lambda: renamed(movement(), "keypoints", ["left", "right"]),
             {"heading": None},
-            "which is the center is not known: name its columns in x and y, such as x = ('left_x'",
+            "which of the key points left, right is the center is not known: name its columns in x",
         ),
         (movement, {"cm_per_unit": None}, "in pixels: cm_per_unit, the length of one, is missing"),
         (

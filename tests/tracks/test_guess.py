@@ -95,7 +95,7 @@ def test_a_center_is_guessed_only_if_it_is_known(tmp_path, names, x):
 def test_a_cell_as_long_as_a_book_is_named(tmp_path, text):
     (tmp_path / "lab.csv").write_text(text)
     with pytest.raises(
-        flockenv.ParameterError, match=r"lab\.csv cannot be read as a table: line 1"
+        flockenv.ParameterError, match=r"lab\.csv: it cannot be read as a table: field larger"
     ):
         guess_layout(tmp_path / "lab.csv")
 
