@@ -279,8 +279,8 @@ def leaders(page: str) -> list[Number]:
     return [
         Number(page, "{} trainings gain", TRAININGS, column="seeds", form="d"),
         Number(page, "trainings gain {} on the tuned law", TRAININGS, column="gain"),
-        Number(page, "in the mean ({} to #, the luck", TRAININGS, column="gain_low"),
-        Number(page, "in the mean (# to {}, the luck", TRAININGS, column="gain_high"),
+        Number(page, "on average ({} to #; the interval", TRAININGS, column="gain_low"),
+        Number(page, "on average (# to {}; the interval", TRAININGS, column="gain_high"),
         Number(page, words, difference, CLOSE, "mean"),
         *(
             [
@@ -292,14 +292,14 @@ def leaders(page: str) -> list[Number]:
             else [
                 Number(
                     page,
-                    "in other flocks, reaches a signed order of {}",
+                    "in other flocks, and reaches a signed order of {}",
                     means,
                     CLOSE,
                     "signed_order",
                 ),
                 Number(
                     page,
-                    "single leader better than the tuned law, by {}",
+                    "and with a single leader by {}",
                     difference,
                     SINGLE,
                     "mean",
