@@ -117,7 +117,8 @@ def next_generation(
     `steer` maps weights and the number of leaders to a policy, as `linear`, which is the default.
     """
     weights, number = state["weights"], int(state["generation"])
-    # A generator of its own for each generation: nothing but the number has to be remembered.
+    # Each generation has a generator of its own, so a checkpoint needs only the generation's
+    # number.
     random = np.random.default_rng([options.seed, number])
     half = random.standard_normal((options.pairs, len(weights)))
     candidates = weights + options.sigma * np.concatenate([half, -half])
@@ -171,7 +172,7 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
     hours = env.num_envs * TASKS[options.task]["episode_s"] / 3600.0
     while int(state["generation"]) * hours < options.flock_hours:
         state = next_generation(state, env, options)
-        # Whole or not at all: an interrupt leaves the generation before.
+        # Written whole or not at all: an interrupt leaves the checkpoint of the generation before.
         half = path.with_suffix(".half.npz")
         np.savez(half, **state, identity=identity)
         half.replace(path)

@@ -62,7 +62,7 @@ def branch(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean order of each flock, led by its own weights, at the end of a branch.
 
-    And what its leaders saw, shape (seconds, flocks, leaders, features).
+    Also returns what its leaders saw, shape (seconds, flocks, leaders, features).
     """
     weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
     every: list[np.ndarray] = []
@@ -93,8 +93,8 @@ def ascent(
 ) -> np.ndarray:
     """Return the gradient of the clipped objective by the weights.
 
-    `chosen` are decisions, drawn from normal distributions about the leans of the weights `start`,
-    whose deviations are `spread`.
+    The decisions `chosen` were drawn from normal distributions about the leans of the weights
+    `start`, with the standard deviations `spread`.
     """
     before, now = ((chosen - features @ each) / spread for each in (start, weights))
     ratio = np.exp((before**2 - now**2) / 2)
@@ -125,7 +125,8 @@ def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray
         chosen = np.einsum("tfls,fs->tfl", features, weights + changes).ravel()
         advantage = np.broadcast_to(advantages(orders, settings)[:, None], seen.shape[:-1]).ravel()
         features = features.reshape(len(chosen), -1)
-        # Each decision has a distribution of its own, independent of the others of its branch.
+        # Each decision has its own distribution, taken as independent of the branch's other
+        # decisions.
         spread = settings.sigma * np.linalg.norm(features, axis=1)
         start, rate = weights.copy(), settings.learning_rate * (1 - number / rounds)
         for _ in range(settings.epochs):

@@ -7,9 +7,9 @@ Seeds 0 to 4 reach an order of 0.321 to 0.365, in a minute of one core each, whe
 has 0.294 and the damped law 0.377 (results version 5).
 
 PPO of stable-baselines3 trains four leaders in 64 flocks of `flockenv/Order-easy-v0` at once. The
-last point of a curve is the mean signed order that the mean policy reaches in the same 512 held-out
-flocks as the laws, and the others are of the first 128 of them. The time of a point is the
-processor's, for training alone.
+last point of a curve is the mean signed order of the mean policy in the same 512 held-out flocks as
+the laws. The other points use the first 128 of these flocks. The time of a point is processor time,
+of the training alone.
 """
 
 import argparse

@@ -11,10 +11,10 @@ A policy is linear in the 29 lean features, as in examples/train_leaders.py, and
 law. Each pair of flocks starts from one snapshot and meets one noise. The two flocks differ by a
 Gaussian change of the weights, added in one and subtracted in the other. For about a minute the
 noise moves both nearly alike, so that the difference of their orders shows the change of the
-weights (measured in studies/paired_signal). Adam follows the sum of changes times differences. Then
-both flocks of a pair continue from the present state of one of them, drawn by a coin, until an
-episode of 8 minutes is over and the pair starts at rest again. So no flock-hour is spent on
-anything but the comparison, and the states are those that the policy leads to.
+weights (measured in studies/paired_signal). Adam follows the sum of changes times differences.
+After a branch a coin picks one flock of the pair, and both continue from its state. After an
+episode of 8 minutes the pair starts at rest again. So every flock-hour is spent on the comparison,
+in states that the policy itself leads to.
 
 There is no critic, no baseline and no credit within a branch. The result is the average of the
 weights over the second half of the search, a law in a file that every command takes.

@@ -3,8 +3,8 @@
     python baselines/ppo_single_file.py                 # into results/ppo_single_file
     flockenv compare --policy results/ppo_single_file/policy.npz --pool narrow --set n_boats=9
 
-After 102 400 samples, 8 s of one core, seed 0 leads 9 boats with an order of 0.177, where its start
-has 0.147: no gain that 64 flocks show. The file is meant to be read.
+After 102 400 samples, 8 s of one core, seed 0 leads 9 boats with an order of 0.177, from 0.147 at
+its start: 64 flocks are too few to show such a gain. The file is meant to be read.
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is

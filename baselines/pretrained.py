@@ -8,24 +8,24 @@ In `wide` three leaders reach a signed order of 0.503 in the mean of eight seeds
 where the tuned law reaches 0.451. In `narrow` no seed passes the tuned law.
 
 The design was fixed before the first training. In `wide` eight trainings differ from
-`flockenv train` in the number of leaders alone: flocks with one, two, three and four are dealt
-out, equally many. In `narrow`, where PPO does not pass the tuned law, eight searches compare paired
-branches (paired_branches.py) with three leaders. Each has 1100 or 400 flock-hours, and no setting
-was searched for.
+`flockenv train` in the number of leaders alone: flocks with one, two, three and four leaders,
+equally many of each. In `narrow`, where PPO does not pass the tuned law, eight searches compare
+paired branches (paired_branches.py) with three leaders. Each PPO training has 1100 flock-hours,
+each search 400, and no setting was searched for.
 
-Every policy is linear, so that policies have a mean: the mean of their weights. It is the pool's
-policy if it leads at least as well as the best single one in the validation flocks, and that single
-one is otherwise. The score is the mean signed order with one to four leaders, in 128 validation
-flocks each, at the default physics. Flocks that nobody has used then judge the policy with three
-leaders, and the file has that order beside the command, the seeds and the flock-hours.
+Every policy is linear, so policies can be averaged: by the mean of their weights. This mean is the
+pool's policy if it leads at least as well in the validation flocks as the best single policy;
+otherwise the best single policy is. The score is the mean signed order with one to four leaders, in
+128 validation flocks each, at the default physics. Then the policy is judged with three leaders in
+flocks that nobody has used. Its file holds that order, the command, the seeds and the flock-hours.
 
-A training whose policy stands in `--out` is not made again, so that an interrupted command resumes.
-PPO also keeps its policy after 500 flock-hours. judge_trainings.py has the commands that compare
-all seeds.
+A training whose policy is in `--out` already is skipped, so an interrupted command resumes. PPO
+also keeps its policy after 500 flock-hours. judge_trainings.py has the commands that compare all
+seeds.
 
 The policy of a pool ships if it leads at least as well in the validation flocks as the tuned law
-and as the policy that ships already. studies/trainings keeps what the command wrote, without
-the rows of the policies that shipped before.
+and the present shipped policy. studies/trainings keeps what the command wrote, without the rows of
+the policies that shipped before.
 """
 
 import argparse
@@ -66,7 +66,7 @@ class Settings:
     kept_hours: float = 500.0
     narrow_hours: float = 400.0
     num_flocks: int = 128
-    #: Flocks that choose, for each of one to four leaders, and flocks that judge.
+    #: Number of validation flocks for each of one to four leaders, and of flocks that judge.
     validation_flocks: int = 128
     judging_flocks: int = 512
     episode_s: float = 480.0

@@ -5,7 +5,7 @@
 Seeds 0 to 4 reach an order of 0.464 to 0.500 with 500 flock-hours, 3.1 to 3.4 minutes of one core
 each, where the tuned law has 0.451 (results version 5).
 
-Flocks, reward, policy and exploration are those of `flockenv train`; the algorithm is another.
+Flocks, reward, policy and exploration are as in `flockenv train`; only the algorithm differs.
 """
 
 import sys
@@ -28,7 +28,7 @@ def trpo(settings: TrainingSettings, venv: Any, target_kl: float) -> TRPO:
     options = {name: getattr(ppo, name) for name in names}
     options |= {"use_sde": True, "seed": settings.seed, "device": "cpu"}
     model = TRPO(SharedNoisePolicy, venv, target_kl=target_kl, **options)
-    # TRPO refuses a parameter that is not learned: the exploration stays as wide as it starts.
+    # The width of the exploration is not learned, and TRPO refuses a parameter without a gradient.
     log_std = model.policy.log_std.detach()
     del model.policy.log_std
     model.policy.log_std = log_std

@@ -9,7 +9,7 @@ use flockenv::analysis::quantities::QUANTITIES;
 use flockenv::flock::Flock;
 use flockenv::parameters::{FlockParameters, Pool, Preset};
 
-/// Of the recorded quantities, those that are printed; `QUANTITIES` says what each means.
+/// The recorded quantities to print; `QUANTITIES` says what each means.
 const NAMES: [&str; 3] = ["psi_o", "nematic", "milling"];
 
 fn main() -> Result<()> {
@@ -21,7 +21,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The place of a quantity among the recorded ones, which are in the order of the table.
+/// Index of a quantity among the recorded ones, which are in the order of the table.
 fn place(name: &str) -> usize {
     let mut names = QUANTITIES.iter().map(|quantity| quantity.name);
     names

@@ -27,7 +27,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The paper's law where a boat moves forward, and no rudder where it backs: a rudder turns it the wrong way then.
+/// The paper's law while a boat moves forward, and no rudder while it backs: a rudder would turn it the wrong way.
 fn law(misalignment: f64, forward_cm_s: f64) -> f64 {
     if forward_cm_s < 0.0 {
         0.0

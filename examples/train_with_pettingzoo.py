@@ -70,7 +70,7 @@ def stacked(by_agent: dict[str, np.ndarray]) -> torch.Tensor:
     return torch.tensor(np.array([by_agent[agent] for agent in agents]), dtype=torch.float32)
 
 
-# From 2³² on seeds are for training.
+# Seeds from 2³² on are for training.
 first_seed = (1 << 32) + settings.seed * (1 << 20)
 for episode in range(settings.episodes):
     optimizer.param_groups[0]["lr"] = settings.learning_rate * (1.0 - episode / settings.episodes)

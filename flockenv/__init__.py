@@ -77,7 +77,7 @@ _MADE = {
 
 
 def _prints_help_alone() -> bool:
-    """Return whether this process is the command line that prints its help or version and ends."""
+    """Return whether this process is a command line that only prints its help or version."""
     program, *words = getattr(sys, "argv", None) or [""]
     if program == "-m":  # `python -m`: its package is imported before the module has a path.
         program = sys.orig_argv[-len(words) - 1]
@@ -85,7 +85,7 @@ def _prints_help_alone() -> bool:
     return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
 
 
-# Before anything uses the core.
+# This runs before anything uses the core.
 _built.check()
 _avx2.choose()
 # Gymnasium, which has no entry points for packages, and PettingZoo take as long to import as NumPy.

@@ -1,4 +1,4 @@
-"""The simulator compiled for AVX2, which wheels hold beside the one for every processor."""
+"""The simulator compiled for AVX2: wheels hold it beside the portable one."""
 
 import sys
 from importlib.machinery import ExtensionFileLoader, ModuleSpec
@@ -9,7 +9,7 @@ from flockenv import _core
 
 
 def choose() -> None:
-    """Let it take the place of `flockenv._core`, with the same bits, if this processor has AVX2."""
+    """Replace `flockenv._core` by it, with the same bits, if this processor has AVX2."""
     if _core.USES_AVX2 or not _core.HAS_AVX2:
         return
     name, file = _core.__name__, Path(str(_core.__file__))

@@ -1,4 +1,4 @@
-"""Whether the compiled simulator is that of the sources beside it, where they are a clone."""
+"""A check that the compiled simulator fits the sources beside it, in a clone."""
 
 import re
 from pathlib import Path
@@ -10,9 +10,9 @@ _DECLARED = re.compile(r"^(?:class (\w+)|( {4})?def (\w+)|(\w+): )", re.MULTILIN
 
 
 def check() -> None:
-    """Refuse, by an ImportError, a core that lacks a name which the stubs beside it declare.
+    """Raise an ImportError if the core lacks a name that the stubs beside it declare.
 
-    A clone keeps the core that was compiled last when its sources change.
+    When the sources of a clone change, its core stays the one that was compiled last.
     """
     if not (_HERE.parent / "Cargo.toml").exists():
         return

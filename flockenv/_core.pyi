@@ -65,7 +65,7 @@ __all__ = [
 __version__: str
 TOWARDS_TARGET: float
 LARGEST_LEAN: float
-# Whether this build does, and whether the processor could.
+# Whether this build uses AVX2, and whether the processor has it.
 USES_AVX2: bool
 HAS_AVX2: bool
 ORDERED_WITHIN: tuple[float, float]
@@ -79,13 +79,13 @@ LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]
 OBSERVATION_VERSION: int
-# What is declared of each: of fields name, kind, unit, default, accepted and doc; of others the
-# fields of `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
+# Declarations. Those of fields have name, kind, unit, default, accepted and doc; the others have
+# the fields of `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
 PARAMETERS: tuple[dict[str, Any], ...]
 OPTIONS: tuple[dict[str, Any], ...]
 BRANCH_OPTIONS: tuple[dict[str, Any], ...]
 QUANTITIES: tuple[dict[str, Any], ...]
-# Of each law name, doc, color (None: any that is free) and is_of_pool; the first acts at every
+# Each law has name, doc, color (None: any that is free) and is_of_pool. The first one acts at every
 # substep.
 LAWS: tuple[dict[str, Any], ...]
 FLOCK_FEATURES: tuple[dict[str, Any], ...]
@@ -95,7 +95,7 @@ REWARD_TERMS: list[tuple[str, str]]
 _Floats: TypeAlias = NDArray[np.float64]
 _Singles: TypeAlias = NDArray[np.float32]
 _Columns: TypeAlias = dict[str, NDArray[Any]]
-# `flockenv.FlockParameters`, whose attribute `_in_core` is what is used here.
+# A `flockenv.FlockParameters`; the core reads its attribute `_in_core`.
 _Parameters: TypeAlias = Any
 
 @final

@@ -84,7 +84,7 @@ class LeadersTaskClass(TaskClass):
         return made
 
     def supports_continuous_actions(self) -> bool:
-        """Return True: rudders, or what the action mode says."""
+        """Return True: actions are rudders, leans or headings."""
         return True
 
     def supports_discrete_actions(self) -> bool:

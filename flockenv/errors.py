@@ -24,8 +24,8 @@ __all__ = [
 class UnknownOptionError(ParameterError, TypeError):
     """An environment was given a keyword argument that is not one of its options.
 
-    It is a `TypeError`, too, because libraries try out optional arguments and leave out those that
-    raise one (TorchRL's ``GymEnv``: ``frameskip``).
+    It is a `TypeError`, too, because libraries try optional arguments and drop those that raise one
+    (TorchRL's ``GymEnv`` tries ``frameskip``).
     """
 
 
@@ -33,7 +33,7 @@ def short_repr(value: object) -> str:
     """Return a value as messages show it: its repr, cut at a length that fits a line."""
     try:
         text = repr(value)
-    except Exception:  # That of an int of more than 4300 digits fails, and others may.
+    except Exception:  # The repr of an int of more than 4300 digits fails, and so may others.
         return "a value that cannot be printed"
     return text if len(text) <= 80 else f"{text[:80]}…"
 
@@ -64,15 +64,15 @@ class HintsAtNames:
     """An object whose error for a missing attribute suggests the right name."""
 
     __slots__ = ()
-    #: Meanings of other words, as an error says them.
+    #: Answers to words of other libraries, for the error.
     _meanings: ClassVar[Mapping[str, str]] = {}
 
-    # Type checkers would take any name for an attribute.
+    # Hidden from type checkers, which would accept any name as an attribute.
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
             words = f"{type(self).__name__!r} object has no attribute {name!r}"
-            # Libraries look for private names, which have no other word.
+            # Libraries look for private names; they need no suggestion.
             if not name.startswith("_"):
                 near = nearest(name, (word for word in dir(type(self)) if word[0] != "_"))
                 if meant := self._meanings.get(name, near and repr(near)):

@@ -197,7 +197,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        With a list of targets the first counts. Raises the errors of `series`.
+        With a list of targets the first counts. Raises what `series` raises.
         """
         return self.series("signed_order", target)
 

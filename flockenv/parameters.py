@@ -100,7 +100,7 @@ class FlockParameters:
         return core
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, so that what is unpickled is checked too.
+        # Through the constructor, so that unpickled parameters are checked, too.
         return type(self).from_dict, (self.to_dict(),)
 
     @classmethod
@@ -140,7 +140,7 @@ class FlockParameters:
         There the mean Ψ_o of leaderless runs falls through the middle between its ordered and its
         disordered level. ``studies/critical_noise`` measured it for Table 3's presets in both
         named pools, and for ``"experiment"`` in ``"narrow"``. A ParameterError refuses other
-        presets and pools, and a call without them: parameters of your own have no stored value.
+        presets and pools, since no value was measured for them.
         """
         if not isinstance(preset, str) or pool is None:
             raise ParameterError(
@@ -234,6 +234,6 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
 
 
 def _stored(value: object) -> Any:
-    """Return a value that can be gone through once, such as a generator of discs, as a tuple."""
+    """Return an iterator, such as a generator of discs, as a tuple; other values unchanged."""
     held = materialized(value)
     return held if held is value else tuple(materialized(name) for name in held)

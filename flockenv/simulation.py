@@ -30,7 +30,7 @@ Start = bytes | Mapping[str, object] | Recording
 Changes = list[tuple[float, str | tuple[str, ...] | FlockParameters]]
 """Times of a schedule, and the target or the parameters that hold from then on."""
 
-# Whether boats fit depends on these, and is tried before a run.
+# These fields decide whether boats fit, which is checked before a run.
 _PLACED = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
 
 
@@ -75,15 +75,16 @@ def simulate(
         observes what it was trained on. A dictionary has one of these for each of ``"leader_0"`` to
         ``"leader_{k-1}"``; the law then acts at every control step.
     control_hz
-        How many times per second policies decide; None: as often as a model was trained with, if
-        its observation space says so, and otherwise 10. Policies of a dictionary may then decide at
-        rates of their own: a slower one's rudder is held meanwhile.
+        How many times per second policies decide. None: a model as often as in its training, if its
+        observation space says so, and others 10 times. Policies of a dictionary may then decide at
+        different rates; the rudder of a slower one is held.
     dtype
         float64, or float32 for half the size: it rounds the stored pose and velocity, not the run.
     contacts
         Whether contacts and their forces are recorded too: 28 bytes per contact.
     progress
-        Called now and then with the flock-seconds simulated since; what it raises ends the run.
+        Called now and then with the flock-seconds simulated since the last call; its exceptions end
+        the run.
     start
         Where the run starts, and at which time. None: at random, at rest, at 0 s. A snapshot, as
         bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
@@ -123,7 +124,7 @@ def simulate(
     TypeError
         For arguments of the wrong type.
     SolverError
-        If the motion left its range of 1e9 (cm, cm/s, rad, rad/s).
+        If a pose or velocity exceeds 1e9 (cm, cm/s, rad, rad/s).
     """
     if not isinstance(parameters, FlockParameters):
         raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
@@ -157,7 +158,7 @@ def _origin(
     noise_seed: int | None,
     control_hz: float | None,
 ) -> dict[str, object]:
-    """Return the fields that set a run apart from another of its parameters, seed and policy."""
+    """Return the fields in which runs of the same parameters, seed and policy may differ."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
         "control_hz": None if control_hz is None else float(control_hz),
@@ -197,7 +198,7 @@ def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, A
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     """Return the steering of a run and its rate, as the core takes them."""
     if leaders.law is not None:
-        # The core itself steers by a law, and holds its leans.
+        # If a law steers, the core does it, and holds leans itself.
         own = leaders.seats[0].policy.control_hz
         if own is None and control_hz is not None:
             raise ParameterError(
@@ -235,7 +236,7 @@ def _changes(parameters: FlockParameters, schedule: Schedule, seed: int) -> Chan
             raise ParameterError(
                 f"schedule = {short_repr(entry)} is not accepted: {error}"
             ) from error
-        # New parameters restart the random streams; those that are the same change nothing.
+        # New parameters restart the random streams, so equal ones are dropped: they change nothing.
         is_target = now == before.replace(target=now.target)
         changes.append((time_s, now.target if is_target else now))
     return changes
@@ -270,7 +271,7 @@ def _schedule_digest(
     """Return the SHA-256 of all changes and their times; None if nothing changed."""
     before, length_s = now, round(times_s[-1] - times_s[0], 9)
     after: dict[float, FlockParameters] = {}  # The last of several changes at one time counts.
-    # A change acts after the sample at its time: a run that ended early has not seen it.
+    # A change acts after the sample at its time, so a run that ended early does not include it.
     for time_s, change in ((time_s, change) for time_s, change in changes if time_s < length_s):
         now = change if isinstance(change, FlockParameters) else now.replace(target=change)
         after[time_s] = now
@@ -290,7 +291,7 @@ def _state_of(start: Start | None) -> bytes | Mapping[str, object] | None:
 
 
 def _start_digest(start: bytes | Mapping[str, object] | None, flock: Flock) -> str | None:
-    """Return the SHA-256 of a snapshot, or of pose, velocity and time; None of a random start."""
+    """Return the SHA-256 of a snapshot, or of pose, velocity and time; None for a random start."""
     if start is None:
         return None
     if isinstance(start, bytes):

@@ -76,7 +76,7 @@ def as_int(value: Any, name: str) -> int:
 
     A ParameterError refuses other real numbers, a TypeError everything else, bools among them.
     """
-    # As the core takes whole numbers: also NumPy's, and arrays of one without a dimension.
+    # As the core does: NumPy's integers, too, and arrays of one integer without a dimension.
     try:
         if not isinstance(value, bool | np.bool_):
             return operator.index(value)
@@ -93,7 +93,7 @@ def as_int(value: Any, name: str) -> int:
 
 
 def _check_no_table(values: object, name: str) -> None:
-    if hasattr(values, "columns"):  # Their names would be ignored.
+    if hasattr(values, "columns"):  # The names of columns would be ignored.
         raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
 
 

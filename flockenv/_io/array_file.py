@@ -18,9 +18,9 @@ _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
 def most_held(size: int) -> int:
-    """Return the most bytes that the entries of a file may hold together, for its size.
+    """Return the most bytes that the entries of a file of this size may hold together.
 
-    Numbers of runs take a tenth at best if they are compressed, and zeros a thousandth.
+    Compression makes the numbers of a run ten times smaller at best, and zeros a thousand times.
     """
     return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_TIMES * size))
 
@@ -48,8 +48,8 @@ def read_arrays(
     """Read all arrays of a file; nothing in it is ever executed.
 
     A ParameterError names a file that is no ``.npz`` file of plain numbers and strings, is cut off
-    or damaged, or whose arrays hold more than `most_bytes` together: by default 16 GiB, and more
-    than 64 MiB only in a file that is a hundredth of it.
+    or damaged, or whose arrays hold more than `most_bytes` together. The default is a hundred times
+    the file's size, but at least 64 MiB and at most 16 GiB.
     """
     with open_plain(path) as file:
         most = most_bytes or most_held(os.fstat(file.fileno()).st_size)
@@ -71,7 +71,7 @@ def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
         name = entry.filename.removesuffix(".npy")
         if name in arrays:
             raise ValueError(f"it holds {name!r} twice")
-        # The whole entry, whose checksum is compared; NumPy may stop reading before its end.
+        # Read to the end, so that the checksum is compared; NumPy may stop before.
         with archive.open(entry) as stream:
             # Reads only as many bytes as the entry declares; without a number the whole entry would
             # be unpacked.

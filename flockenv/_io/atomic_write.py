@@ -32,16 +32,16 @@ _temporary: set[Path] = set()
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a temporary file for writing bytes, renamed to the path if all goes well.
 
-    It is removed on every way out but a kill, at the latest when Python ends. The new file keeps
-    the old one's mode. A link stays a link, and the file that it names is replaced. If the file
-    cannot be written, which is an OSError, what was there before is still there. A ParameterError
-    refuses to take the place of a device, a pipe or a socket.
+    It is removed however the block ends, except by a kill; at the latest when Python ends. The new
+    file keeps the old one's mode. A link stays a link, and the file that it names is replaced. If
+    the file cannot be written, an OSError is raised and the old file is still there. A
+    ParameterError refuses to take the place of a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
     try:
         temporary, file = _held_file(target.parent)
-    except OSError as error:  # Nobody knows the temporary file's name.
+    except OSError as error:  # The temporary file's name would tell a reader nothing.
         error.filename = os.fspath(path)
         raise
     try:
@@ -60,7 +60,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
 
 def _held_file(folder: Path) -> tuple[Path, IO[bytes]]:
-    """Return a new temporary file that `remove_leftovers` of no process removes."""
+    """Return a new temporary file, locked so that no process removes it as a leftover."""
     while True:
         temporary = folder / f".{secrets.token_hex(8)}.tmp"
         _temporary.add(temporary)
@@ -115,14 +115,14 @@ def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) ->
                 if _is_locked(file):
                     path.unlink(missing_ok=True)
         except OSError:
-            continue  # It has just got its own name, or is not ours to remove.
+            continue  # It has just been renamed to its final name, or is not ours to remove.
 
 
 @atexit.register
 def remove_temporary_files() -> None:
     """Remove what unfinished writing left, before the process ends."""
     for path in tuple(_temporary):
-        with suppress(OSError):  # One that cannot be removed does not keep the others.
+        with suppress(OSError):  # If one cannot be removed, the others still are.
             path.unlink(missing_ok=True)
 
 

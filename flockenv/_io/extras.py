@@ -11,7 +11,7 @@ name. The release sets it, and a test then asks every page to say the same."""
 
 
 class MissingExtraError(FlockError, ImportError):
-    """An optional package is not installed; the message names the extra that brings it."""
+    """An optional package is missing; the message names the extra that installs it."""
 
 
 def install(extra: str) -> str:

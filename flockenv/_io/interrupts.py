@@ -3,7 +3,8 @@
 While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
 done, and executors start no further run. A second signal ends the process at once. A request to
 end, such as Slurm's before a job's time is over, counts as Ctrl-C. So does the end of the terminal.
-The end of a terminal is told by the system and by the shell, and so it ends nothing at once.
+Both the system and the shell report the end of a terminal, so this second signal does not end the
+process at once.
 """
 
 import os
@@ -31,7 +32,7 @@ def interrupted() -> bool:
 
 
 def end_if_interrupted() -> None:
-    """Raise KeyboardInterrupt, where nothing is half done, if Ctrl-C was noted."""
+    """Raise KeyboardInterrupt if Ctrl-C was noted; called only where no work is half done."""
     if _is_noted:
         raise KeyboardInterrupt
 
@@ -40,7 +41,7 @@ def end_if_interrupted() -> None:
 def noted_interrupts() -> Iterator[None]:
     """Note Ctrl-C within a `with` block; a second one ends the process and its temporary files.
 
-    Nothing changes elsewhere than in the main thread, nor where Ctrl-C is ignored, as under nohup.
+    Outside the main thread, or if Ctrl-C is ignored as under nohup, nothing changes.
     """
     global _is_noted
     found = {number: signal.getsignal(number) for number in _SIGNALS}

@@ -1,4 +1,4 @@
-"""Files that have an end: no devices, pipes and sockets, which may be read or written forever."""
+"""Ordinary files. Devices, pipes and sockets, which may be read or written forever, are refused."""
 
 import errno
 import os
@@ -31,7 +31,7 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
     words = f"{os.fspath(path)} is no file but a device, a pipe or a socket"
     if is_special(path):
         raise ParameterError(words)
-    # Does not wait for a pipe that was created meanwhile.
+    # Without waiting, in case a pipe was created meanwhile.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)
     try:

@@ -32,7 +32,7 @@ def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
 def read_toml(text: str, what: str) -> dict[str, Any]:
     """Return the values in a TOML text; errors call the text `what`.
 
-    Numbers and nesting that nothing here could take are refused too, as a ParameterError.
+    Numbers that are too large and nesting that is too deep are a ParameterError, too.
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} must be a string, not {type(text).__name__}")
@@ -40,5 +40,5 @@ def read_toml(text: str, what: str) -> dict[str, Any]:
         return tomllib.loads(text.removeprefix("\ufeff"))
     except RecursionError as error:
         raise ParameterError(f"{what} is no TOML: it is nested too deeply") from error
-    except ValueError as error:  # Also of integers of thousands of digits.
+    except ValueError as error:  # Integers of thousands of digits raise it, too.
         raise ParameterError(f"{what} is no TOML: {error}") from error

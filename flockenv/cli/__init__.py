@@ -43,7 +43,7 @@ def main() -> None:
         _print_version()  # Typer would import pydantic to read a flag.
         return
     try:
-        # Words to be completed are in the environment.
+        # A shell that asks for completions puts the words into the environment.
         named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
         _app(named)()
     except (FlockError, OSError) as error:
@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _app(named: Collection[str]) -> typer.Typer:
-    """Return the command line; commands that are not named have only their line of help."""
+    """Return the command line; commands that are not named are only a line of help."""
     app = typer.Typer(
         no_args_is_help=True,
         rich_markup_mode="markdown",
@@ -89,7 +89,7 @@ def _root(
 
 
 def _not_imported() -> None:
-    # A command that runs is named on the command line, and so imported.
+    # This is never called: a command that runs is named on the command line, and so imported.
     raise NotImplementedError
 
 

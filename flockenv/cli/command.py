@@ -21,8 +21,8 @@ _FIELDS = tuple(parameter.name for parameter in fields(FlockParameters))
 class Command(typer.core.TyperCommand):
     """A command that refuses an option it does not have, or whose value it would ignore.
 
-    An unknown option is answered with the line to type. If a value came twice, click would take the
-    last one.
+    An unknown option is answered with the line to type. If an option came twice, click would
+    silently take the last value.
     """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:

@@ -117,7 +117,7 @@ def compare(options: CompareOptions) -> None:
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
-    for package in ("matplotlib", "pandas", "scipy"):  # All of them before hours of runs.
+    for package in ("matplotlib", "pandas", "scipy"):  # All before hours of runs.
         require(package, "plot")
     if options.suite == LEVELS_SUITE:
         _refuse_all_but(_OF_ENTRIES, options)
@@ -205,7 +205,7 @@ def _seconds(plan: Plan) -> float:
 def _compared(options: CompareOptions, plan: Plan) -> ComparisonReport:
     """Run the cases and return their report, which is written whenever a case is finished.
 
-    After Ctrl-C it is written, too, of the policies and numbers of leaders that were finished.
+    After Ctrl-C the report covers the policies and numbers of leaders that were finished.
     """
     cases, policies = plan.cases, plan.policies
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
@@ -260,17 +260,17 @@ def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float
 
 
 def _is_made(given: str) -> bool:
-    """Return whether a policy is a file or an object of the user's own, which something made."""
+    """Return whether a policy is the user's own file or object, and so took flock-hours to make."""
     return given.endswith(FILES) or (":" in given and "=" not in given)
 
 
 def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> dict[str, Steers]:
-    """Return the policies of a case by name, the user's first, and name those not for its pool."""
+    """Return a case's policies by name, the user's first, and names of those for other pools."""
     found: dict[str, Steers] = {
         name: _read(given, pool, options.trust) for name, given in own.items()
     }
     for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
-        if name in own.values() and not options.suite:  # It has a name of the user's.
+        if name in own.values() and not options.suite:  # The user gave it this name.
             continue
         try:
             found.setdefault(name, policy(name, pool))
@@ -288,7 +288,7 @@ def _read(given: Given, pool: Pool, trust: bool) -> Steers:
 
 
 def _tasks(options: CompareOptions) -> list[Case]:
-    """Return the tasks of a suite; refuse options that would make another task of one."""
+    """Return the tasks of a suite; refuse options that would change a task."""
     _refuse_all_but({field.name for field in fields(options)} - {*_OF_FLOCKS}, options)
     return tasks_named(str(options.suite), options.task or ())
 
@@ -397,7 +397,7 @@ def _own_policies(options: CompareOptions) -> dict[str, Given]:
         if name in own:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")
         own[name] = text
-        if is_each:  # A number is no name of a policy, and is refused like an unknown name.
+        if is_each:  # A number is refused like an unknown name.
             by_leader = changed_fields(text.split(","), "--policy").items()
             own[name] = {leader: str(given) for leader, given in by_leader}
     return own

@@ -7,7 +7,7 @@ errors = Console(stderr=True)
 
 
 def echo(text: str, on: Console = console) -> None:
-    """Print a line unchanged: brackets in a file's name are no markup, and nothing breaks it."""
+    """Print a line unchanged: no brackets become markup, and long lines are not wrapped."""
     on.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

@@ -73,7 +73,7 @@ def option_of(name: str) -> str:
 
 
 def _check_endings(options: object) -> None:
-    """Refuse names of files that end in another way than their options are declared with."""
+    """Refuse files whose names lack the endings that their options declare."""
     for option_ in fields(options):  # type: ignore[arg-type]
         path, endings = getattr(options, option_.name), option_.metadata.get("endings")
         if path is None or endings is None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def printable(name: str | os.PathLike[str]) -> str:
-    """Return the name of a file or policy with a sign in place of bytes that are no UTF-8.
+    """Return the name of a file or policy with a sign in place of bytes that are not UTF-8.
 
     Such a name opens its file, but cannot be printed in a page, table or picture.
     """
@@ -38,11 +38,11 @@ def load_recording(
 ) -> Recording:
     """Return a recording, or one made of a table of tracks.
 
-    What of these was left out is printed, unless `quiet`, and given to `report`.
+    Rows that were left out are printed, unless `quiet`, and passed to `report`.
 
-    The layout of tracks is by default that of the TOML file beside them. A table without one gets
-    one that is guessed from its columns, and what is to be checked in it is printed. A
-    ParameterError names a file that cannot be read, is damaged, or neither.
+    The layout of tracks is by default that of the TOML file beside them. If there is none, a layout
+    is guessed from the columns, and the lines to check are printed. A ParameterError names a file
+    that cannot be read, is damaged, or is neither a recording nor a table.
     """
     from flockenv.tracks import check_ending, description_of, guess_layout, read_layout, read_tracks
 

@@ -13,7 +13,7 @@ from flockenv.cli.console import echo, errors
 
 
 def held_by(folder: Path) -> str:
-    """Return what an interrupted training says of its checkpoint."""
+    """Return the sentence by which an interrupted training names its checkpoint."""
     return f"{folder} holds the last checkpoint: --resume continues from it."
 
 
@@ -27,8 +27,8 @@ def progress(
 ) -> Iterator[Callable[..., None]]:
     """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
 
-    Yields a function that moves it on by an amount of work, and may change what it says is done;
-    with `ends`, work ends there if Ctrl-C was noted. Then `kept` says how much of the work is
+    Yields a function that advances the bar by an amount of work, and may change its text. With
+    `ends`, that function ends the work if Ctrl-C was noted; then `kept` says how much of it is
     stored.
     """
     disable = quiet or not errors.is_terminal
@@ -47,7 +47,7 @@ def progress(
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that Ctrl-C ends with exit code 130, where nothing is half done."""
+    """Return a command that Ctrl-C ends with exit code 130, once no work is half done."""
 
     @functools.wraps(command)
     def wrapped(*arguments: object, **options: object) -> None:

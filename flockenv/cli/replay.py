@@ -77,8 +77,9 @@ def replay(options: ReplayOptions) -> None:
 
     The page plays at any speed. It shows trails, contact forces, a boat's numbers,
     and order parameters in step with the picture. `--gif` and `--mp4` write a moving picture
-    instead (extras `render`, `video`). Two recordings play side by side in each. Tracks of real
-    flocks need a TOML file beside them that describes their table (`docs/tracks.md`).
+    instead (extras `render`, `video`). Pages and moving pictures show two recordings side by side.
+    Tracks of real flocks need a TOML file beside them that describes their table
+    (`docs/tracks.md`).
 
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """

@@ -107,7 +107,7 @@ def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
 
 
 def _free(path: Path) -> Path:
-    """Return the path if no run is there, or else the path with the first free number from 2 on."""
+    """Return the path, or, if a run is there, the path with the first free number from 2 on."""
     numbered = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
     paths = chain([path], numbered)
     return next(p for p in paths if not (p.exists() or p.with_suffix(".toml").exists()))

@@ -147,7 +147,7 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
 
 
 def _check_same(path: Path, work: "SweepSpec") -> None:
-    """Refuse to put another sweep in the place of one that exists, however it is written."""
+    """Refuse to replace the sweep of a folder by another one; spelling does not make it another."""
     from flockenv.runs.sweep import read_sweep
 
     try:
@@ -162,7 +162,7 @@ def _check_same(path: Path, work: "SweepSpec") -> None:
 
 
 def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) -> None:
-    """Print the numbers of runs and of stored runs, and the time of the others."""
+    """Print how many runs there are, how many are stored, and how long the rest will take."""
     work = measure_workload(runs, store)
     if options.as_json:
         print_json(asdict(work))
@@ -174,7 +174,7 @@ def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) 
 
 
 def _in_units(seconds: float) -> str:
-    """Return a time as one reads it."""
+    """Return a time with a unit that suits it, such as "3.0 h"."""
     if seconds < 100.0:
         return f"{max(seconds, 1.0):.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 6000.0 else f"{seconds / 3600:.1f} h"

@@ -102,7 +102,7 @@ def _mean(values: Any) -> tuple[float, float]:
 
 
 def _overlaps(compared: Mapping[str, Mapping[str, Any]]) -> tuple[int, int, float]:
-    """Return the episodes, those that left overlaps beyond the tolerance, and the deepest in cm."""
+    """Return the numbers of episodes and of those with overlaps, and the deepest overlap."""
     unsolved, worst_cm = (
         np.concatenate([each[name] for each in compared.values()])
         for name in ("unsolved", "worst_overlap_cm")

@@ -99,7 +99,7 @@ class Comparison:
 
 
 def _environment(options: Mapping[str, object]) -> dict[str, object]:
-    """Return options, or refuse those that would contradict another argument or overrule it."""
+    """Return options; refuse those that another argument sets."""
     found = by_name(options, "environment")
     for name, value in found.items():
         # A range of noises is no parameter of one flock.
@@ -169,14 +169,14 @@ def compare_leaders(
     Parameters
     ----------
     parameters
-        Of the flock; its number of leaders is replaced.
+        Parameters of the flock; its number of leaders is replaced.
     leaders
         Numbers of leaders; 0 is run once, whatever the policies, as the policy `NO_LEADERS`.
     policies
         How leaders steer, by the name in the table, such as ``{"mine": model, "paper's law":
         "paper's law"}``: each as `flockenv.policies.policy` takes it, or a dictionary with one for
-        each of ``"leader_0"``, ``"leader_1"`` and so on. A function makes a policy for each number
-        of leaders; all else is one object for all of them.
+        each of ``"leader_0"``, ``"leader_1"`` and so on. A function is called for each number of
+        leaders; anything else is one object for all of them.
     seeds
         One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s
@@ -185,9 +185,8 @@ def compare_leaders(
         Called with flock-seconds as they are simulated.
     environment
         Options of the environment that differ from its defaults, such as ``target="alternate"`` or
-        ``dropout_rate=0.003``. Flocks without leaders and under the paper's law at every substep
-        decide nothing in it: with other options than ``target``, ``bw_s`` and ``physics`` they are
-        refused.
+        ``dropout_rate=0.003``. Flocks without leaders, and those under the paper's law at every
+        substep, take only ``target``, ``bw_s`` and ``physics``; other options are refused.
     finished
         Called with the rows of each policy and number of leaders, as soon as they are complete.
 
@@ -200,10 +199,9 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters, options, names and durations out of range, for options that another
-        argument or a policy says, for training seeds and seeds given twice, for policies that steer
-        another number of leaders, and for policies of another action mode than that of
-        `environment`.
+        For parameters, options, names and durations out of range, for options that another argument
+        or a policy sets, for training seeds and seeds given twice, and for policies made for
+        another number of leaders or another action mode.
     """
     require("pandas", "plot")
     check_function(progress, "progress")

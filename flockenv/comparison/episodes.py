@@ -97,14 +97,14 @@ class Episodes:
             progress(count / batch.decisions_hz)
             end_if_interrupted()
         summaries = [batch.core.finished(flock) or {} for flock in range(count)]
-        # A summary lacks unknown values.
+        # A value that is unknown is missing from a summary.
         return {
             name: np.array([summary.get(name, np.nan) for summary in summaries])
             for name in (*QUANTITIES, *ORDERING_TIMES, *STEP_STATISTICS)
         }
 
     def _decide(self, batch: LeaderBatch) -> Decide:
-        """Return a function from what leaders observe to actions; None: the law acts alone."""
+        """Return a function from observations to actions; its None means the law acts alone."""
         core, rows = batch.core, batch.num_flocks * self.n_leaders
         if self.leaders.is_each:
             decisions = self.leaders.decisions(batch.settings["control_hz"])
@@ -128,7 +128,7 @@ class Episodes:
 
 
 def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
-    """Return the options of the environment that policies ask for, or refuse others."""
+    """Return the environment's options that policies ask for; refuse contradicting ones."""
     if leaders.is_each:
         if "decision_period_s" in options:
             raise ParameterError(
@@ -164,7 +164,7 @@ def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
 
 
 def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:
-    """Return seeds, one for each episode; anything but a sequence of whole numbers is refused."""
+    """Return the seeds, one for each episode; refuse anything but a sequence of whole numbers."""
     found = items(seeds, "seeds")
     return found if isinstance(found, range) else tuple(as_int(seed, "seed") for seed in found)
 
@@ -184,15 +184,14 @@ def run_episodes(
     Parameters
     ----------
     parameters
-        Of the flock.
-    policy
-        How its leaders steer, as in `flockenv.simulate`; None for flocks without leaders.
+        Parameters of the flock. policy How its leaders steer, as in `flockenv.simulate`; None for
+        flocks without leaders.
     seeds, duration_s, progress
         As for `compare_leaders`.
     options
-        Further options of the environment. Without ``control_hz`` a policy steers as often as it is
-        made for: 10 times per second, and a model as in its training. Flocks that nobody steers in
-        steps take ``target``, ``bw_s`` and ``physics`` alone.
+        Further options of the environment. Without ``control_hz`` a policy decides at its own rate:
+        a model as in its training, others 10 times per second. Flocks without decisions take only
+        ``target``, ``bw_s`` and ``physics``.
 
     Returns
     -------

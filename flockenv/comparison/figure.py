@@ -19,7 +19,7 @@ COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 """The color that a policy has in every figure."""
 
 _OKABE_ITO = [OKABE_ITO[name] for name in ("vermilion", "purple", "sky blue", "blue")]
-# With two that differ from Okabe and Ito's, and from those of laws.
+# The last two are neither Okabe and Ito's nor those of laws.
 OWN_COLORS = (*_OKABE_ITO, "#999933", "#ddcc77")
 """Colors of other policies, in turn."""
 
@@ -78,8 +78,8 @@ def _draw(axes: Axes, means: pd.DataFrame, shift: float, policy: str, color: str
     means = means.sort_values("leaders")
     order = means["signed_order"]
     ends = means[["signed_order_low", "signed_order_high"]].sub(order, axis=0).abs().to_numpy().T
-    # Policies may have the names of files: a dollar sign there starts no formula, and a legend
-    # leaves out names that start with an underscore.
+    # Names of policies may be names of files. A dollar sign in one must not start a formula, and
+    # Matplotlib leaves names that start with an underscore out of a legend.
     label = " " + policy[-40:].replace("$", r"\$")
     axes.errorbar(
         means["leaders"] + shift,

@@ -117,8 +117,8 @@ def score(
     Returns
     -------
     tuple of float
-        The mean, and the ends of its interval. It holds the luck of the trainings, if there are
-        two or more, and of the flocks, in which the scale is measured, too.
+        The mean, and the ends of its interval. The interval holds the luck of the flocks, also in
+        the two orders of the scale, and the luck of the trainings if there are two or more.
     """
     led = np.atleast_2d(np.asarray(orders, float))
     scale = float((reference - no_steering).mean())
@@ -128,7 +128,7 @@ def score(
             "there is no scale for a score"
         )
     found = float((led - no_steering).mean()) / scale
-    # The change of the ratio by each flock, to first order.
+    # Each flock's effect on the ratio, to first order.
     moved = found + ((led - no_steering) - found * (reference - no_steering)) / scale
     return two_way_interval(moved) if len(moved) > 1 else mean_interval(moved[0])
 

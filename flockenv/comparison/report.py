@@ -40,11 +40,11 @@ class ComparisonReport:
     """Results of policies in some cases (extra ``plot``)."""
 
     cases: Sequence[Case]
-    #: Names, those first whose differences from the others are wanted.
+    #: Names of policies; those whose differences are wanted come first.
     policies: Sequence[str]
     #: One row per episode: the rows of `Case.run` of all cases.
     runs: "pd.DataFrame"
-    #: Everything else that the numbers depend on.
+    #: Everything else on which the numbers depend.
     conditions: Mapping[str, object] = field(default_factory=dict)
 
     @cached_property
@@ -189,7 +189,7 @@ def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str
 
 
 def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str]:
-    """Return the line for `deep` of a total with such overlaps, no line for none."""
+    """Return the line that says `deep` of `total` episodes had such overlaps; no line for none."""
     if deep == 0:
         return []
     return [

@@ -40,8 +40,8 @@ def score_policies(
     Raises
     ------
     ParameterError
-        For a reference that is none of the policies, for policies without flocks, and for a policy
-        with another number of flocks than the reference.
+        For a reference that is not among the policies, for policies without flocks, and for a
+        policy whose number of flocks differs from the reference's.
     """
     pandas = require("pandas", "plot")
     values = {

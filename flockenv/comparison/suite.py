@@ -47,7 +47,7 @@ def _task(name: str, env_id: str) -> Case:
     parameters = FlockParameters.from_dict(options.pop("params"))
     targets: tuple[object, ...] = ()
     if isinstance(options.get("target"), tuple):
-        # No direction is favored: half of the episodes exchange them.
+        # In half of the episodes the directions are exchanged, so that neither is favored.
         told = options.pop("target")
         targets = (told, told[::-1])
     return Case(
@@ -93,9 +93,9 @@ def aggregate(differences: Sequence[NDArray[np.float64]]) -> dict[str, tuple[flo
     -------
     dict
         Value, lower and upper end: of the ``interquartile mean`` over the episodes of all tasks;
-        and of the ``probability of improvement``, that an episode has a higher signed order than
-        with `REFERENCE`, mean over the tasks. The intervals are BCa bootstraps that draw episodes
-        within each task (Agarwal et al. 2021 draw runs).
+        and of the ``probability of improvement``, how often an episode has a higher signed order
+        than with `REFERENCE`, as a mean over the tasks. The intervals are BCa bootstraps that draw
+        episodes within each task (Agarwal et al. 2021 draw runs).
     """
     statistics = {
         "interquartile mean": interquartile_mean,

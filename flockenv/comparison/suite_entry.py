@@ -79,9 +79,9 @@ class SuiteEntry:
         Raises
         ------
         ParameterError
-            For a file that is no entry, one of another suite or results version, policies that
-            cannot be read or hold numbers that are not finite, and trainings that met flocks for
-            evaluation.
+            For a file that is not an entry or belongs to another suite or results version, for
+            policies that cannot be read or hold numbers that are not finite, and for trainings that
+            used seeds for evaluation.
         """
         values = read_toml_file(path, os.fspath(path))
         try:
@@ -175,8 +175,8 @@ def scored(
 ) -> Iterator[tuple["pd.DataFrame", "pd.DataFrame"]]:
     """Score entries one after another, each on those of the levels that it has policies for.
 
-    Yields after each entry the rows of all entries so far, ranked, and the orders of all flocks:
-    first those of both references of each level. Raises the errors of `SuiteEntry.run`.
+    After each entry, yields the ranked rows of all entries so far, and the orders of all flocks,
+    which start with those of each level's two references. Raises the errors of `SuiteEntry.run`.
     """
     pandas = require("pandas", "plot")
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
@@ -199,7 +199,7 @@ def scored(
 def orders_table(
     level: str, budget: str, entry: str, policies: Sequence[str], orders: NDArray[np.float64]
 ) -> "pd.DataFrame":
-    """Return a row for each flock of each policy, of orders (policies, flocks)."""
+    """Return a row for each flock of each policy, from orders of shape (policies, flocks)."""
     pandas = require("pandas", "plot")
     index = pandas.MultiIndex.from_product([policies, range(orders.shape[1])])
     table: pd.DataFrame = pandas.DataFrame({"signed_order": orders.ravel()}, index)
@@ -227,7 +227,7 @@ _KEYS = (
 
 
 def _check_versions(values: Mapping[str, Any]) -> None:
-    """Refuse entries of another suite, and of flocks that move otherwise."""
+    """Refuse entries of another suite or results version."""
     if values["suite"] != SUITE:
         raise ParameterError(f"suite = {short_repr(values['suite'])} is not accepted: {SUITE!r}")
     if values["results_version"] != RESULTS_VERSION:
@@ -272,7 +272,7 @@ def _hours(value: object, name: str) -> float:
 
 
 def _check_seeds(first: int, last: int, name: str) -> None:
-    """Refuse the seeds of a training if some of them judge policies."""
+    """Refuse training seeds that overlap the seeds for evaluation."""
     if not FIRST_TRAINING_SEED <= first <= last:
         raise ParameterError(
             f"{name} = [{first}, {last}] is not accepted: seeds below 2^32 are for evaluation, and "
@@ -317,7 +317,7 @@ def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
 
 
 def _check_weights(source: object, given: str) -> None:
-    """Refuse a model of torch whose weights are not finite; other files were checked as read."""
+    """Refuse a torch model whose weights are not finite; other files were checked when read."""
     model = getattr(source, "model", None)
     parameters = getattr(getattr(model, "policy", model), "parameters", None)
     for weights in parameters() if callable(parameters) else ():

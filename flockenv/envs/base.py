@@ -30,10 +30,10 @@ class Resumable(OwnFlocks):
     _batch: LeaderBatch
 
     def get_state(self) -> bytes:
-        """Return everything that the future depends on, as bytes.
+        """Return everything on which the future depends, as bytes.
 
-        Parameters, options, terms and blocks are in them by name. The rest, such as motion and
-        noise, belongs to the build that wrote it.
+        Parameters, options, terms and blocks are stored by name. The rest, such as motion and
+        noise, can be read only by the build that wrote it.
         """
         return self._batch.core.to_bytes()
 
@@ -99,7 +99,7 @@ class SpecOfEpisodes:
     @spec.setter
     def spec(self, spec: EnvSpec | None) -> None:
         if spec is not None and spec.max_episode_steps is None:
-            # The registered one holds for all options.
+            # The registered spec serves all options, so it has no number of steps.
             spec = copy.deepcopy(spec)
             spec.max_episode_steps = self._batch.decisions
         self._spec = spec

@@ -17,9 +17,9 @@ from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
-# So many numbers and more are added by NumPy in another order.
+# From this many numbers on, NumPy adds them in another order.
 _UNROLLED = 8
-# More would fill the memory before anything is simulated.
+# Larger batches would fill the memory before anything is simulated.
 _MOST = 100_000
 
 
@@ -40,7 +40,7 @@ class LeaderBatch:
         #: Numbers in an observation, control steps in an episode and from one decision to the next.
         self.observation_size, self.episode_steps, self.period_steps = self.core.sizes
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
-        #: Of an episode; the last one may be shorter than the others.
+        #: Decisions of an episode; the last one may be shorter than the others.
         self.decisions = -(-self.episode_steps // self.period_steps)
 
     def reset(
@@ -52,7 +52,7 @@ class LeaderBatch:
     ) -> None:
         """Start episodes, of all flocks or of those in a mask, as `reset_requests` asks.
 
-        `new_seed` gives flocks a seed that have never had one.
+        `new_seed` gives a seed to flocks that never had one.
         """
         chosen = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         asked: list[dict[str, Any] | None] = [None] * self.num_flocks
@@ -76,8 +76,8 @@ class LeaderBatch:
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 
-        A user's own reward function gets `env`. If that function returns anything but rewards
-        finite in this precision, the error comes after the flocks have moved.
+        A user's own reward function gets `env`. If that function returns anything but rewards that
+        are finite in this precision, the error comes after the flocks have moved.
         """
         if self._own_reward is None:
             return self.core.step(actions)

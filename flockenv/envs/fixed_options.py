@@ -1,4 +1,4 @@
-"""Options as attributes: setting one from outside would do nothing, and is refused."""
+"""Refuses to set an option as an attribute from outside, which would do nothing."""
 
 import sys
 from itertools import takewhile
@@ -12,8 +12,8 @@ from flockenv.envs.reset_options import RESET_OPTIONS, UPCOMING_OPTIONS, Spellin
 class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
-    Names in other case or without their unit are refused too. A subclass may have attributes of any
-    name but those in `_kept`. Its methods set them on ``self``, or its classmethods on the
+    Names in another case or without their unit are refused, too. A subclass may have attributes of
+    any name but those in `_kept`. Its methods set them on ``self``, and its classmethods on
     instances that they make. From then on they may be set from outside too, as may attributes of
     its class.
     """

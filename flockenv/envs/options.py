@@ -63,7 +63,8 @@ NAMES = (
 ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
 """Arguments of constructors and resets, which some take for options."""
 
-#: Where neither ``params`` nor these fields are given: the paper's 27 boats, three of them leaders.
+#: Used if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
+#: leaders.
 _DEFAULTS = {"n_boats": 27, "n_leaders": 3}
 
 
@@ -114,7 +115,7 @@ class EnvOptions:
             if name in settings:
                 settings[name] = _plain(settings[name])
         target = settings.get("target")
-        # Anything but a direction is refused with the settings.
+        # Anything but a direction is refused later, when the settings are checked.
         targets = target if isinstance(target, list | tuple) else (target,)
         if targets and all(direction in ("cw", "ccw") for direction in targets):
             given["target"] = target

@@ -212,7 +212,7 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
 
 
 class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
-    """Agents that act in turn, and in order; a wrong action is refused in its agent's turn."""
+    """Agents that act in turn; a wrong action is refused in its agent's turn."""
 
     def __init__(self, flock: LeadersParallelEnv) -> None:
         self._flock = flock

@@ -27,12 +27,12 @@ def register() -> None:
             entry_point=ENTRY_POINT,
             vector_entry_point="flockenv.envs.vector:LeadersVectorEnv",
             kwargs=dict(declared.options),
-            # It refuses a step before a reset itself, and options as attributes, which wrappers
-            # would take.
+            # The environment itself refuses a step before a reset. It also refuses options as
+            # attributes, which wrappers would accept.
             order_enforce=False,
             disable_env_checker=True,
         )
-        # Before version 1.27 it has no ids.
+        # PettingZoo before version 1.27 has no ids.
         if hasattr(pettingzoo, "register"):
             for kind, entry_point in _OF_PETTINGZOO.items():
                 pettingzoo.register(kind, env_id, entry_point, kwargs=dict(declared.options))

@@ -21,16 +21,16 @@ _UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
 
 
 class Spellings:
-    """Names that are known also in other case, with other separators and without any.
+    """Names that are recognized in any case, with other separators, or without separators.
 
-    A plural is no spelling of a name that ends in the unit of seconds: episodes and episode_s.
+    But "episodes" is not a spelling of "episode_s", whose s is a unit.
 
     Parameters
     ----------
     names
         The names.
     without_unit
-        Those of them that are known without their unit, too.
+        Those names that are recognized without their unit, too.
     """
 
     def __init__(self, names: Iterable[str], without_unit: Iterable[str] = ()) -> None:
@@ -43,7 +43,7 @@ class Spellings:
             self._names["_".join(_parts(name))] = name
 
     def meant(self, name: object) -> str | None:
-        """Return the name that another one is a spelling of; None if it may be anything else."""
+        """Return the option that a name spells in another way; None if it spells none."""
         parts = _parts(name)
         known = self._names.get("_".join(parts)) or self._names.get("".join(parts))
         return known or self._bare.get("".join(_parts_without_unit(name)))
@@ -66,7 +66,7 @@ def reset_requests(
 ) -> list[dict[str, Any]]:
     """Return the request for each flock's reset.
 
-    Other keys are for somebody's wrapper: Gymnasium hands one dictionary through all of them. A
+    Other keys may be meant for a wrapper: Gymnasium passes one dictionary through all wrappers. A
     ParameterError refuses keys that would be ignored silently: other spellings of the options,
     arguments of the constructor, and keys of ``state``.
 

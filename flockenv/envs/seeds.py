@@ -18,8 +18,8 @@ class Seed(int):
 class OwnGenerator:
     """Gymnasium's `np_random`, for environments of other libraries.
 
-    The generator is made when it is first asked for. Copies of an environment that was never reset
-    therefore have different flocks, copies made later go on alike.
+    The generator is made when it is first asked for. So copies of an environment that was never
+    reset have different flocks, and copies made after a reset continue alike.
     """
 
     _np_random: np.random.Generator | None = None
@@ -71,7 +71,7 @@ def seeds_from(first: object, flocks: int) -> list[int]:
 
 
 def seeds_of_flocks(seed: object, flocks: int) -> Sequence[int | None]:
-    """Return a seed for each flock, of one for the first or of a list with one for each.
+    """Return a seed for each flock, given the first one's seed or a list with a seed for each.
 
     None continues with the next episode.
     """

@@ -70,7 +70,7 @@ class ObservationSpace(_Box):
             return False
         return not differing_options(self.options, other.options)
 
-    # As other spaces, which can be changed.
+    # Not hashable, like other spaces, since spaces can be changed.
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
@@ -95,7 +95,7 @@ class ObservationSpace(_Box):
 def differing_options(
     options: Mapping[str, Any], others: Mapping[str, Any]
 ) -> dict[str, tuple[Any, Any]]:
-    """Return the options of two policies, or of a policy and flocks, that mean something else.
+    """Return the options in which two policies, or a policy and flocks, differ.
 
     A pair for each name. Options that are not given have their defaults.
     """
@@ -110,7 +110,7 @@ def _completed(options: Mapping[str, Any]) -> dict[str, Any]:
     full = {name: OPTIONS[name].default for name in POLICY_OPTIONS} | dict(options)
     full["observation"] = {**BLOCKS, **full["observation"]}
     period = full["decision_period_s"]
-    # To hold an action for one control step is not to hold it.
+    # A period of one control step is the same as no period.
     if period is not None and math.isclose(period * full["control_hz"], 1.0):
         full["decision_period_s"] = None
     return full

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 
 class _Columns:
-    """Arrays that are equal if all of them are."""
+    """Named arrays; two objects are equal if all their arrays are."""
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -68,7 +68,7 @@ class ContactSeries(_Columns):
     Attributes
     ----------
     count : int64 array, shape (t,)
-        How many each sample has; they follow one another in the other arrays.
+        Number of contacts in each sample; the other arrays hold them sample after sample.
     i, j : int32 array, shape (c,)
         The boats, as in `Contacts`.
     normal, force, point_cm, along_cm : float32 array, shapes (c, 2), (c,), (c, 2), (c,)
@@ -85,7 +85,7 @@ class ContactSeries(_Columns):
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, NDArray[Any]]) -> Self:
-        """Return the series with these of its columns, by name; others are left out."""
+        """Return the series from a mapping of columns by name; other names are ignored."""
         return cls(*(columns[column.name] for column in fields(cls)))
 
     def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":

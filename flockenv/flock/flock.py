@@ -93,7 +93,7 @@ class Flock(HintsAtNames):
 
     @property
     def parameters(self) -> FlockParameters:
-        """The parameters, with the target that holds now."""
+        """The parameters, with the present target."""
         return FlockParameters._from_core(self._in_core.parameters)
 
     @property
@@ -195,7 +195,9 @@ class Flock(HintsAtNames):
         self._in_core.set_target(materialized(target))
 
     def advance(self, seconds: float, rudder: ArrayLike | None = None) -> None:
-        """Advance by a duration. Substeps end on multiples of dt_s, on phase switches, at the end.
+        """Advance by a duration.
+
+        Substeps end on multiples of dt_s, on phase switches and at the end.
 
         Parameters
         ----------
@@ -210,15 +212,15 @@ class Flock(HintsAtNames):
         ParameterError
             For a duration or rudder out of range or of a wrong shape; the flock is unchanged then.
         SolverError
-            If the motion left its range of 1e9 (cm, cm/s, rad, rad/s); poses, velocities and time
-            are those before the call.
+            If a pose or velocity exceeds 1e9 (cm, cm/s, rad, rad/s); the flock is then as before
+            the call.
         """
         self._in_core.advance(seconds, rudder)
 
     def advance_with_error(self, seconds: float, rudder: ArrayLike | None = None) -> float:
-        """Advance as `advance` does, and return the error in cm that dt_s made on the way.
+        """Advance as `advance` does, and return the error in cm that the finite dt_s made.
 
-        The error is the distance from where substeps of dt_s / 8 lead from the same start, with the
+        The error is the distance from a run with substeps of dt_s / 8 from the same start, with the
         same noise: the root mean square over boats of ``|Δx|² + ρ²Δα²``, with the radius of
         gyration ρ. It takes nine times as long. Errors of successive advances do not add up.
 
@@ -230,8 +232,8 @@ class Flock(HintsAtNames):
         Raises
         ------
         ParameterError
-            As from `advance`; for noise_scheme "per-step", which draws other noise for other steps;
-            and for dt_s below 8e-6. The flock is unchanged then.
+            As `advance`; also for noise_scheme "per-step", whose noise depends on the step, and for
+            dt_s below 8e-6. The flock is unchanged then.
         SolverError
             As from `advance`.
         """
@@ -240,9 +242,9 @@ class Flock(HintsAtNames):
     def set_step(self, dt_s: float) -> None:
         """Change dt_s from now on.
 
-        White noise stays the same function of time: copies of a flock meet the same noise whatever
-        their steps, so that they differ by the error of the step alone. A new flock with another
-        dt_s meets other noise.
+        White noise stays the same function of time: copies of a flock with different steps meet the
+        same noise, so they differ only by the error of the step. A new flock with another dt_s
+        meets other noise.
 
         Parameters
         ----------
@@ -265,7 +267,7 @@ class Flock(HintsAtNames):
         return OrderParameters(*self._in_core.order_parameters(every))
 
     def contacts(self) -> Contacts:
-        """Return contacts and near-contacts of the last substep; none if a state was set since."""
+        """Return contacts and near-contacts of the last substep; none after a state was set."""
         return Contacts(**self._in_core.contacts())
 
     def snapshot(self) -> bytes:
@@ -283,9 +285,9 @@ class Flock(HintsAtNames):
         snapshot
             Bytes of `snapshot`.
         noise_seed
-            None: the noise of the snapshot, so that all flocks that continue from it meet the same
-            noise. A whole number: other noise from here on, the same for every flock with this
-            number, and never the noise of a flock with this `seed`.
+            None continues with the noise of the snapshot, the same for all flocks that continue
+            from it. A whole number gives other noise from here on: the same for every flock with
+            this number, but not that of a flock whose `seed` is this number.
 
         Raises
         ------

@@ -8,7 +8,7 @@ from flockenv.errors import ParameterError
 
 @dataclass(frozen=True, kw_only=True)
 class Statistics:
-    """Running sums and worst cases since the flock was made or reset; snapshots carry them.
+    """Running sums and worst cases since the flock was made or reset; snapshots include them.
 
     Attributes
     ----------

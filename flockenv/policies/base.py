@@ -43,7 +43,7 @@ class LeaderPolicy(Protocol):
             dictionary of such arrays by agent, and then return one.
         state, episode_start
             The state that the last call returned, and shape (flocks,): whether an episode has just
-            started. Both are for recurrent policies.
+            started. Both matter to recurrent policies only.
 
         Returns
         -------
@@ -75,8 +75,8 @@ class Policy:
     source
         What acts: any object with ``predict``.
     name
-        The name under which recordings hold it: the text of the source, or its class if the text is
-        no name, and then the source's ``digest``, if it has one.
+        The name in recordings: ``str(source)``, or the class if that is no name, followed by the
+        source's ``digest`` if it has one.
     control_hz
         Control steps per second that it is made for; None: it steers at every substep, by the
         paper's law.
@@ -87,7 +87,7 @@ class Policy:
     leaders
         How many leaders it steers at once; 1: any number.
     law
-        The core's law, if it is nothing else: the core then steers by it alone.
+        The core's law if the policy is exactly that law: the core then steers without Python.
     """
 
     source: LeaderPolicy
@@ -130,15 +130,15 @@ class Policy:
 
     @property
     def decisions_hz(self) -> float:
-        """Decisions per second: one per control step, if it has no period."""
+        """Decisions per second: one per control step if no period is set."""
         if self.decision_period_s is not None:
             return 1.0 / self.decision_period_s
         return CONTROL_HZ if self.control_hz is None else self.control_hz
 
     def started(self) -> Self:
-        """Return the policy at the start of a run, which leaves this one as it is.
+        """Return the policy for the start of a run; this one stays as it is.
 
-        An object of a user's own, or a model, is the same object.
+        A model or a user's own object is not copied.
         """
         if not isinstance(self.source, RowPolicy):
             return self
@@ -199,7 +199,7 @@ class Policy:
 
 
 def _positive(source: LeaderPolicy, name: str) -> float | None:
-    """Return an object's attribute, a number above 0, or None without the attribute."""
+    """Return an object's attribute, which must be a number above 0; None if it is missing."""
     value = getattr(source, name, None)
     if value is not None and not 0.0 < number(value, name) < math.inf:
         raise ParameterError(f"{name} = {short_repr(value)} of a policy is not accepted: above 0")

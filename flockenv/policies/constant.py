@@ -1,4 +1,4 @@
-"""Policies that observe nothing, as controls for the worth of steering."""
+"""Policies that observe nothing: controls that show what steering is worth."""
 
 from typing import Unpack
 

@@ -1,4 +1,4 @@
-"""Laws of leaders. Their formulas live in the Rust core, which also steers by them alone."""
+"""Laws of leaders. Their formulas are in the Rust core, which can steer by them by itself."""
 
 import json
 import math
@@ -38,7 +38,7 @@ class LawPolicy(RowPolicy):
     Parameters
     ----------
     law
-        The core's law, which runs without Python if nothing but the law steers.
+        The core's law, which runs without Python if it alone steers.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names.
 
@@ -61,7 +61,7 @@ class LawPolicy(RowPolicy):
         return dict(self.law.gains)
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Set an attribute; an AttributeError refuses those that the core's law was made of."""
+        """Set an attribute; an AttributeError refuses those that the core's law depends on."""
         if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)
@@ -346,7 +346,7 @@ class LeaningLaw(LawPolicy):
         steers = values["gains"] is None
         self.action_mode = "lean" if self.decision_period_s is not None and not steers else "rudder"
         others = dict.fromkeys(("phase", "target", "neighbors", "order"), False) | {"neighbors": 0}
-        # The law that steers to a lean reads the boat's own course.
+        # To steer to the lean, the law also reads the boat's own course.
         own = self.action_mode == "rudder" and not steers
         layout = {"own": own, **others, "lean_features": True}
         super().__init__(law, layout, mirror_to_target=True)

@@ -21,7 +21,7 @@ _FASTEST_HZ = 1000
 
 @dataclass(frozen=True)
 class Seat:
-    """A policy with the leaders that it steers."""
+    """A policy and the leaders that it steers."""
 
     policy: Policy
     leaders: tuple[int, ...]
@@ -102,20 +102,20 @@ def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat,
         raise ParameterError(
             f"policy = {short_repr(dict(given))} is not accepted: a policy for each of {accepted}"
         )
-    # Leaders with one policy are steered at once, as a model of several leaders needs it.
+    # Leaders with the same policy are steered together: a model of several leaders needs that.
     found: dict[object, tuple[Policy, list[int]]] = {}
     for leader, one in enumerate(given[name] for name in names):
         key = one if isinstance(one, str) else id(one)
         if key not in found:
             own = policy(one, flock.pool)
-            # Beside others the law acts at every control step.
+            # Beside other policies, the law acts at every control step.
             found[key] = policy(PAPERS_LAW) if own.control_hz is None else own, []
         found[key][1].append(leader)
     return tuple(Seat(own, tuple(leaders)) for own, leaders in found.values())
 
 
 class Decisions:
-    """The rudders that policies decide in one run, of one flock or of several that are alike.
+    """The decisions of policies in one run, of one flock or of several similar ones.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class Decisions:
 
     def __init__(self, seats: Sequence[Seat], control_hz: float | None = None) -> None:
         self._seats = [_Deciding(seat.policy.started(), list(seat.leaders)) for seat in seats]
-        #: The rate at which `rudders` is to be asked.
+        #: How often per second to call `rudders`.
         self.control_hz = _common_rate(self._seats) if control_hz is None else control_hz
         #: The observation of each policy, and whether its view is mirrored.
         self.layouts = [
@@ -185,7 +185,7 @@ class _Deciding:
 
 
 def _common_rate(seats: Sequence[_Deciding]) -> float:
-    """Return the lowest common multiple of the seats' rates, and set how long each seat holds."""
+    """Return the common rate of all seats, and set how long each seat holds its decision."""
     rates = [seat.policy.decisions_hz for seat in seats]
     if len(set(rates)) == 1:
         return rates[0]

@@ -39,8 +39,8 @@ class ModelPolicy:
     observations are normalized the same way; the file of a model does not hold that.
 
     A leader acts the same however many are steered at once, if the network has linear layers with
-    hyperbolic tangents or rectifiers between them, like the default `MlpPolicy`. In other layers
-    PyTorch may round a row by its place.
+    hyperbolic tangents or rectifiers between them, like the default `MlpPolicy`. With other layers,
+    PyTorch may round a row differently at another index.
 
     Parameters
     ----------
@@ -174,14 +174,14 @@ def normalizing(model: object) -> Any:
 
 
 def lacks_normalizing(model: object) -> bool:
-    """Return whether a model was trained in a ``VecNormalize`` that it is loaded without."""
-    # stable-baselines3 keeps it with the model, of trainings in VecNormalize alone.
+    """Return whether a model was trained in a ``VecNormalize`` but loaded without it."""
+    # stable-baselines3 stores this only for trainings in VecNormalize.
     was_normalized = getattr(model, "_last_original_obs", None) is not None
     return was_normalized and getattr(model, "get_vec_normalize_env", lambda: None)() is None
 
 
 def space_under_wrappers(model: object) -> "ObservationSpace | None":
-    """Return the space of the environment under all wrappers in which a model learns, if known."""
+    """Return the space of the unwrapped environment in which a model learns, if known."""
     from flockenv.envs.spaces import ObservationSpace
 
     base: Any = getattr(getattr(model, "env", None), "unwrapped", None)
@@ -198,7 +198,7 @@ def one_by_one() -> AbstractContextManager[object]:
 
 @cache
 def _mode_of(torch: Any) -> Any:
-    """Return the class of such modes: it cannot be written before torch is imported."""
+    """Return the class of that context, which can only be defined once torch is imported."""
     linear = torch.nn.functional.linear
 
     class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc]
@@ -236,7 +236,7 @@ def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
 
 def as_policy(policy: object) -> object:
     """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
-    gymnasium = sys.modules.get("gymnasium")  # Without it there is no model.
+    gymnasium = sys.modules.get("gymnasium")  # Without stable-baselines3 there is no model.
     if gymnasium and isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
         return ModelPolicy(policy)
     return policy
@@ -248,7 +248,7 @@ def is_model_file(path: str | os.PathLike[str]) -> bool:
         try:
             return _WEIGHTS in zipfile.ZipFile(file).namelist()
         except (zipfile.BadZipFile, NotImplementedError, ValueError):
-            # Damaged bytes may name an unknown version, or be no letters.
+            # Damaged bytes may name an unknown version, or not be text.
             return False
 
 
@@ -262,7 +262,7 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     try:
         with zipfile.ZipFile(path) as archive:
             stored = json.loads(archive.read("data"))
-        # Written by trainings in VecNormalize alone.
+        # Only trainings in VecNormalize write this.
         if stored.get("_last_original_obs") is not None:
             raise ParameterError(
                 "it was trained in VecNormalize, and its file does not hold how observations were "
@@ -300,5 +300,5 @@ def _policy_of(data: Mapping[str, Any]) -> Any:
     arguments = data["observation_space"], data["action_space"], lambda _: 0.0
     try:
         return kind(*arguments, **{"use_sde": data["use_sde"], **options})
-    except TypeError:  # Those of algorithms without this exploration, such as DQN, do not take it.
+    except TypeError:  # Those of DQN and the like do not take it.
         return kind(*arguments, **options)

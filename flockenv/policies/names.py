@@ -8,7 +8,7 @@ from flockenv import _core
 LAWS: Mapping[str, Mapping[str, Any]] = {law["name"]: law for law in _core.LAWS}
 """The declaration of each law, by name: ``doc``, ``color`` (or None) and ``is_of_pool``."""
 
-# By name and not by index: a law may be declared anywhere among them.
+# By name, not by index: laws may be declared in any order.
 _CONSTANTS = {name.upper().replace("'", "").replace(" ", "_"): name for name in LAWS}
 
 EVERY_SUBSTEP = _CONSTANTS.pop("PAPERS_LAW_AT_EVERY_SUBSTEP")

@@ -98,8 +98,7 @@ class NetworkPolicy(RowPolicy):
         Layout of the observations, as in the environments' options of those names; the weights have
         to fit it.
     action_mode, decision_period_s
-        What the output stands for, and for how long it is held: the environments' options of those
-        names.
+        Meaning of the output, and how long it is held: the environments' options of those names.
     provenance
         Its origin: any short texts by name, such as the command, the seed and the samples.
 
@@ -154,8 +153,8 @@ class NetworkPolicy(RowPolicy):
             order in which they follow each other, after each of them a ``LayerNorm`` and one of
             Tanh, ReLU, ELU and GELU, or none. Layers that change nothing (``Identity``, and
             ``Dropout``, which acts in training alone) are passed over. The module is run on a few
-            observations: one that computes something else than its layers in this order, such as a
-            function in its ``forward``, is refused.
+            observations. It is refused if its output is not that of its layers in this order, for
+            example because its ``forward`` does more.
         space
             The space of the observations that it was trained on, of one leader or of several: it
             holds the options that a policy depends on.

@@ -8,9 +8,9 @@ from flockenv._core import __version__
 
 
 def commit() -> str:
-    """Return the commit that flockenv runs from, with a + where files differ from it; or unknown.
+    """Return the commit that flockenv runs from, with a + if files differ from it; or "unknown".
 
-    Only a checkout knows its commit: an installed package has its version.
+    Only a checkout knows its commit; an installed package has only a version.
     """
     root = Path(__file__).parents[2]
     if not (root / ".git").exists():

@@ -69,9 +69,9 @@ def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) ->
         A name, such as "learned" or "damped law"; the path of a policy's file (see `load`); a model
         of stable-baselines3; any object whose ``predict`` maps observations to actions; a function
         or a class without arguments that returns one; ``"module:attribute"``, which names one of
-        these; or None for the paper's law at every substep. An object says by attributes what it
-        is made for: ``control_hz``, ``pool``, ``observation``, ``mirror_to_target``,
-        ``action_mode`` and ``decision_period_s``, each as in the environments' options.
+        these; or None for the paper's law at every substep. Attributes of an object say what it is
+        made for: ``control_hz``, ``pool``, ``observation``, ``mirror_to_target``, ``action_mode``
+        and ``decision_period_s``, each as in the environments' options.
     pool
         The pool of the flock, by name or as two radii; the laws that are tuned or learned for a
         pool need it.
@@ -83,8 +83,8 @@ def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) ->
     OSError
         If a file cannot be opened.
     ParameterError
-        For unknown names, what `load` refuses, another pool than the policy was made for, and
-        everything that is no policy.
+        For unknown names, files that `load` refuses, a pool that the policy was not made for, and
+        anything that is not a policy.
     TypeError
         For attributes of another kind than the options have.
     """
@@ -150,7 +150,7 @@ def _attribute(name: str, trust: bool) -> object:
             "say so with trust=True (on the command line --trust)"
         )
     module, _, attribute = name.partition(":")
-    # As `python -m` does, which scripts in an environment's folder do not.
+    # Add the working directory, as `python -m` does; an installed command does not.
     path, folder = [*sys.path], os.getcwd()
     sys.path.insert(0, folder)
     try:
@@ -215,5 +215,5 @@ def load(
 
 
 def quoted(names: Iterable[str]) -> str:
-    """Return names in a row, each in quotes: some hold spaces."""
+    """Return names in one line, each in quotes, since some hold spaces."""
     return ", ".join(map(repr, names))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError, short_repr
 
-#: Names of torch's activations, with the settings that are read of each.
+#: Torch's activations by name, with the settings that are read from each.
 _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
     "Tanh": ("tanh", {}),
     "ReLU": ("relu", {}),

@@ -30,8 +30,8 @@ class WrappedPolicy(ModelPolicy):
     """A model that was trained in a wrapper of an environment, with the wrapper.
 
     The wrapper changes what leaders observe: it may cut, scale, stack or remember. It is made again
-    for each run, around a stand-in of the environment that has its spaces and gives it the
-    observations of the flock, and nothing else: no rewards, no infos, no attributes.
+    for each run, around a stand-in for the environment. The stand-in has the environment's spaces
+    and passes on the flock's observations, but has no rewards, infos or attributes.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class WrappedPolicy(ModelPolicy):
         A model of stable-baselines3 such as ``PPO``, or any object with its ``predict``.
     wrapper
         A function that puts an environment into the wrapper or wrappers, such as
-        ``lambda venv: VecFrameStack(venv, 4)``. A `VecNormalize` of the model's own environment is
-        left out here: what the wrapper takes or returns is normalized as there. One that normalizes
-        by itself has to bring the statistics of the training, which stay as they are.
+        ``lambda venv: VecFrameStack(venv, 4)``. Leave out a `VecNormalize` of the model's own
+        environment: observations are normalized as there. A wrapper that normalizes itself has to
+        hold the statistics of the training, which stay as they are.
     env
-        What was wrapped for the training: a `LeaderVecEnv`, or ``flockenv/Leaders-v0``. Its options
-        are those that the model is for.
+        The environment that was wrapped for the training: a `LeaderVecEnv`, or
+        ``flockenv/Leaders-v0``. The model is for flocks with its options.
     provenance
         As of `ModelPolicy`.
 

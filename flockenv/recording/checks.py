@@ -82,11 +82,11 @@ def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
 def check_order(
     order: OrderSeries, times: tuple[int, ...], normal_boats: int, *, tracked: bool, posed: bool
 ) -> None:
-    """Refuse series that are not finite, unless too few boats define them or boats are missing."""
+    """Refuse series that are not finite, unless too few boats are there to define them."""
     for quantity in RECORDED:
         values = getattr(order, quantity.name)
         undefined = normal_boats < quantity.least_boats
-        # A quantity that the file of a recording without poses does not have.
+        # Of a recording without poses whose file lacks this quantity.
         undefined |= not posed and bool(np.isnan(values).all())
         check_array(
             f"order.{quantity.name}",
@@ -108,7 +108,7 @@ def check_seed(seed: object, name: str = "seed") -> None:
 
 
 def check_origin(origin: Mapping[str, Any]) -> None:
-    """Refuse a noise seed, a rate or a digest of a recording, by name, that no run has."""
+    """Refuse a noise seed, a rate or a digest that no run can have."""
     for name, value in origin.items():
         if value is None:
             continue
@@ -125,7 +125,7 @@ def check_origin(origin: Mapping[str, Any]) -> None:
 
 
 def check_share(after: object) -> None:
-    """Refuse anything but a share of a run."""
+    """Refuse anything but a share of a run, a number from 0 to 1."""
     if not 0.0 <= number(after, "after") <= 1.0:
         raise ParameterError(f"after = {short_repr(after)} is not accepted: a share, 0 to 1")
 

@@ -81,7 +81,7 @@ def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
 
 
 def read_only(of_recording: Mapping[str, Any]) -> dict[str, Any]:
-    """Return those of a recording's fields that hold arrays, with arrays that cannot be written."""
+    """Return a recording's fields that hold arrays, with their arrays made read-only."""
     present = (name for name in (*ARRAYS, *OPTIONAL) if of_recording[name] is not None)
     sealed: dict[str, Any] = {name: _sealed(of_recording[name]) for name in present}
     if (contacts := of_recording["contacts"]) is not None:

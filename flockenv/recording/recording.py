@@ -76,8 +76,7 @@ class Recording(HintsAtNames):
         Contacts that carried a force, if they were recorded.
     policy : str or None
         What steered the leaders: "paper's law at every substep", or the policy's name; a learned
-        policy's name ends in the first digits of its SHA-256. None if that is unknown, as for
-        tracks.
+        policy's name ends in the first digits of its SHA-256. None if unknown, as for tracks.
     statistics : StepStatistics or None
         Worst overlap, unsolved and halved substeps of the flock at the end; None if they are
         unknown, as for tracks.
@@ -89,12 +88,12 @@ class Recording(HintsAtNames):
     noise_seed : int or None
         Seed of other noise after a snapshot; None for the noise of the snapshot, or of `seed`.
     control_hz : float or None
-        Rate of decisions that was given for all policies; None for the rates of their own.
+        Rate of decisions that was given for all policies; None if each used its own.
     start_sha256 : str or None
         Digest of the start: of the snapshot, or of pose, velocity and time of a state; None for a
         random start.
     schedule_sha256 : str or None
-        Digest of the schedule, of what changed when; None if `parameters` held throughout.
+        Digest of the schedule (what changed, and when); None if `parameters` held throughout.
     ids : str array, shape (n,), or None
         Names of tracked boats, leaders first; None for a simulated flock. Only with them rows of
         `pose` and `velocity` may be NaN, for missing boats, quantities of too few boats are NaN,
@@ -191,8 +190,8 @@ class Recording(HintsAtNames):
         """Return the flock at the last sample up to a time, as far as recorded.
 
         It has the poses, the velocities and the time of the sample, but neither the contacts nor
-        the state of the noise, so it does not move on as the recorded flock did. Raises the errors
-        of `state_at`.
+        the state of the noise, so it does not move on as the recorded flock did. Raises what
+        `state_at` raises.
         """
         state = self.state_at(time_s)
         present = self._there(self._sample_at(time_s))
@@ -223,7 +222,7 @@ class Recording(HintsAtNames):
             "pose": self.pose[sample, present].astype(np.float64),
             "velocity": np.nan_to_num(self.velocity[sample, present].astype(np.float64)),
             "time_s": float(self.time_s[sample]),
-            # Single precision leaves overlaps of a rounding, and so do cameras.
+            # Rounding to single precision and cameras leave small overlaps.
             "allow_overlap": True,
         }
 
@@ -323,9 +322,9 @@ class Recording(HintsAtNames):
         Raises
         ------
         ParameterError
-            For functions that fail, results of another shape or of other things than real numbers,
-            and names that are no identifiers or are taken. Its attribute ``recording`` is this
-            recording.
+            For functions that fail, for results that have a wrong shape or are not real numbers,
+            and for names that are taken or are no identifiers. The error's attribute ``recording``
+            is this recording.
         """
         try:
             found = own_series(functions, replace(self, **read_only(self._fields())))
@@ -371,9 +370,9 @@ class Recording(HintsAtNames):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a recording; nothing in the file is ever executed.
 
-        A quantity that the file lacks is computed from the poses. If it has none, the quantity is
-        NaN, with a `RecordingWarning`; and with another one, arrays and parameters that this
-        flockenv does not know are dropped.
+        A quantity that the file lacks is computed from the poses. Without poses the quantity is
+        NaN, with a `RecordingWarning`. Arrays and parameters that this flockenv does not know are
+        dropped, with a warning, too.
 
         Raises
         ------

@@ -1,8 +1,8 @@
 """The file of a recording: its arrays, each by its name.
 
-Files of builds with one quantity, parameter or array more or less are read. A missing quantity is
-computed from the poses; without poses it is NaN, with a warning. An unknown array is dropped with a
-warning.
+Files of builds that have one quantity, parameter or array more or less can be read. A missing
+quantity is computed from the poses; without poses it is NaN, with a warning. An unknown array is
+dropped with a warning.
 """
 
 import warnings
@@ -35,7 +35,7 @@ _UNDEFINED = "has no poses, from which these quantities would be computed, and t
 
 
 class RecordingWarning(UserWarning):
-    """A file of a recording has more or less than this flockenv knows; it was read all the same."""
+    """A recording's file has more or fewer arrays than this flockenv knows; it was read anyway."""
 
 
 class LayoutError(ParameterError):
@@ -122,7 +122,7 @@ def _origin(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
 def _statistics(
     arrays: Mapping[str, NDArray[Any]], names: Mapping[str, str]
 ) -> StepStatistics | None:
-    """Return whether the run kept its tolerance; None of a file that does not say."""
+    """Return whether the run kept its tolerance; None if the file does not say."""
     if not all(name in arrays for name in names.values()):
         return None
     for name in names.values():
@@ -132,7 +132,7 @@ def _statistics(
 
 
 def _say(words: str, names: Iterable[str]) -> None:
-    # Python prints a repeated text once: a sweep may read thousands of such files.
+    # Python prints the same text only once, and a sweep may read thousands of such files.
     if listed := ", ".join(sorted(names)):
         warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
 
@@ -150,7 +150,7 @@ def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> O
     if missing := [name for name in ORDER if name not in stored]:
         pose, velocity = arrays["pose"], arrays["velocity"]
         k, undefined = parameters.n_leaders, np.full(arrays["time_s"].size, np.nan)
-        # Other shapes are refused where the recording is made.
+        # The recording itself refuses other shapes.
         if pose.ndim == 3 and pose.shape == velocity.shape and pose.shape[1] > k:
             computed = order_series(pose[:, k:], velocity[:, k:])
             stored |= {name: getattr(computed, name) for name in missing}

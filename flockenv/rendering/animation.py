@@ -65,7 +65,8 @@ def _gif(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
     def timed() -> Iterator[Any]:
         for count, frame in enumerate(frames):
             picture = image.fromarray(frame)
-            # Durations in whole hundredths of a second, with the rounding carried on.
+            # Durations in whole hundredths of a second; the rounding error is carried to the next
+            # frame.
             hundredths = round(100 * (count + 1) / fps) - round(100 * count / fps)
             picture.info["duration"] = 10 * hundredths
             yield picture

@@ -43,7 +43,7 @@ class Window:
         self.is_open = True
 
     def show(self, flock: Flock) -> None:
-        """Show a flock, and return when the next step is due; at once if the window is closed."""
+        """Show a flock and return when the next step is due, or at once if the window is closed."""
         display = self._pygame.display
         is_there = display.get_init() and self._surface.get_size() == self._size
         self.is_open = self.is_open and is_there
@@ -59,7 +59,7 @@ class Window:
         self._clock.tick(self._fps)
 
     def close(self) -> None:
-        """Close the window; showing is without effect from then on."""
+        """Close the window; showing does nothing from then on."""
         if self.is_open:
             self.is_open = False
             self._pygame.display.quit()

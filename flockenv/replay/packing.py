@@ -44,7 +44,7 @@ class Packer:
         self._append(name, steps, quantum, _DIFFERENCES)
 
     def add_plain(self, name: str, values: NDArray[Any], quantum: float = 1.0) -> None:
-        """Add numbers that have nothing to do with the ones before, within 2^28 quanta."""
+        """Add numbers that are independent of the ones before them, up to 2^28 quanta."""
         steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
         self._append(name, steps, quantum, 0)
 

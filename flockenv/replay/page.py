@@ -200,23 +200,23 @@ def _run(
             **parameters._in_core.hull_lengths,
         },
         **{kind: getattr(parameters, kind) for kind in OBSTACLES},
-        # Of tracks the phases may be unknown.
+        # The phases of tracks may be unknown.
         "phases": PHASES.tolist() if _has_phases(recording) else [],
         "ids": None if recording.ids is None else recording.ids.tolist(),
         "samples": len(recording),
         "every": every,
         "data": _series(recording, every, quantities),
     }
-    if parameters.n_leaders > 0 and target is None:  # They head against each other.
+    if parameters.n_leaders > 0 and target is None:  # The leaders head against each other.
         described["targets"] = list(parameters.target)
     return described
 
 
 def _law(recording: Recording) -> str | None:
-    """Return which law led, by the name that has a color; None for other policies."""
+    """Return the name of the law that led, if it has a color; None for other policies."""
     pool = recording.parameters.pool
     for name in LAWS:
-        with suppress(ParameterError):  # Some laws are made for some pools.
+        with suppress(ParameterError):  # Some laws exist only in some pools.
             if policy(name, pool).name == recording.policy:
                 return name
     return None
@@ -260,7 +260,7 @@ def _has_phases(recording: Recording) -> bool:
 
 
 def _held(pose: NDArray[Any]) -> NDArray[Any]:
-    """Return poses in which a boat that is not there is where it was, or first where it will be."""
+    """Return poses in which a missing boat is where it was last, or where it will first appear."""
     last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
     last = np.maximum.accumulate(last, axis=0)
     first = np.isfinite(pose[..., 0]).argmax(axis=0)
@@ -277,7 +277,7 @@ def _add_contacts(
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     chosen = sample % every == 0
     normal = contacts.normal[chosen]
-    # A hull's surface point is its place along the core and the normal: one number remains.
+    # The normal is known, so the coordinate along the core gives the point on the hull: one number.
     packer.add_plain("contact_count", contacts.count[::every])
     packer.add_plain("contact_i", contacts.i[chosen])
     packer.add_plain("contact_j", contacts.j[chosen])

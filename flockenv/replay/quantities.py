@@ -21,11 +21,11 @@ def series_of(recording: Recording, key: str) -> NDArray[np.float64]:
 
 
 def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Return the quantities that a page charts, as its script reads them; the first one at first.
+    """Return the quantities that a page charts, as its script reads them. It opens with the first.
 
     Each has ``key``, its name in the recording; ``words`` and ``unit``; ``range``, the lowest and
-    highest value of its chart, None for those of the data; and ``decimals`` that are shown. Order
-    towards the target is among them if in any of the recordings leaders have one.
+    highest value of its chart, None for those of the data; and ``decimals``, how many are shown.
+    Order towards the target is among them if leaders have a target in any of the recordings.
     """
     has_target = any(recording.parameters.common_target is not None for recording in recordings)
     keys = [*(["signed_order"] if has_target else []), "rotation", *ORDER]
@@ -36,7 +36,7 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
         values = [series_of(recording, key) for recording in recordings]
         limits = quantity.range or [np.abs(own).max() for own in values if np.isfinite(own).all()]
         largest = max(map(abs, limits), default=1.0)
-        # Three digits of numbers around the largest, and no more than 6 behind the point.
+        # Three significant digits of the largest number, but at most 6 after the point.
         decimals = 2 - math.floor(math.log10(largest) + 0.3) if largest > 0 else 2
         name, _, index = quantity.symbol.partition("_")
         symbol = f" {name}{index.translate(_SMALL)}" if index else ""
@@ -50,8 +50,8 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
 
     Of one recording it is the minute in which signed order changes most: the mean over its second
     half minus that over its first, in absolute value. Of two it is the minute in which the mean of
-    their difference in signed order is largest. It is the first sample, with no words, where the
-    recordings have no whole minute in common or no normal boats.
+    their difference in signed order is largest. If the recordings have no whole minute in common,
+    or no normal boats, it is the first sample, with no words.
     """
     first = max(float(recording.time_s[0]) for recording in recordings)
     end = min(float(recording.time_s[-1]) for recording in recordings)
@@ -71,7 +71,7 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     else:
         weights, change = np.concatenate([half, half]), series[0] - series[1]
         meaning = "in which the runs differ most"
-    # Rounded, so that of equal minutes the first is found.
+    # Rounded, so that the first of equal minutes is found.
     found = np.abs(np.convolve(change, weights, "valid").round(9)).argmax()
     start = float(steps[found])
     return start, f"The page opens at {start:g} s, the start of the minute {meaning}."

@@ -1,4 +1,4 @@
-"""Pages of one file: scripts joined to one, a template filled, and what may run on them."""
+"""Pages of one file: joins scripts, fills a template, and says which scripts may run."""
 
 import base64
 import hashlib
@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 
 
 def joined(modules: Iterable[str]) -> str:
-    """Return the sources of modules as one script: without lines that import, words that export."""
+    """Return the sources of modules as one script, without their imports and exports."""
     return re.sub(r"^(?:import .*;\n|export )", "", "\n".join(modules), flags=re.MULTILINE)
 
 
 def digest(source: str) -> str:
-    """Return the name of a script or a style of this source in a content security policy."""
+    """Return the digest by which a content security policy allows a script or style."""
     value = base64.b64encode(hashlib.sha256(source.encode()).digest()).decode("ascii")
     return f"'sha256-{value}'"
 
@@ -25,6 +25,6 @@ def as_script_content(json_text: str) -> str:
 def filled(template: str, parts: Mapping[str, str]) -> str:
     """Return a template with its parts in place of their ``{{names}}``.
 
-    One pass over the template: a part's own text is never filled in again.
+    The template is scanned once, so ``{{names}}`` inside a part's own text stay.
     """
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], template)

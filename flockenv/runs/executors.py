@@ -1,4 +1,4 @@
-"""Executors: the places at which many independent runs are made.
+"""Executors: threads, processes or machines that make many independent runs.
 
 All have the interface of `concurrent.futures.Executor`, like those of other libraries. Functions
 must be pure and, except for threads, picklable; then results do not depend on the executor.
@@ -37,8 +37,8 @@ def threads(workers: int | None = None) -> Executor:
 class RayExecutor(Executor):
     """Ray tasks of one core each, on any cluster whose nodes all have flockenv.
 
-    It is the cluster that is connected already or that ``RAY_ADDRESS`` names; otherwise a local Ray
-    is started, and stopped again. If a node dies, other nodes repeat its tasks.
+    The cluster is the one connected already, or the one that ``RAY_ADDRESS`` names. Otherwise a
+    local Ray is started, and stopped again. If a node dies, other nodes repeat its tasks.
 
     Parameters
     ----------
@@ -64,13 +64,13 @@ class RayExecutor(Executor):
 
     @property
     def at_once(self) -> int:
-        """Tasks to be under way: two for each core that the cluster has now."""
+        """Number of tasks to keep in flight: two for each core that the cluster has now."""
         return max(2, 2 * int(self._ray.cluster_resources().get("CPU", 0)))
 
     def submit(
         self, function: Callable[..., Value], /, *arguments: object, **named: object
     ) -> "Future[Value]":
-        """Start a task; whenever its node is lost, it is repeated."""
+        """Start a task, which is repeated whenever its node is lost."""
         future: Future[Value] = self._remote(function).remote(*arguments, **named).future()
         return future
 

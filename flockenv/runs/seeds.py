@@ -27,7 +27,7 @@ class SeedRange:
         return range(self.first, self.first + self.runs * self.of_a_run)
 
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
-        """Return `count` seeds of a run, from its `start`-th on; others are refused."""
+        """Return `count` seeds of a run from index `start` on, if the run has so many."""
         if not 0 <= run < self.runs:
             raise ParameterError(
                 f"seed = {short_repr(run)} is not accepted: from 0 to {self.runs - 1}"
@@ -54,15 +54,16 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
     seeds.use: seeds
     for seeds in (
         SeedRange("evaluation", 0, 3_000_000_000),
-        # Seeds of studies, with which no policy was made. Words that `release_seeds` hashes may
-        # fall here, too: "train_leaders" does, so that trainings were judged with some of them.
+        # Seeds of studies, with which no policy was made. `release_seeds` may return seeds in this
+        # range, too: for "train_leaders" it does, so trainings were judged with some of them.
         SeedRange("paper", 3_000_000_000, _FIRST_JUDGMENT - 3_000_000_000),
-        # They judge constants of the model that were searched and chosen with the two below.
+        # Used to judge the model's constants, which were searched and chosen with the two ranges
+        # below.
         SeedRange("calibration judgment", _FIRST_JUDGMENT, 1 << 16),
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),
         _search("evolution strategy", 2),
-        # They choose one of several policies.
+        # Used to choose one of several policies.
         SeedRange("validation", FIRST_TRAINING_SEED + 3 * (_RUNS << 24), 1 << 24),
         _search("easy environment", 5),
         _search("branches", 6),
@@ -77,7 +78,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     """Refuse seeds that policies are trained on."""
-    # For a range, its ends suffice.
+    # For a range it is enough to check both ends.
     for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(
@@ -89,8 +90,8 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
 def release_seeds(tag: str, count: int) -> range:
     """Return the seeds that final tables of a release are made on, given its tag.
 
-    The first is SHA-256 of the tag, its first eight bytes as a big-endian number, modulo 2^32 less
-    the count: seeds for evaluation, chosen by no one.
+    The first seed is the first eight bytes of the tag's SHA-256 as a big-endian number, modulo 2^32
+    less the count. These are seeds for evaluation that nobody chose.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
         raise ParameterError(f"count = {short_repr(count)} is not accepted: from 1 to 2^32 - 1")

@@ -92,7 +92,7 @@ class RunSpec:
         plain = {name: value for name, (value, default) in given.items() if value != default}
         changed = self.parameters.to_dict().items() - _DEFAULTS.items()
         text = json.dumps(plain | {"parameters": dict(changed)}, sort_keys=True)
-        # -0.0 and 0.0 are equal, and have one text.
+        # -0.0 equals 0.0, so both get one text.
         return json.dumps(json.loads(text, parse_float=lambda number: float(number) + 0.0))
 
     @property
@@ -124,13 +124,13 @@ def execute(spec: RunSpec) -> Recording:
         spec.policy,
         dtype=np.float32,
     )
-    # A law's commands follow from the poses.
+    # Rudders of a law need not be stored: they follow from the poses.
     run = replace(run, duration_s=spec.duration_s, rudder=None)
     if spec.keep == "window":
         run = run.analyzed()
     if spec.keep != "poses":
         run = run.without_poses()
-    # A store holds no more digits, and a run from it is the same as a run made now.
+    # The store keeps only these digits: this way a stored run equals one made now.
     orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER}
     doubles = {name: values.astype(np.float64) for name, values in orders.items()}
     return replace(run, order=OrderSeries(**doubles))

@@ -40,7 +40,7 @@ def _warn(message: str) -> None:
 
 
 class RunStore:
-    """A folder of finished runs, each the file of a recording, there whole or not at all.
+    """A folder of finished runs, each a recording's file that is written whole or not at all.
 
     A run lies in ``<version>/<first two digits>/<key>.npz`` (see `RunSpec.key`), where the version
     is that of flockenv and `RESULTS_VERSION`: runs of other versions count as missing.
@@ -48,7 +48,7 @@ class RunStore:
     Parameters
     ----------
     folder
-        Where; made with the first run.
+        The folder, which is made with the first run.
     notify
         Called with a line of text for each damaged file. It is renamed to end in ``.damaged``, and
         its run counts as missing. By default a `StoreWarning`.
@@ -83,8 +83,8 @@ class RunStore:
     def load(self, spec: RunSpec) -> Recording | None:
         """Return the stored run of a spec, or None if there is none that can be used.
 
-        A StorageError names a file that is there but can neither be read nor renamed, and a
-        ParameterError a whole file that lacks an array or has another format: it stays as it is.
+        A StorageError names a file that can neither be read nor renamed. A ParameterError names an
+        undamaged file that lacks an array or has another format; that file is left as it is.
         """
         path = self.path(spec)
         if not path.exists():
@@ -110,7 +110,7 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
     title = policy(spec.policy, spec.parameters.pool).name
     step_s, kept = 1.0 / spec.sample_hz, spec.keep
     gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
-    # In a shorter window there may be no two samples that follow each other.
+    # A shorter window may hold no two successive samples.
     window_s = math.inf if kept != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
     is_sampled = np.allclose(run.time_s, step_s * np.round(run.time_s / step_s), rtol=0, atol=1e-8)
     is_sampled &= abs(gap_s - step_s) < 1e-8 or step_s > 0.5 * window_s
@@ -191,6 +191,6 @@ def _attempt(spec: RunSpec) -> Recording | FlockError:
     try:
         return execute(spec)
     except FlockError as error:
-        # The run until then would fill the memory of a sweep.
+        # Keeping the partial run of each error would fill a sweep's memory.
         vars(error).pop("recording", None)
         return error

@@ -157,12 +157,12 @@ def summary(run: Recording) -> dict[str, float]:
     Returns
     -------
     dict
-        ``frames``, how many there are (analysis window, after the first tenth); ``<name>_mean`` and
+        ``frames``, their number (analysis window, after the first tenth); ``<name>_mean`` and
         ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
-        the nematic order, milling, the signed order and the rotation
-        m = Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
-        turns round. Over the frames that define them, NaN if none does. Then the run's
-        ``worst_overlap_cm``, ``unsolved`` and ``halved_substeps``, NaN if they are unknown.
+        the nematic order, milling, the signed order and the rotation m = Ψ_o·sin φ_o.
+        ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock turns round. Over
+        the frames that define them, NaN if none does. Then the run's ``worst_overlap_cm``,
+        ``unsolved`` and ``halved_substeps``, NaN if they are unknown.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
@@ -232,8 +232,8 @@ def run_sweep(
 
 
 def _one_word(value: object) -> object:
-    # A pool is a name or a pair of radii, a target a word or several: a column of both would be of
-    # no type.
+    # A pool is a name or two radii, and a target one word or several: a column that mixes them
+    # would have no type.
     if not isinstance(value, tuple):
         return value
     if all(isinstance(item, str) for item in value):

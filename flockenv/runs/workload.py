@@ -1,4 +1,4 @@
-"""Shares of many runs for several machines, and how much work is left."""
+"""Splits many runs among machines, and tells how much work is left."""
 
 import re
 import time
@@ -18,7 +18,7 @@ class Shard:
 
     The hash of a run's spec decides which shard makes it. Shards never overlap, hold about equally
     many runs, and are the same at each call and on each machine. A ParameterError refuses a number
-    that is not among them.
+    outside 1 to `of`.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Workload:
     runs : int
         Different runs.
     stored : int
-        Runs that have a file in the store. Whether a file is whole shows when it is read.
+        Runs that have a file in the store. Only reading a file shows whether it is whole.
     flock_hours : float
         Simulated hours of the runs that have none.
     core_hours : float or None
@@ -105,7 +105,7 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
 
 
 def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
-    """Return the processor time of runs, by a trial of the one in the middle of their costs."""
+    """Return the processor time of runs, extrapolated from a trial of the median run."""
     middle = sorted(specs, key=lambda spec: spec.cost)[len(specs) // 2]
     trial = replace(middle, duration_s=min(_TRIAL_S, middle.duration_s))
     start = time.process_time()

@@ -15,10 +15,10 @@ from flockenv.sb3.per_flock import PerFlock, layers_of
 
 
 class AsTrained:
-    """A model that acts on what `PerFlock` returns as it acted in its training.
+    """A model that acts on the observations of `PerFlock` as it did in its training.
 
-    Observations are normalized as there, and a recurrent model learns of the start of an episode
-    for each leader.
+    Observations are normalized as in the training, and a recurrent model is told the start of an
+    episode for each leader.
     """
 
     def __init__(self, model: object, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
@@ -87,17 +87,17 @@ def _follow(training: VecNormalize, own: VecNormalize) -> None:
 
 def _unwrapped(model: object) -> Any:
     """Return the model of a `ModelPolicy`, which normalizes too and turns levels into rudders."""
-    # A flock in a wrapper of its own gives the model the wrapper's observations.
+    # If the flocks are in a wrapper, the model gets the wrapper's observations.
     return model.model if type(model) is ModelPolicy else model
 
 
 def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
-    """Refuse a model that was trained on observations or actions of another meaning."""
+    """Refuse a model whose observations or actions mean something else here."""
     model = _unwrapped(model)
     own_policy = Policy.from_source(model)
     own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, options = getattr(model, "observation_space", None), leaders.observation_space.options
-    # A wrapper may make a space that says nothing of its meaning, or keep another flock's.
+    # A wrapper's space may say nothing about its meaning, or be that of another flock.
     known = [one for one in (space, space_under_wrappers(model)) if _says_meaning(one)]
     for layer in known:
         _check_options(model, layer.policy_options(), options)
@@ -122,7 +122,7 @@ def _says_meaning(space: object) -> TypeGuard[ObservationSpace]:
 
 
 def _check_options(model: object, stated: dict[str, Any], options: dict[str, Any]) -> None:
-    """Refuse flocks with other options than those that a model is made for."""
+    """Refuse flocks whose options differ from those that a model is made for."""
     if differing := differing_options(stated, options):
         raise ParameterError(
             f"{short_repr(model)} is not accepted in these flocks: "

@@ -43,7 +43,7 @@ class FlockEvaluation:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Its interval, as of `mean_interval`, at level `flockenv.statistics.CONFIDENCE`."""
+        """Interval of the mean, from `mean_interval` at level `flockenv.statistics.CONFIDENCE`."""
         _, low, high = mean_interval(self.signed_order)
         return low, high
 
@@ -63,9 +63,9 @@ def evaluate_flocks(
 ) -> FlockEvaluation:
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
-    A model that was trained in `VecNormalize` gets observations that are normalized as there, also
-    if `env` is a plain `LeaderVecEnv`. If `env` is in a `VecNormalize` of its own, that takes
-    statistics, ``clip_obs`` and ``epsilon`` of the training's.
+    A model that was trained in `VecNormalize` gets observations that are normalized as in its
+    training, even if `env` is a plain `LeaderVecEnv`. If `env` has a `VecNormalize` of its own,
+    this takes over the training's statistics, ``clip_obs`` and ``epsilon``.
 
     Parameters
     ----------
@@ -73,10 +73,10 @@ def evaluate_flocks(
         A model or policy whose ``predict`` takes one leader's observation per row, such as ``PPO``
         or ``RecurrentPPO``.
     env
-        A `LeaderVecEnv`, also inside other wrappers. Returns are its own, whatever a wrapper does
-        to rewards.
+        A `LeaderVecEnv`, also inside other wrappers. Returns are sums of its rewards, even if a
+        wrapper changes rewards.
     n_eval_episodes
-        Number of flocks' episodes, dealt out to the flocks as evenly as possible.
+        Number of episodes of flocks, shared among the flocks as evenly as possible.
     deterministic
         Whether actions are the most probable ones.
     seed
@@ -92,9 +92,9 @@ def evaluate_flocks(
     TypeError
         If `env` is no `LeaderVecEnv`.
     ParameterError
-        For a model that was trained with other options that a policy depends on (such as
-        ``mirror_to_target`` or ``control_hz``), or is made for another pool, or was trained in a
-        `VecNormalize` that it is loaded without, and for no episodes.
+        For a model that was trained with other options (such as ``mirror_to_target`` or
+        ``control_hz``), is made for another pool, or was trained in a `VecNormalize` but loaded
+        without it; and for no episodes.
     """
     episodes = as_int(n_eval_episodes, "n_eval_episodes")
     if episodes < 1:
@@ -137,7 +137,7 @@ def evaluated(
 
 @contextmanager
 def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
-    """Let no `VecNormalize` learn from an evaluation, which may be on the training's own flocks."""
+    """Keep every `VecNormalize` from learning: an evaluation may use the training's own flocks."""
     layers = normalizing_layers(flocks)
     learned = [layer.training for layer in layers]
     for layer in layers:

@@ -36,10 +36,10 @@ class FlockEvalCallback(EvalCallback):
     eval_env
         A `LeaderVecEnv`, also in wrappers. Observations are normalized as in the training.
     seed
-        Each evaluation starts with this seed of the first flock, so that models meet the same
-        flocks; None: each continues with the next episodes.
+        Seed of the first flock at each evaluation, so that models meet the same flocks. None
+        continues with the next episodes.
     options
-        All others of `EvalCallback`; ``n_eval_episodes`` counts flocks.
+        All other arguments of `EvalCallback`; ``n_eval_episodes`` counts flocks.
 
     Attributes
     ----------
@@ -53,8 +53,8 @@ class FlockEvalCallback(EvalCallback):
     TypeError
         If `eval_env` is no `LeaderVecEnv`.
     ParameterError
-        Before the training, for flocks whose options are not those of the training, as
-        `evaluate_flocks`, and for a file with another number of episodes to go on with.
+        Before the training, for flocks whose options differ from the training's (see
+        `evaluate_flocks`), and for a file to continue that has another number of episodes.
     OSError
         Before the training, for files that are protected against writing.
     """
@@ -171,6 +171,6 @@ class FlockEvalCallback(EvalCallback):
         self.logger.record("eval/mean_ep_length", float(found.lengths.mean()))
         if self._is_success_buffer:
             self.logger.record("eval/success_rate", np.mean(self._is_success_buffer))
-        # So that the evaluation is logged with its own number of steps.
+        # This logs the evaluation with its own number of steps.
         self.logger.record("time/total_timesteps", self.num_timesteps, exclude="tensorboard")
         self.logger.dump(self.num_timesteps)

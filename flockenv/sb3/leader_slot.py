@@ -54,7 +54,7 @@ class LeaderSlot:
 
     @property
     def spec(self) -> EnvSpec | None:
-        """The registered environment whose options these are; None for options of one's own."""
+        """The registered environment that has the same options; None if there is none."""
         return self._env.spec
 
     @property

@@ -131,7 +131,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     @cached_property
     def spec(self) -> EnvSpec | None:
-        """The registered environment whose options these are; None for options of one's own."""
+        """The registered environment that has the same options; None if there is none."""
         made = (self._batch.parameters(0), self._batch.settings, self._own_reward)
 
         def is_ours(options: Mapping[str, Any]) -> bool:
@@ -163,12 +163,12 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         Raises
         ------
         ParameterError
-            For options whose values are not accepted; they do not stay for the next reset.
+            For options whose values are not accepted; the next reset no longer has them.
         """
         requests = self._requests(self._options)
         first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
         seeds = [self._seeds[slot] for slot in first.tolist()]
-        # Refused options do not stay for the next reset.
+        # The next reset no longer has refused options.
         self._reset_options()
         self._batch.reset(seeds, requests, self._drawn_seed)
         self._reset_seeds()
@@ -183,7 +183,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         ------
         ParameterError
             For unknown options, for options that differ between the leaders of a flock, and for
-            flocks with different options; those that were set before are dropped then.
+            flocks with different options; options that were set before are dropped then.
         TypeError
             For options that are no dictionaries.
         """
@@ -241,8 +241,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, flat, np.float32)
         except Exception:
-            # Errors of the motion of a flock or of the reward; flocks whose episode is over start
-            # again.
+            # The motion of a flock or the reward failed: flocks whose episode is over start again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
@@ -387,7 +386,7 @@ def _equal(one: object, other: object) -> bool:
 
 
 def _leader_counts(n_leaders: object) -> list[int]:
-    """Leaders of the flocks, to be dealt out in turn."""
+    """Numbers of leaders, which the flocks take in turn."""
     dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
     if not isinstance(dealt, Sequence) or isinstance(dealt, str):
         dealt = [dealt]

@@ -32,8 +32,8 @@ class FlockMonitor(VecEnvWrapper):
         Numbers of the ``"episode_summary"`` to write too, such as ``"signed_order"``; those that an
         episode does not have are left empty.
     override_existing
-        Whether a file that has episodes already is replaced (True), or gets more rows (False), as
-        of a training that goes on. None refuses it.
+        Whether a file that has episodes already is replaced (True), or gets more rows (False), as a
+        resumed training needs. None refuses it.
 
     Raises
     ------
@@ -64,7 +64,7 @@ class FlockMonitor(VecEnvWrapper):
         self._start = time.time() if started is None else started
         spec = venv.get_attr("spec")[0]
         header: dict[str, float | str] = {"t_start": self._start, "env_id": str(spec and spec.id)}
-        # The writer starts a file without a header if it is told to add to none.
+        # The writer would start a file without a header if told to append to a missing one.
         self._writer = ResultsWriter(str(path), header, summary_keywords, started is None)
 
     def reset(self) -> Any:

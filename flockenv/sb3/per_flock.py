@@ -15,7 +15,7 @@ class PerFlock(VecEnvWrapper):
 
     stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. A flock's leaders
     have one episode with one order. Here `num_envs` is the number of flocks, a reward is the mean
-    over a flock's leaders, and an info is that of its first leader, with the ``"episode"``.
+    over a flock's leaders, and the info is the first leader's, which has the ``"episode"``.
     Observations and actions still have a row per leader, so that the model sees what it was trained
     on.
 

@@ -80,10 +80,10 @@ class HeldNoise:
 
 
 class SharedNoiseDistribution(DiagGaussianDistribution):
-    """Gaussian actions whose deviations from the mean are one number per flock, held for a time.
+    """Gaussian actions: a flock's leaders deviate from the mean by one number, held for a time.
 
-    Each action, taken alone, has the distribution of independent noise, and its probability is that
-    one's. If the number of slots is not the training's, the noise is independent.
+    Each action by itself is distributed as with independent noise, and so is its probability. If
+    the number of slots differs from the training's, the noise is independent.
     """
 
     def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
@@ -100,8 +100,8 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     """gSDE (Raffin et al. 2021) with one matrix per flock, held for a time, and a constant feature.
 
     A deviation is the matrix times the inputs of the last layer, to which a constant 1 is appended.
-    The leaders of a flock therefore act by one policy whose last layer differs from the mean one,
-    biases included.
+    So the leaders of a flock follow one policy, whose last layer differs from the mean's, biases
+    included.
     """
 
     held: HeldNoise
@@ -122,7 +122,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
         return super().proba_distribution_net(latent_dim, log_std_init, features)
 
     def sample_weights(self, log_std: torch.Tensor, batch_size: int = 1) -> None:
-        """Draw nothing: `held` says when, and not stable-baselines3 with each rollout."""
+        """Draw nothing: `held` says when to draw, not stable-baselines3 at each rollout."""
 
     def proba_distribution(
         self, mean_actions: torch.Tensor, log_std: torch.Tensor, latent_sde: torch.Tensor
@@ -136,7 +136,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     def get_noise(self, latent_sde: torch.Tensor) -> torch.Tensor:
         """Return deviations from the mean actions, shape (slots, actions).
 
-        The inputs have the constant already.
+        The inputs already end in the constant.
         """
         drawn = self.held.next(len(latent_sde), latent_sde.device)
         matrices = drawn.reshape(len(latent_sde), *self._deviations.shape) * self._deviations
@@ -148,8 +148,9 @@ class SharedNoisePolicy(ActorCriticPolicy):
 
     ``PPO(SharedNoisePolicy, venv, policy_kwargs=shared_noise(venv, hold_s=24.0))``
 
-    A flock's order answers a lasting common deviation of its leaders, and hardly deviations that
-    cancel. The noise is drawn from torch's generator, so that the seed of the algorithm fixes it.
+    A flock's order responds to a lasting deviation that its leaders share, and hardly to deviations
+    that cancel. The noise is drawn from torch's generator, so that the seed of the algorithm fixes
+    it.
 
     With ``use_sde=True`` of the algorithm the noise is gSDE: it perturbs the weights of the
     last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It
@@ -167,8 +168,8 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Raises
     ------
     ParameterError
-        For discrete actions, for a hold of less than one decision, and from a training in flocks
-        with another number of leaders than the policy was made for.
+        For discrete actions, for a hold of less than one decision, and, in a training, for flocks
+        whose number of leaders the policy was not made for.
     """
 
     def __init__(

@@ -11,7 +11,7 @@ from flockenv._io.extras import require
 def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
     """Return the mean of the middle half of the values of all tasks together.
 
-    A few episodes that went wrong, or very well, do not move it as they move the mean.
+    A few very bad or very good episodes move it less than they move the mean.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
 
 
 def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
-    """Return how often a difference is positive (equal ones count half), mean over the tasks.
+    """Return the share of positive differences (zeros count half), as a mean over the tasks.
 
     Takes the arguments of `interquartile_mean`, for paired differences.
     """

@@ -22,7 +22,7 @@ def critical_noise(
 ) -> tuple[float, float, float]:
     """Return the noise at which a flock loses its order, with its interval at level `CONFIDENCE`.
 
-    See `loss_of_order` for the rule. Runs are drawn at each noise by themselves.
+    See `loss_of_order` for the rule. The bootstrap draws runs at each noise separately.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def critical_noise(
         For each level an array of shape (runs, 2): a run's means of Ψ_o and of the rotation's size
         ``|m| = |Ψ_o sin φ_o|``, over the analysis window.
     seed
-        Of the bootstrap.
+        Seed of the bootstrap.
 
     Returns
     -------

@@ -1,10 +1,11 @@
 """Intervals at one level: of means, of differences, and of any statistic of independent runs.
 
-The mean of few values has Student's interval, of more a BCa bootstrap (`mean_interval`).
-`bootstrap_interval` takes any statistic, and `two_way_interval` a table of runs that share two
-sources of luck.
+The mean of a few values has Student's interval, the mean of more values a BCa bootstrap
+(`mean_interval`). `bootstrap_interval` takes any statistic, and `two_way_interval` a table of runs
+that share two sources of luck.
 
-An interval of 24 normal values holds their mean 93 times of 100, and one of 64 values 94 times.
+An interval from 24 normal values holds the true mean 93 times of 100, and one from 64 values 94
+times.
 """
 
 import math
@@ -120,10 +121,10 @@ def bootstrap_interval(
     statistic
         A function of as many arrays that takes ``axis``, such as `numpy.mean`.
     seed
-        Of the draws, 9999 of them.
+        Seed of the 9999 draws.
     paired
-        Whether values at the same place of several arrays belong to one run, and are drawn
-        together; otherwise runs are drawn from each array by itself.
+        Whether values at the same index of several arrays belong to one run, and are drawn
+        together. Otherwise each array is drawn from separately.
 
     Returns
     -------
@@ -145,7 +146,7 @@ def bootstrap_interval(
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         found = bootstrap(n_resamples=_BCA_RESAMPLES, rng=np.random.default_rng(seed))
-    if np.isnan(found.confidence_interval).any():  # To leave out no run changes the statistic.
+    if np.isnan(found.confidence_interval).any():  # Leaving out one run changes nothing.
         found = bootstrap(n_resamples=0, bootstrap_result=found, method="percentile")
     low, high = found.confidence_interval
     return value, float(low), float(high)
@@ -155,10 +156,10 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     """Return the mean of a table whose rows share its columns, with its interval.
 
     Trainings that are judged in the same flocks are such rows: an interval over their means leaves
-    out the luck of the flocks, which all of them share. Here both are drawn, rows and columns each
-    with their own means, 9999 times. Deviations are stretched so that few rows or columns have
-    Student's interval, as in `mean_interval`. The residual beside both effects counts twice: a
-    table of noise alone gets an interval 1.4 times too wide.
+    out the luck of the flocks, which all of them share. Here the bootstrap draws both, rows and
+    columns, 9999 times. Deviations are stretched so that few rows or columns have Student's
+    interval, as in `mean_interval`. The residual beside both effects is counted twice, so a table
+    of pure noise gets an interval 1.4 times too wide.
 
     Parameters
     ----------
@@ -202,7 +203,7 @@ def _means_of_draws(values: NDArray[np.float64], random: np.random.Generator) ->
 
 
 def _stretch(count: int) -> float:
-    """Return Student's interval over the percentiles of a bootstrap of normal values."""
+    """Return the width of Student's interval over that of a normal bootstrap's percentiles."""
     stats, level = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
     quantiles = stats.t.ppf(level, count - 1) / stats.norm.ppf(level)
     return float(quantiles * math.sqrt(count / (count - 1)))

@@ -68,7 +68,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
     found = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
     came = np.diff(found.probabilities, prepend=1.0) < 0.0
     with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", RuntimeWarning)  # Where the share is 0 or 1.
+        warnings.simplefilter("ignore", RuntimeWarning)  # The logarithms of a share of 0 or 1.
         ends = found.confidence_interval(CONFIDENCE, method="log-log")
     low, high = ends.low.probabilities[came], ends.high.probabilities[came]
     times = with_gaps(times_s, "times_s")

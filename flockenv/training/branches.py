@@ -100,7 +100,7 @@ class BranchTraining:
 
     @property
     def curve(self) -> dict[str, NDArray[np.float64]]:
-        """The columns ``flock_hours`` and ``signed_order`` of every round, while leaders try."""
+        """Columns ``flock_hours`` and ``signed_order`` of each round, in which leaders explore."""
         rows = np.array(self._core.curve, float).reshape(-1, 2)
         return {"flock_hours": rows[:, 0], "signed_order": rows[:, 1]}
 
@@ -113,7 +113,7 @@ class BranchTraining:
 
     @property
     def overlaps(self) -> tuple[int, int, float]:
-        """Branches, those that left overlaps beyond ``tolerance_cm``, and the deepest one in cm."""
+        """Numbers of branches, and of those with overlaps beyond ``tolerance_cm``; deepest in cm."""
         return self._core.overlaps
 
     def advance(self) -> None:
@@ -252,7 +252,7 @@ def compare_with_laws(
     parameters
         Of the flocks.
     flocks
-        How many, with the same starts and noises for the laws and the trained leaders.
+        Number of flocks; the laws and the trained leaders get the same starts and noises.
     """
     led: dict[str, Any] = {PAPERS_LAW: PAPERS_LAW, TUNED_LAW: TUNED_LAW, TRAINED: policy}
     seeds = range(flocks)

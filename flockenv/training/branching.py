@@ -30,9 +30,9 @@ def branch_seed(run: int) -> int:
 class BranchingFlocks:
     """Groups of flocks of 27 boats with three leaders, at the pool's critical noise.
 
-    Flocks i, i + groups, i + 2 groups and so on start each branch from one state and meet one
-    noise. Then all of them continue from the present state of one of them, drawn by a coin, until
-    their episode is over and they start again at rest.
+    Flocks i, i + groups, i + 2·groups and so on are a group: they start each branch from the same
+    state and meet the same noise. After a branch one of them is drawn, and all continue from its
+    state. When their episode is over they start again at rest.
 
     Parameters
     ----------
@@ -68,7 +68,8 @@ class BranchingFlocks:
         self._coins = np.random.default_rng([seed, 1])
         self._seeds = iter(_SEEDS.seeds(1 << 20, run=seed))
         self._branches = episode_s // branch_s
-        #: Branches of its episode that each group has had: at first all numbers alike.
+        #: Branches that each group has had in its episode; at the start groups differ, to spread
+        #: the ends.
         self._had = np.arange(groups) % self._branches
         self._snapshots: list[bytes] = []
         self._targets = np.full(groups, "ccw")

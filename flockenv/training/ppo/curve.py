@@ -70,7 +70,7 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     Returns
     -------
     pandas.DataFrame
-        As of `flockenv.comparison.compare_leaders`.
+        As from `flockenv.comparison.compare_leaders`.
     """
     policies = {
         PAPERS_LAW: PAPERS_LAW,

@@ -106,7 +106,7 @@ def resume(
     folder
         What was given to `train`.
     flock_hours
-        When to stop, if not as in the folder's settings.
+        When to stop; by default as in the folder's settings.
     report
         As of `train`.
 
@@ -170,7 +170,7 @@ def _advance(
     seeds = POLICY_SEEDS["training"]
     first = rollouts * venv.num_flocks % (seeds.of_a_run - venv.num_flocks)
     threads = torch.get_num_threads()
-    # Small networks are no faster with more, and sums differ with their number.
+    # More threads do not speed up small networks, and sums would depend on their number.
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:

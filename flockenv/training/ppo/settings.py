@@ -169,7 +169,7 @@ class TrainingSettings:
             model = PPO(SharedNoisePolicy, venv, policy_kwargs=policy, seed=self.seed, **options)
         except (AssertionError, TypeError, ValueError) as error:
             raise ParameterError(f"PPO refuses its options: {error}") from error
-        # If it were learned, weights with a small gradient would no longer be explored.
+        # If the deviation were learned, weights with a small gradient would no longer be explored.
         model.policy.log_std.requires_grad_(False)
         return model
 
