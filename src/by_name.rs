@@ -1,5 +1,5 @@
-//! States by name: a field or number that is missing has its default, and one that is unknown is refused by a sentence
-//! that names it. So a state outlives every parameter, option, reward term, block and quantity that comes later.
+//! States by name: a missing field or number takes its default, and an error names an unknown one. So a stored state
+//! can still be read after parameters, options, reward terms, blocks and quantities are added.
 
 use crate::sealed_bytes::refused;
 use serde::de::{DeserializeOwned, Deserializer, MapAccess, Visitor};

@@ -1,4 +1,4 @@
-//! The exact clock of a flock, and how many steps a duration holds.
+//! The exact clock of a flock, and the number of steps in a duration.
 //!
 //! Time is counted in integer ticks of 1 ns, so that a substep can end exactly on a phase switch or a control step, and
 //! rounding leaves no tiny step if the two coincide.
@@ -36,7 +36,7 @@ pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &s
     if !(count > 0.0 && count <= 1e9) {
         return refuse(", at most 1e9 of them".to_owned());
     }
-    // A duration far below one step is no whole number of them, though it rounds to none.
+    // A duration far below one step rounds to 0 steps, but is not a whole number of them.
     let whole = count.round().max(1.0);
     if (count - whole).abs() > 1e-9 * whole {
         let [below, above] = [count.floor().max(1.0), count.ceil()].map(|n| n / rate_hz);

@@ -53,10 +53,10 @@ pub enum FlockError {
     /// Snapshot bytes that this flock cannot continue from.
     #[error("snapshot not restored: {0}")]
     Snapshot(String),
-    /// An environment was used out of turn: stepped before a reset or after the end.
+    /// An environment was stepped before a reset or after the end of its episode.
     #[error("{0}")]
     Episode(String),
-    /// The motion left the range that states may have; the flock is as it was before the call.
+    /// The motion left the accepted range of states; the flock is as it was before the call.
     #[error("{0}")]
     Solver(String),
     /// Long work was stopped by a signal; nothing has changed.
@@ -112,7 +112,7 @@ impl FlockError {
         Err(Self::parameter(field, value, accepted))
     }
 
-    /// Refuses bytes or their content with a reason, unless they fit.
+    /// Refuses bytes or their content, with a reason, unless a condition holds.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`].

@@ -25,7 +25,7 @@
 //!
 //! # Flow
 //! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →
-//! policy (Python). What is measured stands in [`analysis`], pictures in `draw`.
+//! policy (Python). Measurements are in [`analysis`], pictures in `draw`.
 //!
 //! # Features
 //! `draw` has pictures of flocks, `clarabel` a third contact solver to check the others against, and `python` the

@@ -17,9 +17,9 @@ pub(crate) fn note_process() {
     FIRST_PROCESS.get_or_init(id);
 }
 
-/// Maps items in order. The caller works along, since it takes about as long as some control steps to wake another
-/// thread, or to be woken. Each thread has a block of the items, from one call to the next the same ones, which are in
-/// its cache, and helps with the ends of other blocks when it is done with its own.
+/// Maps items in order. The caller takes part, since waking a thread, or being woken, takes about as long as some
+/// control steps. Each thread has a block of the items. The block is the same at every call, so that it stays in the
+/// thread's cache. A thread that is done helps with the ends of other blocks.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     // WebAssembly has neither threads nor processes, and asking for a process's number would end the program.
     if cfg!(target_family = "wasm") {
@@ -60,10 +60,10 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync 
     results.into_iter().flatten().collect()
 }
 
-/// Times that a thread which waits for another's last item yields before it sleeps.
+/// How often a thread yields while it waits for another's last item, before it sleeps.
 const MOST_YIELDS: u32 = 1000;
 
-/// Does part 0 of some work here and the others on other threads, and counts who helps.
+/// Does part 0 of some work here and the other parts on other threads, and counts how many of them help.
 fn share<'scope>(
     scope: &Scope<'scope>,
     parts: usize,
@@ -78,7 +78,7 @@ fn share<'scope>(
         });
     }
     work(0);
-    // The last item of another thread is done sooner than this one would have been woken.
+    // Another thread finishes its last item sooner than this thread would be woken.
     let mut patience = MOST_YIELDS;
     while helpers.load(Ordering::Acquire) > 0 && patience > 0 {
         std::thread::yield_now();
@@ -86,8 +86,8 @@ fn share<'scope>(
     }
 }
 
-/// A fork copies no threads: the child would wait for its parent's forever. The parent's pool is never
-/// dropped there, since that would wait too.
+/// A fork copies no threads: the child would wait forever for its parent's threads. The child never drops the parent's
+/// pool, since that would wait, too.
 fn pool_of_fork() -> Option<&'static ThreadPool> {
     let mut forked = FORKED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((process, pool)) = *forked

@@ -1,5 +1,5 @@
-//! States as bytes that show when they are damaged: 8 bytes magic, whose last one is the format's version, 8 bytes
-//! checksum (CRC-32, little-endian), then the state in postcard encoding. Parameters, options, reward terms, blocks and
+//! States as bytes that reveal damage: 8 bytes magic, the last of which is the format's version, 8 bytes checksum
+//! (CRC-32, little-endian), then the state in postcard encoding. Parameters, options, reward terms, blocks and
 //! quantities, which tables declare, are stored by name. The rest is stored by position, so that the version rises with
 //! every change of it.
 
@@ -15,7 +15,7 @@ pub(crate) type Magic = [u8; 8];
 pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     let mut bytes = magic.to_vec();
     bytes.extend_from_slice(&[0; 8]);
-    // Writing to a Vec fails only without memory, and then the allocator ends the process first.
+    // Writing to a Vec fails only if memory runs out, and then the allocator has ended the process.
     let bytes = postcard::to_extend(state, bytes);
     debug_assert!(bytes.is_ok(), "{:?}", bytes.err());
     let mut bytes = bytes.unwrap_or_default();
@@ -57,18 +57,18 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
 }
 
 thread_local! {
-    /// Reason why content was refused: postcard's errors drop the words that they are made of.
+    /// Why content was refused; postcard's errors drop their message.
     static REASON: Cell<Option<String>> = const { Cell::new(None) };
 }
 
-/// The error of readable content that is refused; [`unseal`] passes its words on.
+/// An error for readable content that is refused; [`unseal`] reports its reason.
 pub(crate) fn refused<E: serde::de::Error>(why: String) -> E {
     let error = E::custom(&why);
     REASON.set(Some(why));
     error
 }
 
-/// Enough to detect damage, no protection against intent.
+/// It detects damage, but is no protection against intent.
 fn crc_32(bytes: &[u8]) -> u64 {
     u64::from(crc32fast::hash(bytes))
 }

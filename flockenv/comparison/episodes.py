@@ -104,27 +104,32 @@ class Episodes:
         }
 
     def _decide(self, batch: LeaderBatch) -> Decide:
-        """Return a function from observations to actions; its None means the law acts alone."""
-        core, rows = batch.core, batch.num_flocks * self.n_leaders
+        """Return the function that turns observations into actions; None: the law acts alone."""
         if self.leaders.is_each:
-            decisions = self.leaders.decisions(batch.settings["control_hz"])
-
-            def each(_: NDArray[np.float32]) -> NDArray[np.float64]:
-                observed = (core.observe_in(*layout) for layout in decisions.layouts)
-                return decisions.rudders(core.target_signs().ravel(), *observed)
-
-            return each
+            return _decide_each(self.leaders, batch)
         policy, state = self.leaders.seats[0].policy.started(), None
         if policy.control_hz is None:
             return lambda observed: None
+        rows = batch.num_flocks * self.n_leaders
 
-        def all_at_once(observed: NDArray[np.float32]) -> NDArray[np.float64]:
+        def decide(observed: NDArray[np.float32]) -> NDArray[np.float64]:
             nonlocal state
             each_flock = observed.reshape(batch.num_flocks, -1)
             actions, state = policy.decide(each_flock, state, rows)
             return actions
 
-        return all_at_once
+        return decide
+
+
+def _decide_each(leaders: Leaders, batch: LeaderBatch) -> Decide:
+    """Return the function of leaders with a policy each, which observe in layouts of their own."""
+    core, decisions = batch.core, leaders.decisions(batch.settings["control_hz"])
+
+    def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
+        observed = (core.observe_in(*layout) for layout in decisions.layouts)
+        return decisions.rudders(core.target_signs().ravel(), *observed)
+
+    return decide
 
 
 def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:

@@ -113,7 +113,7 @@ class BranchTraining:
 
     @property
     def overlaps(self) -> tuple[int, int, float]:
-        """Numbers of branches, and of those with overlaps beyond ``tolerance_cm``; deepest in cm."""
+        """Branches, those with overlaps beyond ``tolerance_cm``, and the deepest overlap."""
         return self._core.overlaps
 
     def advance(self) -> None:

@@ -9,7 +9,7 @@ named_choice! {
     pub enum CollectiveState ("state") {
         /// Boats point at the outer wall together and stand still.
         Jamming = "jamming",
-        /// Most boats stick together in one cluster without a common direction: momentary.
+        /// Most boats stick together in one cluster without a common direction, for a moment.
         Clustering = "clustering",
         /// Boats move clockwise together.
         OrderedClockwise = "ordered cw",
@@ -26,15 +26,15 @@ named_choice! {
 pub(crate) const HIGH_ORDER: f64 = 0.8;
 /// Ψ_o below this is low: about the middle between an ordered and a disordered flock of 27.
 pub(crate) const LOW_ORDER: f64 = 0.5;
-/// Mean velocities above this part of the preferred forward speed are collective motion. In the
-/// analysis window a boat from rest has 0.5 to 0.9 of it, a jammed one less than 0.1.
+/// Mean velocities above this share of the preferred forward speed count as collective motion. In the analysis window a
+/// boat that started from rest moves at 0.5 to 0.9 of that speed, a jammed one below 0.1.
 pub(crate) const MOVING: f64 = 0.25;
 /// A cluster that holds at least this part of the boats is the flock.
 pub(crate) const CLUSTERED: f64 = 0.75;
 
 impl CollectiveState {
-    /// The state of a flock in the analysis window with these order parameters, whose boats prefer
-    /// the forward speed `speed_cm_s`, and of which the largest cluster holds this part.
+    /// The state of a flock in the analysis window from its order parameters, its boats' preferred forward speed and
+    /// the share of boats in its largest cluster.
     pub fn from_order(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
         let moving = order.psi_v >= MOVING * speed_cm_s;
         if order.psi_o > HIGH_ORDER {
@@ -98,8 +98,8 @@ impl OrderingWatch {
     }
 }
 
-/// Ordering time τ (eq. 7) of a series of samples, infinite where the run does not order. The slices
-/// are of equal length, the times increasing; the run lasts until the last of them.
+/// Ordering time τ (eq. 7) of a series of samples, infinite if the run does not order. The slices are of equal length,
+/// the times increasing; the run lasts until the last of them.
 pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> f64 {
     let half = time_s.last().map_or(0.0, |last| last / 2.0);
     let mut watch = OrderingWatch::default();

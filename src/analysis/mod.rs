@@ -1,5 +1,4 @@
-//! Measurements of boats: order parameters, collective states, and where boats are relative to each
-//! other and to the wall.
+//! Measurements of boats: order parameters, collective states, and positions relative to each other and to the wall.
 
 pub mod collective_state;
 mod order_parameters;

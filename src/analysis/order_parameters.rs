@@ -70,7 +70,7 @@ impl OrderParameters {
     }
 
     /// Ψ_o·cos φ_o, the mean over boats of cos φ: 1 in a jam, near 0 for streams along the pool,
-    /// also for opposed ones, which cancel in m.
+    /// also for opposed streams, which cancel in m.
     pub fn outward(&self) -> f64 {
         self.psi_o * libm::cos(self.phi_o)
     }

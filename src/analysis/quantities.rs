@@ -21,7 +21,7 @@ pub struct Boats<'a> {
 }
 
 impl Boats<'_> {
-    /// Mean over the boats of a vector in LAP axes, made of a boat's orientation in LAP axes.
+    /// Mean over the boats of a vector that is computed from each boat's orientation, both in LAP axes.
     fn mean(&self, vector: impl Fn(Vec2) -> Vec2) -> Vec2 {
         let sum = self.hulls.iter().fold(Vec2::zeros(), |sum, hull| {
             sum + vector(LapFrame::at(hull.center).components(hull.axis))
@@ -219,7 +219,7 @@ pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {
         .filter(|quantity| quantity.is_summarized())
 }
 
-/// Present values of the quantities averaged in an episode summary.
+/// Present values of the quantities that an episode summary averages.
 pub(crate) fn summarized_values(boats: &Boats, target: Target) -> [f64; SUMMARIZED] {
     let mut values = [f64::NAN; SUMMARIZED];
     for (value, quantity) in values.iter_mut().zip(summarized()) {

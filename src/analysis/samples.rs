@@ -13,7 +13,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Of rows [x, y, heading], or [x velocity, y velocity, angular velocity], time after time.
+    /// From rows [x, y, heading], or [x velocity, y velocity, angular velocity], time after time.
     pub fn new(rows: Vec<Pose>, boats: usize) -> Self {
         Self {
             rows,
@@ -69,9 +69,9 @@ impl Samples {
     /// Velocities from poses, and the number of steps that were too fast. `times_s` holds the time of each row: boats
     /// may have clocks of their own.
     ///
-    /// Where a boat is there before and after, they are differences weighted by the other step, which are exact under
-    /// a constant acceleration; at the ends of a track they are one-sided. No difference is taken across steps of more
-    /// than `longest_s`, and of more than `fastest_cm_s`, which are counted. Rows without any are NaN.
+    /// If a boat is seen before and after a time, both differences are weighted by each other's step, which is exact
+    /// for a constant acceleration. At the ends of a track differences are one-sided. Steps longer than `longest_s` or
+    /// faster than `fastest_cm_s` give no difference; the fast ones are counted. Rows without a difference are NaN.
     pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
         let (mut broken, rows) = (0, &self.rows);
         let mut step = |row: usize| {

@@ -62,8 +62,8 @@ pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     at_wall.count() as f64 / poses.len() as f64
 }
 
-/// Length of the mean heading in the axes of the world (Vicsek et al. 1995): 1 where all boats point the same
-/// way, some 0.886/√N for N independent headings; NaN of none.
+/// Length of the mean heading in the axes of the world (Vicsek et al. 1995): 1 if all boats point the same way, some
+/// 0.886/√N for N independent headings; NaN of none.
 pub fn polarization(poses: &[Pose]) -> f64 {
     let sum = poses
         .iter()

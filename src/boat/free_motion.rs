@@ -25,7 +25,7 @@ pub struct Drive {
 pub struct FreeVelocity {
     /// The velocity that the boat would have without contacts.
     pub velocity: Velocity,
-    /// One over the effective weight of the angular velocity, to be divided by ρ².
+    /// One over the effective weight of the angular velocity, not yet divided by ρ².
     pub angular_mobility: f64,
 }
 
@@ -57,14 +57,14 @@ impl FreeMotion {
         -self.c1 * angular * angular * angular + (self.c2 * rudder - self.c3 * angular) * along
     }
 
-    /// Rate at which a small change of the angular velocity decays, in 1/s: the linearization of eq. (9), and 0 where it
+    /// Rate at which a small change of the angular velocity decays, in 1/s: eq. (9) linearized, and 0 if the change
     /// would grow.
     pub(crate) fn turn_damping(&self, angular: f64, along: f64) -> f64 {
         (3.0 * self.c1 * angular * angular + self.c3 * along).max(0.0)
     }
 
-    /// The part of a spin that is left if damping takes `rate` of it over `dt`; 0 if damping would reverse it. A step
-    /// beyond that would make spins alternate, and an explicit one grow without end.
+    /// The part of a spin that is left after damping at `rate` for `dt`; 0 if damping would reverse it. Reversed spins
+    /// would alternate, and with an explicit step grow without bound.
     #[inline]
     fn damped(rate: f64, dt: f64) -> f64 {
         (1.0 - rate * dt).max(0.0)
@@ -98,7 +98,7 @@ impl FreeMotion {
     }
 
     /// Change of the velocity over `dt` without contacts, with drag centered in the substep. Drag takes at most the
-    /// whole velocity: with more a boat would start to back.
+    /// whole velocity: otherwise it would make a boat back up.
     #[inline]
     pub(crate) fn centered_change(
         &self,
@@ -111,8 +111,8 @@ impl FreeMotion {
         (axis * drive.preferred_speed + drive.water - velocity) * relaxed
     }
 
-    /// The spin that a boat is driven to. Eq. (9) drives no backing boat past the spin at which it comes to rest, so
-    /// that a step beyond ends there.
+    /// The spin that a boat is driven to. Eq. (9) never drives a backing boat past the equilibrium spin, so a step that
+    /// overshoots ends there.
     #[inline]
     fn held_back(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let turns_back =
@@ -123,8 +123,8 @@ impl FreeMotion {
         driven
     }
 
-    /// A spin held to the boat's own or to a bound of those at which eq. (9) comes to rest: the roots of
-    /// c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
+    /// A spin limited by the boat's present spin or by a bound of the equilibria of eq. (9): the roots of c1·w³ = (c2·s
+    /// − c3·w)·u·ẋ with c1 > 0.
     #[cold]
     fn at_most_at_rest(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
@@ -135,12 +135,12 @@ impl FreeMotion {
 
     /// Second order over `dt` with drag, heading drive and angular damping centered in the substep:
     /// Crank–Nicolson, linearized once for the angular velocity. `contact_change` is the change of
-    /// velocity that persistent contacts are expected to make in the substep, so that the heading's
-    /// drive u·ẋ is centered too while a boat leans on something.
+    /// velocity that persistent contacts are expected to make in the substep, so that the heading's drive u·ẋ is
+    /// centered, too, while a boat presses against something.
     ///
     /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
     /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
-    /// at any dt. Damping stops a spin at most.
+    /// at any dt. Damping may stop a spin, but never reverses it.
     #[inline]
     pub fn centered(
         &self,

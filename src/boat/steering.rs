@@ -45,7 +45,7 @@ pub struct DampedLaw {
 /// The gain of eq. (10) in 1/rad: full rudder from 30° of misalignment on.
 const PAPER_GAIN: f64 = 6.0 / PI;
 
-/// The damped law where nothing has been tuned: eq. (10)'s gain in both directions.
+/// The untuned damped law: eq. (10)'s gain in both directions.
 impl Default for DampedLaw {
     fn default() -> Self {
         Self {
@@ -81,10 +81,10 @@ impl DampedLaw {
         ),
     ];
 
-    /// The tuned law of a named pool, for a setting that asks for it.
+    /// The tuned law of a pool, on behalf of a setting that needs it.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] names setting and value for pools in which the law has not been tuned.
+    /// [`FlockError::Parameter`] names setting and value if the law has not been tuned in the pool.
     pub fn tuned(setting: &'static str, value: &str, pool: Option<&str>) -> Result<Self> {
         let mut tuned = Self::TUNED.into_iter();
         let found = tuned.find(|(name, _)| Some(*name) == pool);

@@ -54,7 +54,7 @@ impl Contact {
         }
     }
 
-    /// Whether the other side has ends: the contact may pass from one end of the boat to the other without moving.
+    /// Whether the other side has ends. Then a contact may pass from one end of the boat to the other without moving.
     #[inline]
     pub(super) fn has_ends(&self) -> bool {
         matches!(self.partner, Partner::Boat(_) | Partner::Obstacle(_))
@@ -66,7 +66,7 @@ impl Contact {
         boat.center + boat.axis * along - normal * hull.radius
     }
 
-    /// Its boats, with the normal and the lever arm that the contact has for each.
+    /// Its boats, each with the contact's normal and lever arm for it.
     #[inline]
     pub fn sides(&self) -> impl Iterator<Item = (u32, Vec2, f64)> {
         let gap = &self.gap;

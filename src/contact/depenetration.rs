@@ -1,8 +1,8 @@
 //! Moves overlapping hulls apart without giving them any speed.
 //!
-//! A gap far below zero must not enter the velocities: g + dt·J·v ≥ 0 would eject a 5 cm overlap at
-//! 250 cm/s (dt = 0.02 s). Deep overlaps are therefore undone by moving poses alone, by the least
-//! Σ|Δx|² + ρ²ΣΔα² for which the linearized gaps open.
+//! A deep overlap must not enter the velocity constraint: g + dt·J·v ≥ 0 would eject a 5 cm overlap at 250 cm/s (dt =
+//! 0.02 s). Deep overlaps are therefore undone by moving poses alone, by the least Σ|Δx|² + ρ²ΣΔα² for which the
+//! linearized gaps open.
 
 use super::solver::ContactSolver;
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia};
@@ -12,8 +12,8 @@ use crate::parameters::FlockParameters;
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
 pub(super) const PENETRATION_SLOP: f64 = 0.002;
-/// The most that one pass opens a gap or moves a boat by, in boat radii (1 cm of 5): beyond it the
-/// linearization means little. A boat turns by 1 rad at most.
+/// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5): the linearization holds no
+/// farther. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
 
 /// Number of passes after which a substep accepts the remaining overlaps.
@@ -41,7 +41,7 @@ impl Depenetration {
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         let gyration_radius = parameters.gyration_radius_cm;
         Self {
-            // Regularized, since a packing may leave no solution; the remaining overlap is then shared evenly.
+            // Regularized, since a dense packing may have no solution; the overlap that remains is then shared evenly.
             solver: ContactSolver::regularized(1e-4),
             contacts: Vec::new(),
             biases: Vec::new(),
@@ -56,9 +56,8 @@ impl Depenetration {
         }
     }
 
-    /// Displaces poses, of which an overlap is known to exceed `allowed` (cm, positive), until none does, and fills
-    /// `found` with the contacts nearer than `margin` afterwards. Any overlap is among them, which tells whether
-    /// another pass is needed.
+    /// Displaces poses until no overlap exceeds `allowed` (cm, positive; one is known to), then fills `found` with the
+    /// contacts nearer than `margin`. Any overlap is among them, which tells whether another pass is needed.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -72,8 +71,8 @@ impl Depenetration {
         for _ in 0..MOST_PASSES {
             detector.detect(boats, wide, &mut self.contacts);
             self.displace(poses, boats);
-            // The wide margin decides when the list is rebuilt, even if no other pass follows: contacts come
-            // in its order, and results made before rest on that.
+            // The wide margin decides when the neighbor list is rebuilt, even if no other pass follows. Contacts come
+            // in the list's order, on which the bits of earlier results depend.
             detector.update(boats, wide);
             detector.detect(boats, margin.min(wide), found);
             if smallest_gap(found) >= -allowed || self.solver.is_exhausted() {
@@ -117,7 +116,7 @@ impl Depenetration {
     }
 }
 
-/// Distance in cm within which hulls are kept from being pushed into each other.
+/// Distance in cm within which hulls take part, so that they are not pushed into each other.
 fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }
@@ -137,7 +136,8 @@ pub(super) fn orbital_angular_momentum(poses: &[Pose], velocities: &[Velocity]) 
         .sum()
 }
 
-/// Moves hulls apart during placement, until none overlaps, after `most_passes`, or if `keep_going` returns false.
+/// Moves hulls apart during placement until none overlaps, for at most `most_passes` or until `keep_going` returns
+/// false.
 pub(crate) fn push_apart(
     detector: &mut ContactDetector,
     poses: &mut [Pose],

@@ -10,13 +10,13 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
-/// Part of a radius that the fastest boat moves by in a substep beyond which it pays to look which contacts close.
+/// If the fastest boat moves by more than this part of a radius in a substep, it pays to look which contacts close.
 const LONG: f64 = 0.1;
-/// Pairs per boat that one substep looks at where boats move by more than half their length in it: in the densest flock
-/// each can then reach what lies within a few lengths. Beyond it a linearized gap means nothing, and memory and time grow
-/// with the square of the number of boats.
+/// Most pairs per boat in a substep in which boats move by more than half their length: enough for all within a few
+/// lengths in the densest flock. With more, linearized gaps mean nothing, and memory and time grow with the square of
+/// the number of boats.
 const MOST_PAIRS_A_BOAT: usize = 32;
-/// Substeps are not cut below this part of `dt_s` for having too many boats in reach.
+/// Substeps are not cut below this part of `dt_s` because too many boats are within reach.
 const SHORTEST_SHARE: f64 = 1e-3;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
@@ -28,7 +28,7 @@ pub struct ContactDetector {
     pub(crate) neighbors: NeighborList,
     pub(super) obstacles: NearObstacles,
     skin: f64,
-    /// Substeps are not cut for what boats can reach in them below this length, in s.
+    /// Substeps below this length, in s, are not cut because of what boats can reach in them.
     shortest_s: f64,
     /// Whether detection stopped because boats reach too many others in this substep.
     is_crowded: bool,
@@ -42,7 +42,7 @@ impl ContactDetector {
     /// For checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let hull = Hull::new(parameters);
-        // Boats drift by about a radius before the list is rebuilt, and for at least some long substeps.
+        // The list lasts until boats have drifted by about a radius, and for at least a few long substeps.
         let some_substeps = 6.0 * parameters.speed_cm_s * parameters.dt_s;
         let skin = some_substeps.clamp(0.8 * hull.radius, 2.0 * hull.radius);
         Self {
@@ -58,7 +58,7 @@ impl ContactDetector {
         }
     }
 
-    /// Finds contacts of whole substeps of another length from now on.
+    /// From now on finds contacts for another substep length.
     pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
         self.shortest_s = SHORTEST_SHARE * dt_s;
     }
@@ -81,8 +81,8 @@ impl ContactDetector {
         fastest
     }
 
-    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, with room for what
-    /// contacts add to them: as much as the fastest boat has. Returns a margin that includes all of them.
+    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`. Contacts may add to a
+    /// velocity: as much as the fastest boat has is allowed for. Returns a margin that includes all of them.
     pub fn detect_moving(
         &mut self,
         boats: &[HullPose],
@@ -132,7 +132,7 @@ impl ContactDetector {
         gap < -allowed
     }
 
-    /// Whether too many pairs of boats are nearer than `margin`. A list from a longer substep would tell of more.
+    /// Whether too many pairs of boats are nearer than `margin`. A list from a longer substep also holds farther pairs.
     #[cold]
     fn crowds(&mut self, boats: &[HullPose], margin: f64) -> bool {
         if self.neighbors.cutoff() > 2.0 * (2.0 * self.hull.reach() + margin + self.skin) {
@@ -198,15 +198,16 @@ impl ContactDetector {
         self.obstacles.update(&self.neighbors);
     }
 
-    /// Whether moving with these velocities for `dt` is too far for one substep: boats reach too many others, or might
-    /// pass through a wall that has no thickness. A boat that moves by at most half its radius cannot; afterwards no gap
+    /// Whether boats move too far for one substep of `dt` at these velocities: they reach too many others, or might
+    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot; once through, no gap
     /// would show on which side it was.
     pub(crate) fn moves_too_far(&self, velocities: &[Velocity], dt: f64) -> bool {
         let farthest = 0.5 * self.hull.radius;
         self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
-    /// Squared distances from the pool's center at which no wall is nearer than `margin`.
+    /// Squared distances from the pool's center at which no wall is nearer than `margin`: none if the walls' margins
+    /// meet.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
         let square = |distance: f64| distance.max(0.0) * distance;
         let reach = self.hull.reach() + margin;
@@ -216,7 +217,7 @@ impl ContactDetector {
             0.0
         };
         let high = self.pool.outer_radius_cm - reach;
-        // Nowhere if the walls' margins meet in the middle.
+        // The walls' margins meet in the middle.
         low..=if high < 0.0 { -1.0 } else { square(high) }
     }
 
@@ -291,8 +292,8 @@ impl ContactDetector {
         }
     }
 
-    /// The touches of a contact's boat with another boat or an obstacle at other poses, of its stern's group of ends and
-    /// of its bow's. Crossed cores count for both.
+    /// The touches of a contact's boat with another boat or an obstacle at other poses, at its stern's and at its bow's
+    /// group of ends. Crossed cores count for both.
     #[inline]
     pub(super) fn touches_at(&self, contact: &Contact, boats: &[HullPose]) -> [EndTouch; 2] {
         let boat = &boats[contact.boat as usize];
@@ -302,7 +303,7 @@ impl ContactDetector {
         }
     }
 
-    // A loop apart from that of boats, whose gaps then stay in registers.
+    // Separate from the loop over boats, whose gaps then stay in registers.
     #[inline(never)]
     fn obstacle_touches(&self, contact: &Contact, boat: &HullPose) -> [EndTouch; 2] {
         let mut touches = [EndTouch::MISSING; 2];
@@ -364,7 +365,7 @@ impl ContactDetector {
     }
 }
 
-/// Notes a touch under the boat's end where it is; a touch between the ends counts for both.
+/// Notes a touch under the end of the boat at which it is; a touch between the ends counts for both.
 #[inline]
 fn note_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
     match feature {

@@ -40,7 +40,7 @@ impl Islands {
         }
         let mut first = 0;
         for start in &mut self.starts[1..] {
-            // Filling moves every start to its island's end.
+            // Filling has moved every start to its island's end.
             first += std::mem::replace(start, first);
         }
         self.members.resize(contacts.len(), 0);
@@ -81,7 +81,7 @@ impl Islands {
 /// Joins the sets of two boats. A set's first boat is the last of its parents.
 #[inline]
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
-    // As for the second touch of two boats.
+    // For example for the second touch of two boats.
     if parent[a as usize] == parent[b as usize] {
         return;
     }

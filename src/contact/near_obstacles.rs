@@ -1,4 +1,4 @@
-//! Obstacles that each boat may touch soon: a list that holds as long as the neighbor list, and is rebuilt with it.
+//! Obstacles that each boat may touch soon: a list that is valid as long as the neighbor list, and is rebuilt with it.
 
 use crate::geometry::{NeighborList, Obstacle};
 
@@ -11,7 +11,7 @@ pub(super) struct NearObstacles {
     /// Start of each boat's obstacles in `near`.
     starts: Vec<u32>,
     near: Vec<u32>,
-    /// Number of the neighbor list's build that it was made with.
+    /// Number of the neighbor list's build from which it was made.
     build: u64,
 }
 
@@ -25,8 +25,8 @@ impl NearObstacles {
         }
     }
 
-    /// Follows a neighbor list. That list is complete for centers up to its cutoff apart. An obstacle does not move, so
-    /// half of that is how near it must be to a center.
+    /// Follows a neighbor list. The neighbor list holds all pairs of centers up to its cutoff apart. An obstacle does
+    /// not move, so half the cutoff is enough for it.
     pub(super) fn update(&mut self, neighbors: &NeighborList) {
         if self.obstacles.is_empty() || self.build == neighbors.builds() {
             return;

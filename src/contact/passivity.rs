@@ -1,18 +1,16 @@
-//! Frictionless plastic contacts take energy out of the boats that they join, or leave it; only opening an overlap adds
-//! some.
+//! Frictionless plastic contacts never add energy to the boats that they join, except when they open an overlap.
 //!
-//! With biases that follow from the gaps at hand alone, every solution obeys: rest satisfies them. Biases
-//! that look ahead along a curve, for a flank on the inner wall or by relinearization, may demand more
-//! where a boat turns far in one substep: the contact has then passed from one end of the hull to the
-//! other, and pushing as at the substep's start opens nothing.
+//! If biases follow from the present gaps alone, every solution obeys this, since rest satisfies the constraints.
+//! Biases may also look ahead along a curve, for a flank on the inner wall or by relinearization. These demand too much
+//! if a boat turns far in one substep: the contact has then passed from one end of the hull to the other, and pushing
+//! as at the substep's start opens nothing.
 
 use super::ContactProblem;
 use super::solver::ContactSolver;
 use super::velocity_bias::VelocityBias;
 
-/// Part of an island's energy that a curve may seem to add. Its true share is of third order in dt: in
-/// wide and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of
-/// 1.8 million islands.
+/// Part of an island's energy that biases along a curve may add. Normally they add a share of third order in dt: in
+/// wide and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
 /// Whether contacts might drive a boat, checked quickly: an impulse λ at a contact that opens at the speed
@@ -27,8 +25,8 @@ pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: Veloci
     (0..impulses.len()).any(|k| impulses[k] > 0.0 && adds_much(k))
 }
 
-/// Whether a boat of an island has its flank pushed from opposite sides. If biases looked ahead, either contact would
-/// turn it back against the other; a plastic impact stops the turn.
+/// Whether contacts push a boat's flank from opposite sides. With biases that look ahead, each contact would turn the
+/// boat back against the other; a plastic impact stops the turn instead.
 fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> bool {
     let contacts = island.iter().map(|&k| k as usize);
     let pushed = contacts
@@ -49,7 +47,7 @@ pub(super) struct Passivity {
 }
 
 impl Passivity {
-    /// The contacts of the islands that contacts drive, or turn back between obstacles.
+    /// The contacts of the islands in which contacts drive boats, or turn one back between obstacles.
     #[cold]
     pub(super) fn driven(
         &mut self,
@@ -68,8 +66,7 @@ impl Passivity {
         driven.flatten().map(|&k| k as usize).collect()
     }
 
-    /// Whether the contacts of an island, given by their numbers, add to the energy of its boats, beyond the energy
-    /// that opening overlaps takes.
+    /// Whether the contacts of an island (their indices) add more energy to its boats than opening overlaps takes.
     fn is_driven(
         &mut self,
         island: &[u32],

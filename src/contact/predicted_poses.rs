@@ -9,11 +9,11 @@ use crate::geometry::{Hull, HullPose, Pose, Velocity};
 pub(super) struct PredictedPoses {
     poses: Vec<Pose>,
     hulls: Vec<HullPose>,
-    /// Whether boats with the velocities that were solved for last end there.
+    /// Whether these are the poses for the velocities solved for last.
     is_end: bool,
     /// Largest motion of each boat's hull, in cm.
     displacements: Vec<f64>,
-    /// Boats that are moved again, and whether each boat is one of them.
+    /// Boats to be moved again, and for each boat whether it is one of them.
     listed: Vec<u32>,
     is_listed: Vec<bool>,
 }
@@ -70,7 +70,7 @@ impl PredictedPoses {
         self.is_end = false;
     }
 
-    /// Hands out the poses and hulls predicted last, if boats end there, for those at the substep's start.
+    /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date.
     pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         if self.is_end {
             std::mem::swap(poses, &mut self.poses);
@@ -90,8 +90,8 @@ impl PredictedPoses {
         pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
-    /// Whether the boats of contact k move far enough to close it, or the other contact of the same two: a touch may slide
-    /// from one to the other.
+    /// Whether the boats of contact k move far enough to close it, or to close the other contact of the same two
+    /// bodies: a touch may slide from one to the other.
     #[inline]
     pub(super) fn may_close(&self, contacts: &[Contact], k: usize) -> bool {
         let contact = &contacts[k];
@@ -107,7 +107,7 @@ impl PredictedPoses {
                 })
     }
 
-    /// Whether boats with the velocities that were solved for last end at the predicted poses.
+    /// Whether the prediction is for the velocities solved for last.
     pub(super) fn is_end(&self) -> bool {
         self.is_end
     }

@@ -51,7 +51,7 @@ impl ContactProblem<'_> {
     }
 
     /// Gives the boats of some contacts their free velocities.
-    // Inlined, it makes islands that need none of it take longer.
+    // Not inlined: that would slow down islands that do not need it.
     #[inline(never)]
     pub(crate) fn release(&self, contacts: &[u32], velocities: &mut [Velocity]) {
         for &k in contacts {

@@ -1,12 +1,12 @@
-//! Skipped contacts: boats do not close them at their free velocities. They are left out while the solution leaves them
-//! apart.
+//! Skipped contacts: boats would not close them at their free velocities. They are left out as long as the solution
+//! does not close them either.
 
 use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
-/// Part of the fastest boat's displacement that contacts mostly add to another boat's, at most. With more, fewer contacts
-/// are skipped, with less more have to be restored.
+/// Contacts rarely add more than this part of the fastest boat's displacement to that of another boat. A larger part
+/// skips fewer contacts; with a smaller one, more have to be restored.
 const ADDED: f64 = 0.125;
 
 /// The contacts that are skipped.
@@ -26,9 +26,9 @@ impl SkippedContacts {
         self.contacts.is_empty()
     }
 
-    /// Moves here the contacts that boats with these velocities do not close within `dt`. The normal of the nearer
-    /// touch of two bodies separates them: along it their cores close no faster than their centers do, and than turning
-    /// swings their ends. Both touches of a pair stay or go, since closing one swings the other.
+    /// Takes out the contacts that boats with these velocities do not close within `dt`. The normal of the nearer touch
+    /// separates two bodies: along it their cores approach no faster than their centers do, plus what turning adds at
+    /// their ends. Both touches of a pair are kept or skipped together, since closing one moves the other.
     pub(super) fn set_apart(
         &mut self,
         detector: &ContactDetector,
@@ -58,7 +58,7 @@ impl SkippedContacts {
         contacts.truncate(kept);
     }
 
-    /// Whether none overlaps by more than `allowed` where the boats are predicted, with these velocities for `dt`.
+    /// Whether no skipped contact overlaps by more than `allowed` at the poses predicted for these velocities and `dt`.
     pub(super) fn are_apart(
         &self,
         predicted: &PredictedPoses,
@@ -68,7 +68,7 @@ impl SkippedContacts {
         allowed: f64,
     ) -> bool {
         let is_apart = |touches: &[Contact]| {
-            // A wall that leads on to another one may have left out the nearer touch.
+            // If a wall continues in another one, its nearer touch may be missing.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
             let is_far = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
             debug_assert!(!is_far || !predicted.overlaps(detector, touches, allowed));
@@ -98,7 +98,7 @@ fn may_close(
 ) -> bool {
     let may_close = |contact: &Contact| may_touch_close(detector, contact, velocities, dt, added);
     match touches {
-        // Ends at a wall that curves around them: no normal separates the other one.
+        // Two ends at the outer wall, which curves around them: one end's normal says nothing about the other end.
         [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
         [a, b] if b.gap.gap < a.gap.gap => may_close(b),
         touches => may_close(&touches[0]),

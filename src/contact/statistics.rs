@@ -20,9 +20,9 @@ pub struct Statistics {
     pub factored_rows: u64,
     /// Most numbers that the Cholesky factors of one solve held.
     pub most_factor_entries: u64,
-    /// Substeps that left overlaps deeper than the tolerance: they could not be shortened, and constraints contradicted each
-    /// other or relinearization passes did not converge; or moving poses could not undo deep overlaps. Velocities are then those of the nearest problem that can be
-    /// solved.
+    /// Substeps that left overlaps deeper than the tolerance: either they could not be shortened although constraints
+    /// contradicted each other or relinearization did not converge, or moving poses could not undo deep overlaps.
+    /// Velocities are then those of the nearest problem that can be solved.
     pub unsolved: u64,
     /// Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have driven boats, or a boat
     /// moved too far.
@@ -35,11 +35,10 @@ pub struct Statistics {
     pub worst_residual_cm_s: f64,
     /// Deepest overlap met at the start of a substep in cm, positive.
     pub worst_overlap_cm: f64,
-    /// Angular momentum about the pool's center that came or went where deep overlaps were undone, in cm²/s: its
-    /// changes, each positive, summed. For hulls that slide past each other while they overlap, no displacement keeps
-    /// it.
+    /// Sum of the absolute changes of angular momentum about the pool's center when deep overlaps were undone, in
+    /// cm²/s. No displacement conserves it for hulls that slide past each other while they overlap.
     pub displaced_angular_momentum_cm2_s: f64,
-    /// Largest error in cm that an advance stated; 0 if none was asked to.
+    /// Largest error in cm that an advance has estimated; 0 if none was asked for.
     pub worst_error_cm: f64,
 }
 

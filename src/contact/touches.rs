@@ -1,8 +1,8 @@
-//! Identity of touches: two bodies may touch at two points, and a contact stands for one of them.
+//! Identity of touches: two bodies may touch at two points, and a contact describes one of them.
 //!
-//! A touch is identified by its position along both cores. The group of ends that it belongs to names it only at one
-//! pose: a touch passes to the other group without moving where an end slides past the other hull's end, and where two
-//! hulls turn past a right angle.
+//! A touch is identified by its position along both cores. Its group of ends identifies it at one pose only: without
+//! moving, a touch passes to the other group when an end slides past the other hull's end, or when two hulls turn past
+//! a right angle.
 
 use super::Contact;
 use crate::geometry::{EndTouch, Gap};
@@ -33,8 +33,8 @@ pub(super) fn first_of_two(contacts: &[Contact], k: usize) -> Option<usize> {
     }
 }
 
-/// Whether the touches of a pair at other poses are those of its two contacts in the other order: such that places and
-/// gaps change least. A missing touch has no position, so that the remaining one goes to the nearer contact.
+/// Whether the touches of a pair at other poses belong to its two contacts in reverse order: the order with the smaller
+/// change of positions and gaps. A missing touch has no position, so the remaining one goes to the nearer contact.
 #[inline]
 pub(super) fn are_swapped(touches: &[EndTouch; 2], contacts: &[Contact]) -> bool {
     let moved = |touch: usize, contact: usize| {

@@ -19,13 +19,13 @@ pub(super) struct VelocityBias {
 impl VelocityBias {
     /// The bias from the present gap, in cm/s.
     pub(super) fn of_gap(&self, gap: &Gap) -> f64 {
-        // Without branches: signs of gaps cannot be foreseen.
+        // Without branches, since the signs of gaps are unpredictable.
         let time = select_unpredictable(gap.gap < 0.0, self.closing_s, self.dt);
         let is_deep = gap.gap < -self.penetration_slop;
         select_unpredictable(is_deep, 0.0, gap.gap / time)
     }
 
-    /// Part of the bias that is lost if a flank turns into the inner wall with this spin.
+    /// Part of the bias that a flank loses by turning into the inner wall with this spin.
     pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
         if gap.gap < -self.penetration_slop {
             0.0

@@ -38,7 +38,7 @@ impl CachedImpulse {
         (self.boat == contact.boat) && self.partner == contact.partner
     }
 
-    /// Whether the impulse was nearer to the one contact than to the other.
+    /// Whether the impulse was nearer to the first contact than to the second.
     #[inline]
     fn is_nearer(&self, one: &Contact, other: &Contact) -> bool {
         distance(place(&one.gap), self.place) < distance(place(&other.gap), self.place)
@@ -56,7 +56,7 @@ pub(super) struct WarmStartCache {
 }
 
 const NONE: u32 = u32::MAX;
-/// Number of entries that a search may skip: those of contacts that are gone.
+/// Number of entries that a search may skip, for contacts that are gone.
 const AHEAD: usize = 4;
 
 impl WarmStartCache {
@@ -122,7 +122,7 @@ impl WarmStartCache {
         start..start + 1 + usize::from(is_two)
     }
 
-    // Out of line, like the search, so that looking up contacts in order stays in registers.
+    // Not inlined, like the search, so that looking up contacts in order stays in registers.
     #[inline(never)]
     fn index(&mut self) {
         let boats = self.entries.iter().map(|entry| entry.boat as usize + 1);

@@ -55,7 +55,7 @@ pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View, coloring: Co
     }
 }
 
-/// The color of a leader: one for all, unless they head against each other.
+/// The color of a leader: the same for all, unless they head against each other.
 fn color_of(targets: &Targets, leader: usize) -> Rgb {
     if targets.are_opposed() && targets.of(leader) == Target::CounterClockwise {
         OPPONENT

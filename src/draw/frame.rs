@@ -18,7 +18,7 @@ pub struct FrameRenderer {
     background: Option<Background>,
 }
 
-/// Water, walls and obstacles of a pool, as they look with a target.
+/// Water, walls and obstacles of a pool, with its target's arrow.
 #[derive(Debug, Clone)]
 struct Background {
     parameters: FlockParameters,

@@ -1,5 +1,5 @@
-//! The colors of frames, pages and plots, declared once: Okabe and Ito's set, which color-blind eyes distinguish too, on
-//! pale water, and their counterparts on dark ground, which pages alone have.
+//! The colors of frames, pages and plots, declared once: Okabe and Ito's set on pale water, which color-blind people
+//! can tell apart, and counterparts for dark ground, which only pages have.
 
 use std::fmt;
 
@@ -107,7 +107,7 @@ declare_palette! {
     FORCE = "force": hex(0xC2185B), hex(0xFF5C9A);
     /// The ring around the selected boat.
     PIN = "pin": hex(0x1F2A36), hex(0xFFFFFF);
-    /// The paper's law, in pages and plots. Policies have none of the colors of directions.
+    /// The paper's law, in pages and plots. No policy has a color of a direction.
     PAPER_LAW = "paper-law": hex(0x5E2CA5), hex(0xD0B3FF);
     /// The damped law.
     DAMPED_LAW = "damped-law": hex(0x7A4A12), hex(0xA0705F);
@@ -115,7 +115,7 @@ declare_palette! {
     TUNED_LAW = "tuned-law": ORANGE, ORANGE;
     /// The learned leaders.
     LEARNED = "learned": GREEN, hex(0x7BD88F);
-    /// A run that no law led, or a second one of its law.
+    /// A run that no law led, or the second run of one law.
     RUN_1 = "run-1": hex(0x3A4651), hex(0xE8EDF2);
     /// The second of such runs.
     RUN_2 = "run-2": hex(0xB5508A), hex(0xE8A0C8);

@@ -8,9 +8,9 @@ use tiny_skia::Point;
 const MARGIN: f64 = 0.03;
 /// Share of the frame's height above and below that the legend takes in open water.
 const LEGEND: f64 = 0.12;
-/// The least half-width that open water shows, in lengths of a hull: a lone boat is not blown up.
+/// The least half-width that open water shows, in hull lengths, so that a lone boat does not fill the frame.
 const LEAST_LENGTHS: f64 = 6.0;
-/// Steps to a factor of two in the scale of open water, so that it changes seldom.
+/// Number of steps by which the scale of open water doubles: coarse steps change it seldom.
 const STEPS: f64 = 8.0;
 
 /// A similarity from world (cm) to pixels.

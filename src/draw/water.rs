@@ -112,7 +112,7 @@ fn grid(canvas: &mut Pixmap, view: &View) {
 /// Distance of grid lines in cm: 1, 2, 5, 10, 20, …
 pub(super) fn grid_spacing(view: &View) -> f64 {
     let least = LEAST_SPACING / view.scale;
-    // Whole powers as text are exact, and print as people write them.
+    // Powers of ten parsed from text are exact, and print without rounding.
     let decade = libm::log10(least).floor() as i32;
     let rounded = |step: u8, decade: i32| format!("{step}e{decade}").parse().unwrap_or(least);
     let steps = [1, 2, 5].map(|step| rounded(step, decade));

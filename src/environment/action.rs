@@ -46,7 +46,7 @@ impl ActionMode {
     }
 }
 
-/// Checks an action, which is the number of a level if there are levels.
+/// Checks an action: a rudder, or the number of a level if there are levels.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] for NaN and for levels that do not exist. Rudders beyond ±1 are accepted: they are clipped.
@@ -63,7 +63,7 @@ pub(super) fn check(action: f64, levels: Option<usize>) -> Result<()> {
 /// The rudder of a checked action, in [−1, 1].
 pub(super) fn command(action: f64, levels: Option<usize>) -> f64 {
     match levels {
-        // Levels i and n - 1 - i are opposite to the bit: mirrored tasks stay the same task.
+        // Levels i and n - 1 - i are exactly opposite, so that a mirrored task is the same task.
         Some(levels) => {
             let highest = (levels - 1) as f64;
             (2.0 * action - highest) / highest

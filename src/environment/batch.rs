@@ -1,5 +1,4 @@
-//! Many environments stepped in parallel. Each one's bits are its own: they depend neither on the batch
-//! it is in nor on the number of threads.
+//! Many environments stepped in parallel. The bits of each depend neither on its batch nor on the number of threads.
 
 use super::flock_env::StoredEnv;
 use super::observation::ObservationLayout;
@@ -108,13 +107,13 @@ impl EnvBatch {
             .try_for_each(|env| env.check_ready(self.settings.autoreset_mode))
     }
 
-    /// One decision of every flock, held over its control steps, or the start of its next episode where one is due.
+    /// One decision of every flock, held over its control steps, or the start of its next episode if one is due.
     /// Without actions the leaders follow the steering law at every substep.
     ///
     /// # Errors
-    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of a
-    /// flock after the others have moved: its episode has ended, the others' go on, and what they were rewarded with
-    /// in this step is lost.
+    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of
+    /// one flock, after the others have moved. Its episode has ended, the others continue, and the rewards of this step
+    /// are lost.
     ///
     /// # Panics
     /// If the rows have other lengths than the batch.

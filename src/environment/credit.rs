@@ -1,4 +1,4 @@
-//! Effects of a leader's contacts on normal boats, from the impulses of the contact solver. They are free of the noise of
+//! Effects of a leader's contacts on normal boats, from the impulses of the contact solver. They exclude the noise of
 //! boats that the leader does not touch.
 
 use crate::geometry::LapFrame;
@@ -34,7 +34,7 @@ pub(super) struct ContactCredit {
     leaders: usize,
     /// (momentum in cm/s, angular velocity in rad/s) given by each leader in the control step.
     given: Vec<(f64, f64)>,
-    /// For each leader each normal boat.
+    /// For each leader, an entry per normal boat.
     turned: Vec<Turned>,
 }
 
@@ -68,7 +68,7 @@ impl ContactCredit {
             let Some(boat) = contact.second().filter(|_| impulse > 0.0) else {
                 continue;
             };
-            // Leaders come first, and the partner of a contact after its boat.
+            // Leaders have the lower indices, and a contact's partner is above its boat.
             let leader = contact.boat as usize;
             if leader >= self.leaders || boat < self.leaders {
                 continue;

@@ -13,7 +13,7 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// The number of an episode for which this share of the range, in [0, 1), was drawn.
+    /// The number for an episode that drew this share of the range, in [0, 1).
     pub fn at(self, share: f64) -> f64 {
         match self {
             Self::Fixed(number) => number,

@@ -33,7 +33,7 @@ pub(crate) struct EpisodeState {
     ended: bool,
     /// Effects of the leaders' contacts, if a reward term needs them.
     credit: Option<ContactCredit>,
-    /// Of the normal boats; `None` without any.
+    /// Order parameters of the normal boats; `None` if there are none.
     #[serde(skip)]
     order: Option<OrderParameters>,
 }
@@ -57,7 +57,7 @@ impl EpisodeState {
         }
     }
 
-    /// Whether it is one of an environment with these settings and parameters.
+    /// Whether it fits an environment with these settings and parameters.
     fn fits(&self, settings: &EnvSettings, parameters: &FlockParameters) -> bool {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let (camera, credit) = (self.camera.as_ref(), self.credit.as_ref());
@@ -98,7 +98,7 @@ impl Episode {
     /// An episode that starts with this flock.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] where the flock's pool has no law that the settings need.
+    /// [`FlockError::Parameter`] if the settings need a law that the flock's pool does not have.
     pub fn new(settings: &EnvSettings, schedule: EpisodeSchedule, flock: Flock) -> Result<Self> {
         Self::from_state(settings, EpisodeState::new(settings, schedule, flock))
     }
@@ -116,7 +116,7 @@ impl Episode {
         })
     }
 
-    /// The episode that was stored, in an environment with these settings and parameters.
+    /// The stored episode, in an environment with these settings and parameters.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if it does not belong there.
@@ -221,8 +221,8 @@ impl Episode {
     /// and writes the rewards, sums over them. Without actions leaders follow the steering law at every substep.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stays where it was in that control step, and the
-    /// episode is over.
+    /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stops in that control step, and the episode is
+    /// over.
     pub fn step(
         &mut self,
         keep_going: KeepGoing,
@@ -353,8 +353,8 @@ impl Episode {
         statistics.add_reward(sum / rewards.len().max(1) as f64);
     }
 
-    /// Records the order, and everything that is averaged if the step ends in the analysis window, after
-    /// the first tenth of the episode.
+    /// Records the order. If the step ends in the analysis window, after the first tenth of the episode, it also adds
+    /// to the averages.
     fn note_order(&mut self, elapsed: Ticks) {
         let (flock, statistics) = (&self.state.flock, &mut self.state.statistics);
         let Some(order) = self.state.order else {

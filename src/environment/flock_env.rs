@@ -1,4 +1,4 @@
-//! One flock as an environment: an episode after another, each seeded.
+//! One flock as an environment: one seeded episode after another.
 
 use super::episode::EpisodeState;
 use super::observation::{FlockFeatures, ObservationLayout, StateObserver};
@@ -148,8 +148,9 @@ impl FlockEnv {
         Err(FlockError::Episode(message.to_owned()))
     }
 
-    /// One decision with checked actions, held over its control steps, or the start of the next episode where one is due;
-    /// without actions leaders follow the steering law at every substep. Writes observations and rewards of the leaders and returns whether the episode was truncated.
+    /// One decision with checked actions, held over its control steps, or the start of the next episode if one is due;
+    /// without actions leaders follow the steering law at every substep. Writes observations and rewards of the leaders
+    /// and returns whether the episode was truncated.
     ///
     /// # Errors
     /// [`FlockError::Solver`], [`FlockError::Placement`], [`FlockError::Interrupted`]; the episode is over then.

@@ -51,7 +51,7 @@ impl Upcoming {
         EnvSettings {
             target: self.target.as_ref().unwrap_or(&settings.target).clone(),
             bw_s: self.bw_s.or(settings.bw_s),
-            // Another target would change a default length.
+            // With another target, a default length would differ.
             episode_s: Some(settings.duration_s()),
             ..settings.clone()
         }
@@ -64,7 +64,7 @@ impl ResetRequest {
     pub(super) fn over(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();
         request.target = request.target.or_else(|| upcoming.target.clone());
-        // A snapshot brings its own along.
+        // A snapshot has its own.
         request.bw_s = request.bw_s.or(upcoming.bw_s);
         request
     }

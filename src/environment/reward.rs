@@ -195,7 +195,7 @@ impl Setting for RewardWeights {
 pub enum Weights {
     /// The same for all leaders.
     One(RewardWeights),
-    /// One per leader. Flocks with fewer leaders than others of their batch have the first ones.
+    /// One per leader. A flock with fewer leaders than others in its batch uses the first weights.
     Each(Vec<RewardWeights>),
 }
 

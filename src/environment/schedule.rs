@@ -22,8 +22,8 @@ pub struct EpisodeSchedule {
 }
 
 impl EpisodeSchedule {
-    /// Draws an episode, and the share of a range at which its backward duration lies. Both are drawn from the flock's
-    /// seed whether they are used or not, so that neither depends on the other being fixed.
+    /// Draws an episode, and the share of a range at which its backward duration lies. Both are always drawn from the
+    /// flock's seed, even if unused, so that fixing one does not change the other.
     pub fn new(settings: &EnvSettings, target: &TargetChoice, flock_seed: u64) -> (Self, f64) {
         let mut rng = Stream::EPISODE.rng(flock_seed);
         let share: f64 = rng.random_range(0.0..1.0);

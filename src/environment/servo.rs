@@ -1,6 +1,6 @@
 //! The lag of a real servo.
 
-/// A servo that takes one move a control step and holds the rudder in between.
+/// A servo that moves once per control step and holds the rudder in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
     /// Part of the difference to the command that a step takes away.

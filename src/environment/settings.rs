@@ -135,8 +135,8 @@ impl EnvSettings {
             .map_or(1, |period| (period * self.control_hz).round() as u32)
     }
 
-    /// Time from an episode's start to the end of a number of control steps, to the nearest tick: if a
-    /// period is no whole number of ticks, rounding does not add up.
+    /// Time from an episode's start to the end of a number of control steps, rounded to a tick as a whole, so that the
+    /// rounding of periods does not add up.
     pub(crate) fn time_of(&self, steps: u32) -> Ticks {
         ticks(f64::from(steps) / self.control_hz)
     }

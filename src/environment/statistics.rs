@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 
 /// Signed order above this is motion in the target direction.
 pub const TOWARDS_TARGET: f64 = 0.5;
-/// Largest angle off the tangent of an ordered flock: as eq. (7) prints it, and wider, since a boat that
-/// slides along the wall heads outward of it.
+/// Largest angle off the tangent of an ordered flock: as printed in eq. (7), and a wider one, since a boat that slides
+/// along the wall heads somewhat outward.
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums of the summarized quantities, or their means.
@@ -34,7 +34,7 @@ impl Serialize for Averages {
     }
 }
 
-/// A missing quantity was not watched: its mean is NaN.
+/// A quantity that is missing was not recorded: its mean is NaN.
 impl<'de> Deserialize<'de> for Averages {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let mut averages = Self([f64::NAN; SUMMARIZED]);
@@ -119,7 +119,7 @@ impl EpisodeStatistics {
 }
 
 impl EpisodeSummary {
-    /// The summary by name. Means over an analysis window that the episode did not reach are left out, not NaN.
+    /// The summary by name. If the episode did not reach the analysis window, its means are left out instead of NaN.
     pub fn named(&self) -> Value {
         let terms = RewardTerm::named(&self.terms);
         let share = ("share_towards_target", self.share_towards_target);

@@ -19,10 +19,10 @@ pub struct Flock {
     pub(crate) parameters: FlockParameters,
     schedule: PhaseSchedule,
     pub(crate) seed: u64,
-    /// That of the noise, if the flock continues a snapshot with other noise than its seed's.
+    /// Seed of the noise, if the flock continues a snapshot with other noise.
     noise_seed: Option<u64>,
     pub(crate) time: Ticks,
-    /// `dt_s` when the flock was made: white noise keeps the paths that follow from it.
+    /// `dt_s` when the flock was made, which determines the paths of white noise.
     pub(super) noise_dt_s: f64,
     pub(crate) integrator: Integrator,
     /// The motion before the last advance, to return to if it fails.
@@ -32,7 +32,7 @@ pub struct Flock {
 /// Work between two points at which a long run can be ended, in boats moved, contacts and rows factored: some
 /// milliseconds, or a single substep that takes longer.
 const WORK_BETWEEN_LOOKS: u64 = 20_000;
-/// Part of `dt_s` below which no substep is cut for the sake of walls without thickness.
+/// Part of `dt_s` below which no substep is cut to protect walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
                         boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
@@ -103,13 +103,13 @@ impl Flock {
         self.seed
     }
 
-    /// The seed of the noise, where it is not that of the flock's own seed: in a branch.
+    /// The seed of the noise if it differs from the flock's seed, as in a branch.
     pub fn noise_seed(&self) -> Option<u64> {
         self.noise_seed
     }
 
-    /// Continues with the noise of a branch: the same for every flock with this noise seed, and never the noise of a
-    /// flock whose seed it is. `None` leaves the noise as it is.
+    /// Continues with the noise of a branch: the same for every flock with this noise seed, but not that of a flock
+    /// whose own seed is this number. `None` leaves the noise as it is.
     pub(super) fn branch(&mut self, noise_seed: Option<u64>) {
         if let Some(seed) = noise_seed {
             self.noise_seed = noise_seed;
@@ -147,8 +147,8 @@ impl Flock {
         &self.integrator.boats
     }
 
-    /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to
-    /// the time half a substep ago, and the poses moved with exactly them.
+    /// Velocities of all boats. With `leapfrog` these are means over the last substep: they belong to its middle, and
+    /// the poses moved with exactly these velocities.
     pub fn velocities(&self) -> &[Velocity] {
         &self.integrator.velocities
     }
@@ -168,7 +168,7 @@ impl Flock {
         self.integrator.law(leader)
     }
 
-    /// Changes the direction that the steering law heads for, that of all leaders or that of each.
+    /// Changes the direction of the steering law, for all leaders or for each one.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for another number of targets than leaders; the flock is unchanged then.
@@ -193,7 +193,7 @@ impl Flock {
         self.advance_to(&|| true, end, steering)
     }
 
-    /// Time at which a duration from now on ends.
+    /// Time at which a duration that starts now ends.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a bad duration.
@@ -244,7 +244,7 @@ impl Flock {
         self.advance_watched(keep_going, end, steering, &mut |_| {})
     }
 
-    /// As [`Self::advance_to`], showing the motion after every substep.
+    /// As [`Self::advance_to`], and passes the motion to a function after every substep.
     pub(crate) fn advance_watched(
         &mut self,
         keep_going: KeepGoing,
@@ -288,7 +288,7 @@ impl Flock {
                     return Err(FlockError::Interrupted);
                 }
             }
-            // Contacts of numbers out of range take long to give up: no more of them.
+            // Contacts of numbers out of range would take long to fail, so stop here.
             if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
                 break;
             }
@@ -334,14 +334,14 @@ impl Flock {
         moved + statistics.contacts + statistics.factored_rows
     }
 
-    /// About how many multiplications the contacts of all substeps took since the flock was made, those that failed
-    /// included: what a whole substep may take of them is bounded.
+    /// About how many multiplications the contacts of all substeps have taken, failed ones included. Each whole substep
+    /// has a bound.
     pub fn contact_work(&self) -> u64 {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Time at which an advance stops after about this many substeps times boats: on the substep grid, where
-    /// stopping changes nothing.
+    /// Time of an advance by about this many substeps times boats. It lies on the substep grid, where stopping changes
+    /// nothing.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);

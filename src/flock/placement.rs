@@ -1,8 +1,8 @@
 //! Random initial conditions: non-overlapping, uniform headings (Section 2.5's random start).
 //!
-//! Dilute flocks are placed by rejection: uniform positions and headings, one boat after another. Where
-//! that fails, hulls start small at uniform places, grow, and are pushed apart by the least
-//! displacement; their directions keep their random start but for what the pushing turns.
+//! Dilute flocks are placed by rejection: uniform positions and headings, one boat after another. If that fails, hulls
+//! start small at uniform positions, grow, and are pushed apart by the least displacement. Their headings stay random,
+//! except for what the pushing turns.
 
 use crate::contact::{ContactDetector, KeepGoing, push_apart};
 use crate::error::{FlockError, Result};
@@ -18,7 +18,7 @@ use std::f64::consts::{PI, TAU};
 const TRIES_PER_BOAT: usize = 200;
 /// Fresh starts of grow-and-relax before placement fails.
 const ATTEMPTS: usize = 6;
-/// Part of the water that hulls may cover before placement is not even tried.
+/// Part of the water that hulls may cover; beyond it placement is not even tried.
 const LARGEST_COVER: f64 = 0.92;
 /// Part of the water that hulls can cover at random.
 const WELL_COVERED: f64 = 0.78;
@@ -26,11 +26,11 @@ const WELL_COVERED: f64 = 0.78;
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
 const CLEARANCE: f64 = 1e-3;
-/// Open water gets this many hull areas a boat, as dilute as 20 boats in the `wide` pool.
+/// Area of open water per boat, in hull areas: as dilute as 20 boats in the pool `wide`.
 const OPEN_WATER_AREAS: f64 = 25.0;
-/// Halvings of the difference between an outer radius of open water that suffices and one that does not.
+/// Bisections between an outer radius of open water that suffices and one that does not.
 const HALVINGS: u32 = 10;
-/// Points that sample the water taken up by obstacles: good to about a percent.
+/// Number of points that sample the area of obstacles, to about a percent.
 const SURVEYED: u32 = 1024;
 
 /// Places all boats of checked parameters.
@@ -88,8 +88,8 @@ struct Region {
 }
 
 impl Region {
-    /// Numbers of boats and of attempts to grow. Hulls that cover nearly all of the water cannot be disjoint: the number
-    /// that can be is worth one attempt, for the error message.
+    /// Numbers of boats and of attempts to grow. Hulls that cover nearly all of the water must overlap: one attempt
+    /// counts how many do not, for the error message.
     fn worth_growing(&self, boats: usize) -> (usize, usize) {
         let full = self.area / self.hull.area();
         if boats as f64 <= LARGEST_COVER * full {
@@ -123,12 +123,12 @@ impl Region {
         region
     }
 
-    /// Takes as much of open water as gives the centers of boats an area in cm² besides what obstacles take up: about
-    /// the pool's center, and no farther than it has to.
+    /// Takes the smallest disc of open water, about the pool's center, that leaves the boats' centers an area in cm²
+    /// free of obstacles.
     fn enclose(&mut self, area: f64) {
         let inner = self.inner * self.inner;
         let share = |outer: f64| self.free_share(inner, outer * outer, self.hull.radius);
-        // To a rounding, and to a place of the survey.
+        // Up to rounding, and to the spacing of the survey's points.
         let suffices = |outer: f64| share(outer) * PI * (outer * outer - inner) >= 0.999 * area;
         let least = (area / PI + inner).sqrt();
         let (mut low, mut high) = (least, least);
@@ -153,7 +153,7 @@ impl Region {
         PI * (outer - inner) * self.free_share(inner, outer, 0.0)
     }
 
-    /// Part of the water between two squared radii that is so far from every obstacle, found at points spread evenly
+    /// Part of the water between two squared radii that is at least this far from every obstacle, sampled at points
     /// along a spiral.
     fn free_share(&self, inner: f64, outer: f64, clearance: f64) -> f64 {
         if self.obstacles.is_empty() {
@@ -170,13 +170,13 @@ impl Region {
         free.count() as f64 / f64::from(SURVEYED)
     }
 
-    /// Whether a point is so far from every obstacle.
+    /// Whether a point is at least this far from every obstacle.
     fn is_open(&self, point: Vec2, clearance: f64) -> bool {
         let mut obstacles = self.obstacles.iter();
         obstacles.all(|obstacle| obstacle.distance(point) >= clearance)
     }
 
-    /// A uniform place with a uniform heading.
+    /// A uniform position with a uniform heading.
     fn draw(&self, rng: &mut StreamRng) -> Pose {
         let square = rng.random_range(self.inner * self.inner..=self.outer * self.outer);
         let (radius, angle) = (square.sqrt(), rng.random_range(-PI..PI));
@@ -215,7 +215,7 @@ impl Region {
         clear
     }
 
-    /// Number of boats that, taken in order, overlap none before them.
+    /// Number of boats that overlap none before them in the order.
     fn count_disjoint(&self, poses: &[Pose]) -> usize {
         let mut placed: Vec<HullPose> = Vec::with_capacity(poses.len());
         for pose in poses {
@@ -235,8 +235,8 @@ fn by_rejection(
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Option<Vec<Pose>> {
-    // Random sequential addition of stadiums stalls near half the area; do not even start there. The
-    // quadratic search would also be slow for very large flocks, which growing handles.
+    // Adding stadiums at random stalls near half the area, so it is not tried there. Its quadratic search would also be
+    // slow for very large flocks, for which growing works.
     if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
@@ -264,7 +264,7 @@ fn by_growth(
 ) -> Vec<Pose> {
     let mut start = || loop {
         let pose = region.draw(rng);
-        // A hull that starts deep in an obstacle of open water would have far to go.
+        // A hull that starts deep inside an obstacle of open water would have to move far.
         if region.pool.has_outer_wall() || region.is_open(pose.position, region.hull.radius) {
             return pose;
         }

@@ -178,9 +178,9 @@ impl<T: Real> Recording<T> {
 /// Reason for a pause of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pause {
-    /// The work it was given is done; it can continue at any time.
+    /// The allowed amount of work is done; the run can continue at any time.
     Work,
-    /// A control step starts: [`Recorder::steer`] may give other rudder commands.
+    /// A control step starts: [`Recorder::steer`] may set other rudder commands.
     Control,
     /// The last sample is taken.
     End,
@@ -259,7 +259,7 @@ impl<T: Real> Recorder<T> {
         Ok(self)
     }
 
-    /// The same run with rudders that are held between control steps, from amidships.
+    /// The same run with rudders that are held between control steps; they start amidships (0).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a rate out of range.
@@ -299,8 +299,8 @@ impl<T: Real> Recorder<T> {
         Ok(())
     }
 
-    /// Continues for about this many substeps times boats, to the next control step, or to the end.
-    /// Where it pauses for its work changes nothing.
+    /// Continues for about this many substeps times boats, to the next control step, or to the end. Pauses do not
+    /// change the run.
     ///
     /// # Errors
     /// As for [`Flock::advance_to`] and [`Flock::change`].

@@ -26,7 +26,7 @@ struct Snapshot {
     motion: Checkpoint,
 }
 
-/// A snapshot as bytes hold it: the speed of the water follows if the water has inertia.
+/// The byte layout of a snapshot: the speed of the water follows if the water has inertia.
 struct Stored(Snapshot);
 
 impl Serialize for Stored {
@@ -119,7 +119,7 @@ impl Snapshot {
     }
 }
 
-/// A flock is stored as what its snapshot holds, under the seal of whatever it is a part of.
+/// A flock is stored like its snapshot, but under the seal of whatever contains it.
 impl Serialize for Flock {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
         Stored(self.state()).serialize(to)

@@ -50,7 +50,7 @@ impl Flock {
         !(pool.inner_radius_cm - width..=pool.outer_radius_cm + width).contains(&distance)
     }
 
-    /// Refuses boats that overlap an obstacle by more than the contacts leave of themselves.
+    /// Refuses boats that overlap an obstacle by more than contacts would leave.
     pub(super) fn refuse_overlapped_obstacles(&self) -> Result<()> {
         let allowed = self.overlap_of_contacts();
         refuse_overlap(&mut self.integrator.clone(), allowed, |contact| {
@@ -82,7 +82,7 @@ impl Flock {
         Ok(())
     }
 
-    /// Refuses other numbers of boats, and poses and velocities that a flock may not have.
+    /// Refuses a wrong number of boats, and poses and velocities that a flock may not have.
     fn check_boats(&self, poses: &[Pose], velocities: &[Velocity]) -> Result<()> {
         let n = self.parameters.n_boats;
         for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
@@ -122,7 +122,7 @@ fn time_from(time_s: f64) -> Result<Ticks> {
     Ok(ticks(time_s))
 }
 
-/// Refuses contacts that overlap by more than `allowed`, of those that count.
+/// Refuses contacts that overlap by more than `allowed`, among those that a filter selects.
 fn refuse_overlap(
     integrator: &mut Integrator,
     allowed: f64,

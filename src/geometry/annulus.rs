@@ -7,7 +7,7 @@ use super::{Gap, Hull, HullPose, cross, turned_left};
 pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64) -> Gap {
     let end = boat.end(side, hull.half_length);
     let distance = end.norm_squared().sqrt();
-    // At the very center every direction is as good; the gap is the whole radius there.
+    // At the very center all directions are equal, and the gap is the whole radius.
     let normal = if distance > 0.0 {
         end * (-1.0 / distance)
     } else {
@@ -31,7 +31,7 @@ pub fn inner_wall_gap(boat: &HullPose, hull: Hull, inner_radius: f64) -> Gap {
     let along = (-boat.center.dot(&boat.axis)).clamp(-h, h);
     let nearest = boat.center + boat.axis * along;
     let distance = nearest.norm_squared().sqrt();
-    // A core through the pool's center leaves to the side.
+    // If the core passes through the pool's center, the normal points to the side.
     let normal = if distance > 0.0 {
         nearest * (1.0 / distance)
     } else {

@@ -35,7 +35,7 @@ impl Hull {
         self.radius + self.half_length
     }
 
-    /// No point of the hull moves faster at this velocity, in cm/s.
+    /// Upper bound of the speed of all points of the hull at this velocity, in cm/s.
     #[inline]
     pub(crate) fn speed(&self, velocity: &Velocity) -> f64 {
         velocity.linear.norm_squared().sqrt() + self.half_length * velocity.angular.abs()
@@ -56,8 +56,8 @@ impl Hull {
     }
 }
 
-/// The radius of gyration in cm that boats have with a resized hull: in the same ratio to that of a
-/// hull of even mass. Unchanged for sizes that are not accepted.
+/// The radius of gyration in cm after a hull is resized: its ratio to that of a hull of even mass stays. For sizes that
+/// are not accepted it is unchanged.
 pub fn resized_gyration_radius_cm(
     parameters: &FlockParameters,
     boat_radius_cm: f64,
@@ -133,12 +133,12 @@ impl HullPose {
     }
 }
 
-/// Sines and cosines to some 1e-16, the same on every machine: without its mathematical library, and without
-/// branches. The polynomials on [−π/4, π/4] are those of Cephes (Moshier 1989).
+/// Sine and cosine to some 1e-16, the same on every machine: computed without the system's mathematical library, and
+/// without branches. The polynomials on [−π/4, π/4] are those of Cephes (Moshier 1989).
 #[inline]
 fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let number = f64x4::splat;
-    // Adding and subtracting this rounds to a whole number, and leaves it in the lowest bits.
+    // Adding this rounds to a whole number, which the lowest bits then hold; subtracting it gives the number.
     let rounding = number(6_755_399_441_055_744.0);
     let shifted = angle * number(std::f64::consts::FRAC_2_PI) + rounding;
     let quarters = shifted - rounding;
@@ -162,7 +162,7 @@ fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let cos = cos * z - number(1.388_888_888_887_305_6e-3);
     let cos = cos * z + number(4.166_666_666_666_659_5e-2);
     let cos = number(1.0) - number(0.5) * z + z * z * cos;
-    // Odd quarters swap the two; the second and third turn the sine's sign, the first and second the cosine's.
+    // Odd quarters swap sine and cosine. The second and third flip the sine's sign, the first and second the cosine's.
     let turn = shifted.to_bits();
     let (sin, cos) = (sin.to_bits(), cos.to_bits());
     let (one, two) = (u64x4::splat(1), u64x4::splat(2));

@@ -1,10 +1,10 @@
 //! Signed gaps between hulls (negative = overlap), with the normal and lever arms that make a gap a
 //! linear constraint on velocities.
 //!
-//! Two hulls overlap exactly if a core segment's end comes closer than 2r to the other core, or if
-//! the cores cross. The four ends fall into two groups, those towards the stern and those towards the
-//! bow of the first hull; the ends of a group describe the same touch, and the nearer of them counts.
-//! That leaves at most two contacts a pair, both of them when hulls lie nearly parallel.
+//! Two hulls overlap if and only if an end of one core comes closer than 2r to the other core, or the cores cross. The
+//! four ends fall into two groups, those towards the stern and those towards the bow of the first hull; the ends of a
+//! group describe the same touch, and the nearer of them counts. That leaves at most two contacts a pair, both of them
+//! when hulls lie nearly parallel.
 
 use super::{Hull, HullPose, Vec2, cross, smaller, turned_left};
 
@@ -36,9 +36,9 @@ pub enum Feature {
     Stern,
     /// Towards the bow.
     Bow,
-    /// Where the core crosses another one; the gap is how far they must be moved apart.
+    /// At the crossing with another core; the gap is how far they must be moved apart.
     Crossed,
-    /// Anywhere along the hull, at a disc or the inner wall, which it touches once.
+    /// Anywhere along the hull: a disc or the inner wall touches it only once.
     Flank,
 }
 
@@ -46,7 +46,7 @@ impl Feature {
     /// Both ends of a hull.
     pub const ENDS: [Self; 2] = [Self::Stern, Self::Bow];
 
-    /// The end: −1 at the stern, +1 at the bow; `None` for a contact at no end.
+    /// The end: −1 at the stern, +1 at the bow; `None` for a contact that is at neither.
     #[inline]
     pub fn side(self) -> Option<f64> {
         match self {
@@ -130,8 +130,8 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Nearest points for an end of hull a. If end meets end, both hulls' ends describe the gap. With `once`, only the
-    /// first hull's does, and only if neither end could slide nearer.
+    /// Nearest points for an end of hull a. If end meets end, both ends describe the gap. With `once` only the first
+    /// hull's end does, and only if neither end could slide nearer.
     fn end_of_a(&self, side: f64, once: bool) -> Option<Touch> {
         let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
         let along_b = side * h * self.cosine - self.apart_b;
@@ -150,7 +150,7 @@ impl<'a> Pair<'a> {
     }
 
     /// The nearest points of the group of ends on one side of hull a.
-    // Part of its callers: elsewhere touches would pass through memory.
+    // Inlined into its callers: otherwise touches would pass through memory.
     #[inline(always)]
     fn nearest_towards(&self, side: f64) -> Option<Touch> {
         let follows = if self.cosine >= 0.0 { side } else { -side };
@@ -173,8 +173,7 @@ impl<'a> Pair<'a> {
         smaller(of_a, of_b)
     }
 
-    /// Whether the cores cross, or come so near where groups of ends have these squared distances that it makes no
-    /// difference.
+    /// Whether the cores cross, or come so near (squared distances of both groups of ends) that it makes no difference.
     #[inline]
     fn are_crossed(&self, squares: [f64; 2]) -> bool {
         let lengths = self.hull_a.half_length + self.hull_b.half_length;
@@ -237,7 +236,7 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let Some(side) = feature.side() else {
         return crossed_gap(a, hull_a, b, hull_b);
     };
-    // Where no end of the group faces the other hull any more, its own end still has a distance.
+    // If no end of the group faces the other hull any more, the hull's own end still has a distance.
     let touch = pair
         .nearest_towards(side)
         .or_else(|| pair.end_of_a(side, false));
@@ -302,8 +301,8 @@ pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the other's line, plus the
-/// distance that makes the hulls touch. Where it is inlined, gaps that are not crossed take longer.
-// Arguments in registers: tuples would be stored for each pair, crossed or not.
+/// distance that makes the hulls touch. Not inlined: that would slow down gaps that are not crossed. Arguments are in
+/// registers: tuples would be stored for each pair, crossed or not.
 #[cold]
 fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
     let (h_a, h_b) = (hull_a.half_length, hull_b.half_length);

@@ -1,5 +1,5 @@
-//! Neighbor list: pairs of boats that may touch soon, with a skin, rebuilt when boats have moved by half of
-//! it. The list is a function of the centers it was built from, so a snapshot keeps those.
+//! Neighbor list: pairs of boats that may touch soon. It has a skin, and is rebuilt when boats have moved by half of
+//! that. The list is a function of the centers it was built from, so a snapshot keeps those.
 
 use super::Vec2;
 
@@ -150,7 +150,8 @@ impl NeighborList {
     }
 }
 
-/// A number that grows with the polar angle in (−π, π], in [−2, 2]: along the unit square on its corner.
+/// A number in [−2, 2] that grows with the polar angle in (−π, π]: the position along a square that stands on its
+/// corner.
 fn turn(center: &Vec2) -> f64 {
     let length = center.x.abs() + center.y.abs();
     if length == 0.0 {
@@ -184,7 +185,7 @@ impl Grid {
             high = high.sup(center);
         }
         let extent = high - low;
-        // In open water boats may drift far apart: never more than about four cells a boat.
+        // In open water boats may drift far apart, so there are at most about four cells per boat.
         let most = 4.0 * centers.len() as f64;
         self.cell = cutoff
             .max((extent.x * extent.y / most).sqrt())

@@ -71,7 +71,7 @@ impl Obstacle {
         matches!(self, Self::Wall { .. })
     }
 
-    /// Where it ends, and the direction from there into it: at its start, and at its end. A disc has no end.
+    /// Its two ends, each with the direction from there into the wall. A disc has none.
     fn ends(&self) -> Option<[(Vec2, Vec2); 2]> {
         let Self::Wall {
             pose, half_length, ..
@@ -168,7 +168,7 @@ impl Obstacle {
     }
 }
 
-/// Tells walls with an end in common of each other; of several, of the one that turns off least.
+/// Links walls that share an end; if several do, the one that turns off least.
 fn join(obstacles: &mut [Obstacle]) {
     let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
     for (number, obstacle) in obstacles.iter().enumerate() {

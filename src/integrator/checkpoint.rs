@@ -13,7 +13,7 @@ pub(crate) struct Checkpoint {
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
-    /// Contacts of the last substep that carried an impulse; before an advance also those that did not.
+    /// Contacts of the last substep that carried an impulse; a checkpoint before an advance holds the others, too.
     pub warm_start: Vec<CachedImpulse>,
     /// Centers that the neighbor list was built from, and within which distance.
     pub neighbor_reference: (Vec<Vec2>, f64),
@@ -22,14 +22,14 @@ pub(crate) struct Checkpoint {
     /// Speed of water with inertia in cm/s, which a snapshot stores last and only with inertia.
     #[serde(skip)]
     pub water_cm_s: f64,
-    /// Divisor of impulses that gives forces, in s.
+    /// Time in s by which impulses are divided to give forces.
     pub step_length_s: f64,
     /// Running statistics.
     pub statistics: Statistics,
 }
 
 impl Integrator {
-    /// The motion as it is, to return to.
+    /// The present motion, to return to.
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);
@@ -37,7 +37,7 @@ impl Integrator {
         checkpoint
     }
 
-    /// Writes the motion as it is over a checkpoint, whose memory is used again.
+    /// Overwrites a checkpoint with the present motion, and reuses its memory.
     pub(crate) fn save(&self, into: &mut Checkpoint) {
         into.poses.clone_from(&self.poses);
         into.velocities.clone_from(&self.velocities);

@@ -7,11 +7,11 @@ use crate::contact::{Divisibility, Motion, NotTaken};
 
 /// Part of `dt_s` below which no substep is cut because its contacts would drive boats, or take too much work.
 const SHORTEST_SHARE: f64 = 1.0 / 16.0;
-/// The same for overlaps that it leaves.
+/// The same for a substep that leaves overlaps.
 const SHORTEST_OVERLAPPING_SHARE: f64 = 1.0 / 256.0;
 
 impl Integrator {
-    /// For which reasons a substep of this length may be cut for the sake of its contacts.
+    /// Reasons for which the contacts may cut a substep of this length.
     pub(super) fn divisibility(&self, dt: f64) -> Divisibility {
         Divisibility {
             if_driven: dt > SHORTEST_SHARE * self.parameters.dt_s,
@@ -19,7 +19,7 @@ impl Integrator {
         }
     }
 
-    /// Turns free velocities into velocities that respect the contacts of a substep; whether there are any.
+    /// Turns free velocities into velocities that respect the contacts of a substep; returns whether there are any.
     ///
     /// # Errors
     /// [`NotTaken`].

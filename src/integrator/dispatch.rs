@@ -7,10 +7,10 @@ use crate::clock::{TICKS_PER_SECOND, Ticks};
 use crate::contact::NotTaken;
 use crate::parameters::Scheme;
 
-/// Speeds below this, in cm/s or rad/s, count as rest. Drag alone would never end: their squares, and in the end they
-/// themselves, are so small that processors take ten times as long over each.
+/// Speeds below this, in cm/s or rad/s, count as rest. Drag alone never ends. Squares of such speeds, and at last the
+/// speeds, become so small that processors take ten times as long for each.
 const REST: f64 = 1e-150;
-/// Time between two checks for boats to bring to rest.
+/// Time between two checks for boats that can be set to rest.
 const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
 
 impl Integrator {

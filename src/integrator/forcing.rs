@@ -7,7 +7,7 @@ use crate::boat::{Drive, misalignment, steering_law};
 use crate::geometry::{Vec2, turned_left};
 
 impl Integrator {
-    /// Preferred speed in a phase, in cm/s, before the spread between boats.
+    /// Preferred speed in a phase, in cm/s, without the spread between boats.
     fn phase_speed(&self, is_leader: bool, phase: Phase) -> f64 {
         let p = &self.parameters;
         let speed = match phase {
@@ -76,9 +76,9 @@ impl Integrator {
         self.fill_water(ahead_s, |state, boat| state.velocities[boat].linear);
     }
 
-    /// Sets the water in `drives` a time after the present velocities, as boats with the given velocities move it:
-    /// counter-clockwise with the speed −κ·(mean tangential velocity of the boats), capped (Section 4.5), which water
-    /// with inertia approaches exponentially.
+    /// Sets the water in `drives` to its state some time after the present velocities, if boats with the given
+    /// velocities drive it. It moves counter-clockwise at −κ·(mean tangential velocity of the boats), capped (Section
+    /// 4.5). Water with inertia approaches that speed exponentially.
     pub(super) fn fill_water(&mut self, ahead_s: f64, velocity: impl Fn(&Self, usize) -> Vec2) {
         if self.parameters.current_gain == 0.0 && self.water_cm_s == 0.0 {
             return;
@@ -90,7 +90,7 @@ impl Integrator {
         }
     }
 
-    /// Speed of the water in cm/s that boats with these velocities would keep up.
+    /// Speed in cm/s at which boats with these velocities would keep the water.
     fn driven_water(&self, velocity: impl Fn(&Self, usize) -> Vec2) -> f64 {
         let sum: f64 = (0..self.poses.len())
             .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
@@ -99,7 +99,7 @@ impl Integrator {
         (-self.parameters.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap)
     }
 
-    /// Speed of the water in cm/s after it has followed what drives it for a time.
+    /// Speed of the water in cm/s after it has followed the driven speed for a time.
     fn water_after(&self, seconds: f64) -> f64 {
         let relaxation_s = self.parameters.current_relaxation_s;
         if relaxation_s == 0.0 {

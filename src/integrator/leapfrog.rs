@@ -12,8 +12,8 @@ use crate::clock::seconds;
 use crate::contact::{InverseInertia, NotTaken};
 use crate::geometry::{Vec2, Velocity};
 
-/// Part of `dt_s` below which a kick does not show what contacts press with: impulses that close small
-/// overlaps do not shrink with it. The kick before stands for it then.
+/// Kicks below this part of `dt_s` do not show the force of contacts: impulses that close small overlaps do not shrink
+/// with the kick. The previous kick is used instead.
 const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
@@ -46,7 +46,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     Ok(())
 }
 
-/// Replaces preferred speed and rudder by their means over the kick where the substep before had others.
+/// Replaces preferred speed and rudder by their means over the kick if they changed since the last substep.
 fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     let last_phase = Phase::ALL[flock.last.phase];
     let last_rudder = std::mem::take(&mut flock.last.rudder);
@@ -71,8 +71,8 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     flock.last.rudder = last_rudder;
 }
 
-/// Replaces the water by that which the boats move in the middle of the kick: taken from velocities
-/// half a kick old, it would cost the scheme its second order.
+/// Replaces the water by its state in the middle of the kick: computed from velocities half a kick old, it would make
+/// the scheme first order.
 fn center_water(flock: &mut Integrator, kick: f64) {
     flock.fill_water(0.5 * kick, |flock, boat| {
         let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
@@ -102,7 +102,7 @@ fn centered_velocities(flock: &mut Integrator, kick: f64) {
         last,
         ..
     } = flock;
-    // A copy, which nothing that is written below can change.
+    // A local copy: the compiler then knows that no write below changes it.
     let motion = *motion;
     let linear = motion.linear_mobility(kick);
     free.resize(drives.len(), Velocity::default());

@@ -5,7 +5,7 @@ use super::substep::Substep;
 use crate::clock::seconds;
 use crate::contact::NotTaken;
 
-/// Free velocities by explicit Euler, contacts on them, then poses with the *new* velocities.
+/// Explicit Euler gives free velocities, contacts change them, and poses move with the *new* velocities.
 pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
     let dt = seconds(substep.length);
     flock.draw_substep_noise(substep);

@@ -23,8 +23,8 @@ impl Phase {
         self as usize
     }
 
-    /// Whether a time is analyzed that lies so long after the phase started and before it ends: the second half of
-    /// fw and the first half of the drift after it (Section 4).
+    /// Whether a time is analyzed, given the time since its phase started and the time until it ends: the second half
+    /// of fw and the first half of the drift after it (Section 4).
     fn is_analyzed<T: PartialOrd>(self, elapsed: T, left: T) -> bool {
         match self {
             Self::Forward => elapsed >= left,
@@ -34,8 +34,8 @@ impl Phase {
     }
 }
 
-/// Whether each of some increasing times (s) lies in the analysis window, of which only the phases then are known
-/// (slices of equal length). A phase lasts until the next one starts, the last until the end of the recording.
+/// Whether each of some increasing times (s) lies in the analysis window, if only the phase at each is known (slices of
+/// equal length). A phase lasts until the next one starts, the last until the end of the recording.
 pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     let mut analyzed = Vec::with_capacity(times_s.len());
     for samples in phases.chunk_by(|a, b| a == b) {
@@ -50,7 +50,7 @@ pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     analyzed
 }
 
-/// Phase at a time, with the times since and until its switches.
+/// Phase at a time, with the time since it started and the time until the next switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PhaseMoment {
     /// The phase that holds from this time on.

@@ -31,7 +31,7 @@ pub(crate) struct Integrator {
     pub(crate) last: LastSubstep,
     /// Speed in cm/s of water with inertia at the time of the velocities, counter-clockwise positive; 0 without inertia.
     pub(crate) water_cm_s: f64,
-    /// Speed in cm/s that this substep's boats would keep up in the water.
+    /// Speed in cm/s at which this substep's boats would keep the water.
     pub(super) driven_water_cm_s: f64,
     pub(crate) statistics: Statistics,
     /// Length of the last change of velocity in s: what impulses are divided by to give forces.
@@ -86,7 +86,7 @@ impl Integrator {
         }
     }
 
-    /// Takes whole substeps of another length from now on, on the present noise paths.
+    /// From now on takes substeps of another length, on the present noise paths.
     pub(crate) fn set_step(&mut self, dt_s: f64) {
         self.parameters.dt_s = dt_s;
         self.contacts.set_whole_substep(dt_s);

@@ -30,7 +30,7 @@ pub(crate) struct Substep<'a> {
 /// Snapshots store the fields in this order.
 #[derive(Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LastSubstep {
-    /// Its length; 0 if there was none since the state was set.
+    /// Length of that substep; 0 if there was none since the state was set.
     pub length: Ticks,
     /// The phase it lay in.
     pub phase: usize,
@@ -47,7 +47,7 @@ impl Clone for LastSubstep {
         copy
     }
 
-    // A flock is saved before every advance: without allocations.
+    // Saved before every advance, so it must not allocate.
     fn clone_from(&mut self, source: &Self) {
         self.length = source.length;
         self.phase = source.phase;

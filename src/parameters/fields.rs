@@ -6,8 +6,8 @@ use super::{Disc, Noise, Pool, Scheme, Solver, Target, Targets, Value, Wall, obs
 use crate::error::{FlockError, Result};
 
 declare_fields! {
-    /// Everything that defines a flock, by default the preset `simulation`. Fields are public to read and to build
-    /// with; [`FlockParameters::check`] runs once wherever a flock is made from them.
+    /// Everything that defines a flock, by default the preset `simulation`. Fields are public, to read and to
+    /// construct; [`FlockParameters::check`] runs once whenever a flock is made from them.
     pub struct FlockParameters;
 
     /// Number of boats, leaders included (Table 3: n).

@@ -31,7 +31,7 @@ impl Physics {
     ///
     /// Source: the cheapest setting of `docs/speed_vs_error.md` whose order parameters lie within three
     /// standard errors of the reference's, and the longest substep that divides a control step of 0.1 s; for
-    /// publications half the default substep, so that its error is a quarter.
+    /// publications half the default substep, so that the error is a quarter.
     pub fn stepping(self) -> Option<(f64, f64)> {
         match self {
             Self::Default => None,
@@ -56,8 +56,8 @@ impl Preset {
     /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
     /// disordered level. `None` for a pool in which it has not been measured.
     ///
-    /// Source: `studies/critical_noise`, results version 1, and 2 of the experiment (8 seeds of 30 minutes every
-    /// 0.05 s, of the experiment every 0.2 s), rounded to 0.01 s.
+    /// Source: `studies/critical_noise`, rounded to 0.01 s: results version 1 with 8 seeds of 30 minutes every 0.05 s;
+    /// for the experiment version 2, every 0.2 s.
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
             (Self::Simulation, "wide") => Some(0.31),

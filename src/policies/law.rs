@@ -41,7 +41,7 @@ enum Origin {
 }
 
 impl NamedLaw {
-    /// Whether it is another law in each pool.
+    /// Whether the law differs between pools.
     pub fn is_of_pool(&self) -> bool {
         matches!(self.origin, Origin::OfPool(_))
     }
@@ -125,7 +125,7 @@ impl Law {
         found.ok_or_else(unknown)?.law(pool)
     }
 
-    /// Refuses the law at every substep, which no leader can follow from its observation.
+    /// Refuses the law at every substep, which cannot be followed from observations.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
@@ -160,7 +160,7 @@ impl Law {
         self.leaning().map_or(Ok(()), LeaningLaw::check)
     }
 
-    /// The damped law that it steers by, if it does.
+    /// The damped law by which it steers, if any.
     fn damped(&self) -> Option<&DampedLaw> {
         match self {
             Self::Damped(law) => Some(law),
@@ -168,7 +168,7 @@ impl Law {
         }
     }
 
-    /// The leaning law, which looks at lean features, if it is one.
+    /// The leaning law if it is one: such a law reads lean features.
     pub(super) fn leaning(&self) -> Option<&LeaningLaw> {
         match self {
             Self::Leaning(law) => Some(law),

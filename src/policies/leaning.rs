@@ -51,14 +51,14 @@ pub struct LeaningLaw {
     /// Its judgment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
-    /// The damped law that steers to the heading; `None`: leaders choose rudders. A file says so: without gains it is
-    /// not whole.
+    /// The damped law that steers to the heading; `None`: leaders choose rudders. A file has to say so explicitly: one
+    /// without `gains` is incomplete.
     #[serde(deserialize_with = "Option::deserialize")]
     pub gains: Option<DampedLaw>,
     /// Bound of the lean.
     pub bound: Bound,
-    /// For how many s a lean or a rudder is held, a whole number of control steps; `None`: one control step. Leans that
-    /// are held are steered to with the gains tuned in the pool, as by the action mode "lean".
+    /// For how many s a lean or a rudder is held, a whole number of control steps; `None`: one control step. If leans
+    /// are held, the gains must be those tuned in the pool, as for the action mode "lean".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decision_period_s: Option<f64>,
     /// Lean in rad, or rudder, where every feature has its usual value.
@@ -120,8 +120,8 @@ mod by_feature {
     }
 }
 
-/// The pretrained leaders, by the name of their pool: those that the rule of `baselines/pretrained.py` lets ship.
-/// Source: `studies/trainings`, results version 5.
+/// The pretrained leaders, by the name of their pool: those that ship by the rule of `baselines/pretrained.py`. Source:
+/// `studies/trainings`, results version 5.
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {

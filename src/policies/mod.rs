@@ -1,5 +1,4 @@
-//! Leaders that steer by themselves: laws, what a law does for leaders that are observed, and pilots, which lead a
-//! flock by a law.
+//! Laws that steer leaders, their evaluation from observations, and pilots, which lead a flock by a law.
 
 mod law;
 mod leaning;

@@ -46,8 +46,8 @@ impl ObservedLaw {
         self.size
     }
 
-    /// The action for one observation, mirrored as the observation is: a rudder, or a lean if the law holds leans. It
-    /// depends on nothing else, such as other observations of a batch.
+    /// The action for one observation: a rudder, or a lean if the law holds leans. It is mirrored if the observation
+    /// is. It depends on nothing else, such as other observations of a batch.
     pub fn action(&self, observation: &[f32]) -> f64 {
         let lean = self.law.leaning().zip(self.features);
         let lean = lean.map_or(0.0, |(law, index)| {

@@ -17,12 +17,13 @@ pub struct Pilot {
     period: u32,
     /// Control steps since the last decision.
     held: u32,
-    /// How far each leader's heading leans outward, in rad; the rudder for a clockwise target where the law chooses it.
+    /// How far each leader's heading leans outward, in rad; or its rudder for a clockwise target, if the law chooses
+    /// rudders.
     leans: Vec<f64>,
     views: Views,
 }
 
-/// Reader of flocks with some parameters.
+/// Reads courses from flocks with certain parameters.
 #[derive(Debug, Clone)]
 struct Views {
     parameters: FlockParameters,
@@ -46,8 +47,8 @@ impl Pilot {
     /// For a flock with these checked parameters and a number of control steps per second.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are no whole number of
-    /// control steps apart, or that has no decisions, as at every substep.
+    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are not a whole number
+    /// of control steps apart, or that acts at every substep.
     pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
         law.check_reads_observations()?;
         law.check()?;
@@ -66,7 +67,7 @@ impl Pilot {
     /// The leaders' rudders for the control step that starts now, positive counter-clockwise.
     ///
     /// # Errors
-    /// As for [`Self::new`], where the flock has other parameters than before.
+    /// As for [`Self::new`], if the flock's parameters have changed.
     pub fn rudders(&mut self, flock: &Flock) -> Result<Vec<f64>> {
         if *flock.parameters() != self.views.parameters {
             self.views = Views::new(&self.law, flock.parameters())?;
@@ -99,8 +100,8 @@ impl Pilot {
         }
     }
 
-    /// From now on each leader's heading leans so far outward of its target's tangent, in rad in any turn; a leaning law
-    /// decides that by itself.
+    /// From now on each leader's heading leans outward of its target's tangent by this angle in rad, which need not be
+    /// wrapped. A leaning law decides its lean itself.
     pub fn lean_to(&mut self, leans: impl IntoIterator<Item = f64>) {
         for (lean, wanted) in self.leans.iter_mut().zip(leans) {
             *lean = wanted;

@@ -144,7 +144,7 @@ pub(super) fn ordering_time_s(
     Ok(ordering_time(&times, &orders, within))
 }
 
-/// Whether each of some times (s) lies in the analysis window, by the phases then: names, shape (t,).
+/// Whether each of some times (s) lies in the analysis window, given the phase at each: names, shape (t,).
 #[pyfunction]
 pub(super) fn sampled_analysis_window<'py>(
     py: Python<'py>,
@@ -182,7 +182,7 @@ pub(super) fn lap_orientation<'py>(
     rows_of(py, angles.collect(), samples.shape().1)
 }
 
-/// Velocities (t·n, 3) of tracked boats with times of shape (t, n), and how many steps were too fast for one.
+/// Velocities (t·n, 3) of tracked boats with times of shape (t, n), and the number of steps that were too fast.
 #[pyfunction]
 pub(super) fn track_velocities<'py>(
     py: Python<'py>,

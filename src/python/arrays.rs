@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyInt;
 
-/// Greatest depth to which NumPy stacks sequences.
+/// Most axes that NumPy makes of nested sequences.
 const MOST_AXES: usize = 64;
 
 /// The shape of an array of any library.
@@ -50,8 +50,8 @@ fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
 }
 
 /// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item by
-/// item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may claim more
-/// numbers than fit memory.
+/// item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may stand for more
+/// numbers than memory can hold.
 struct Numbers {
     values: Vec<f64>,
     are_whole: bool,
@@ -70,7 +70,7 @@ impl Numbers {
         Err(wrong_shape(name, &found, &shape_text(expected)))
     }
 
-    /// Reads a part of that shape; false if it has another one.
+    /// Reads a part of that shape; returns false if its shape differs.
     fn read(&mut self, part: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<bool> {
         if let Some(found) = array_shape(part) {
             return Ok(found == shape && self.read_array(part, name)?);
@@ -160,8 +160,8 @@ pub(super) fn flat_actions<'py>(
     Ok(PyArray1::from_vec(actions.py(), values))
 }
 
-/// Rows times a matrix plus a bias. Each row is summed alone and in one order; a product of matrices rounds a row by
-/// its index.
+/// Rows times a matrix plus a bias. Each row is summed alone and in one order; a matrix product would round a row
+/// differently at another index.
 #[pyfunction]
 pub(super) fn linear<'py>(
     rows: PyReadonlyArray2<'py, f32>,

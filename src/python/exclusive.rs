@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, T
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// An object that says so, instead of waiting, if another thread is at work with it.
+/// An object that reports an error, instead of waiting, if another thread is using it.
 #[derive(Debug)]
 pub(super) struct Exclusive<T> {
     object: RwLock<T>,
@@ -52,7 +52,7 @@ impl<T> Exclusive<T> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
-/// going; Python handles signals in the calling thread alone: this one checks for them whenever it asks, and the others
+/// going. Python handles signals only in the calling thread: that thread checks for them when it asks, and the others
 /// read its result.
 pub(super) fn interruptible<T: Send>(
     py: Python<'_>,

@@ -322,7 +322,7 @@ impl PyFrameRenderer {
     #[new]
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let side = |object, name| {
-            // A number beyond 32 bits is as far out of range as the largest one within.
+            // A number beyond 32 bits is as much out of range as the largest one within.
             Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);

@@ -12,8 +12,8 @@ pub(super) struct PyParameters(pub(super) FlockParameters);
 
 #[pymethods]
 impl PyParameters {
-    /// Others, or a preset by name, with some fields changed. A hull of another size has a radius of gyration in the
-    /// same ratio to that of a hull of even mass, unless it is given.
+    /// Other parameters, or a preset by name, with some fields changed. If the hull is resized, the radius of gyration
+    /// scales with it, unless it is given.
     #[new]
     fn new(base: &Bound<'_, PyAny>, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
         let base = match base.cast::<Self>() {
@@ -43,7 +43,7 @@ impl PyParameters {
     }
 }
 
-/// Those that a `flockenv.FlockParameters` holds.
+/// The parameters that a `flockenv.FlockParameters` holds.
 impl<'py> FromPyObject<'_, 'py> for FlockParameters {
     type Error = PyErr;
 

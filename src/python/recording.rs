@@ -31,8 +31,8 @@ pub(super) struct Plan<'py> {
 }
 
 /// The steering of a run: a law, or a function of the signs of the leaders' targets (k,) and their observations (k, size), one for
-/// each layout, that returns rudders (k,). It does so at every control step, or without a rate at every substep, which only
-/// the law for it can.
+/// each layout, that returns rudders (k,). It is called at every control step. Without a rate the law for every substep
+/// steers; no function can.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(super) struct Control<'py> {
@@ -99,7 +99,7 @@ fn recorded<'py, T: Real + Element>(
     let statistics = recorder.flock().statistics().named_of_steps();
     let columns = columns(py, recorder.into_recording())?;
     columns.set_item("statistics", statistics)?;
-    // The error carries the recording until then.
+    // The error carries the recording up to this point.
     run.or_else(|error| error.value(py).setattr("columns", &columns).and(Err(error)))?;
     Ok(columns)
 }

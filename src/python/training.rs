@@ -53,7 +53,7 @@ impl PyTrainer {
         Ok(PyBytes::new(py, &self.0.read()?.to_bytes()))
     }
 
-    /// Takes up to so many more branches of pairs.
+    /// Takes up to this many more branches of pairs.
     fn advance(&self, py: Python<'_>, branches: usize) -> PyResult<()> {
         let mut trainer = self.0.write()?;
         let trainer = &mut *trainer;

@@ -1,7 +1,7 @@
 //! Brownian paths that can be read at any time, from keyed normal draws.
 //!
-//! The noise is keyed, not consumed: a draw is a function of (seed, boat, time), so two policies or two control rates
-//! on one seed meet the same noise, and a snapshot needs to hold no generator.
+//! The noise is keyed, not consumed: a draw is a function of (seed, boat, time). So two policies or two control rates
+//! meet the same noise if the seed is the same, and a snapshot holds no generator.
 
 use super::normal::{Ziggurat, scramble};
 use super::streams::{Stream, StreamRng};
@@ -32,18 +32,18 @@ impl KeyedNormals {
     }
 }
 
-/// Halvings of a cell. Below that each time has a draw of its own.
+/// Halvings of a cell. Below that, each time has its own draw.
 const HALVINGS: u32 = 10;
 
 /// A Brownian path per boat, readable at any time: the same path however the time axis is cut.
 ///
 /// Time is counted in half ticks. The axis is divided in cells of one full substep; the increment
-/// over a whole cell is one draw. Inside of a cell the path follows from Brownian bridges: a bisection
-/// down to leaves of 1/1024 of the cell, then one bridge across the leaf with a draw keyed by the time.
+/// over a whole cell is one draw. Within a cell the path follows from Brownian bridges: bisection down to leaves of
+/// 1/1024 of the cell, then one bridge across the leaf, with a draw keyed by the time.
 ///
-/// The path is a function of time, so increments over parts add up to the whole. Increments have the exact joint
-/// law of Brownian motion while no two of their ends lie inside of the same leaf. The bridges of two such
-/// ends are independent: the variance of the increment between them exceeds its length by at most half a leaf's.
+/// The path is a function of time, so increments over parts add up to the whole. Increments have the exact joint law of
+/// Brownian motion as long as no two of their ends lie in the same leaf. The bridges of two such ends are independent,
+/// so the variance of the increment between them is too large, by at most half a leaf's length.
 #[derive(Debug, Clone)]
 pub struct BrownianPaths {
     normals: KeyedNormals,
@@ -51,14 +51,14 @@ pub struct BrownianPaths {
     cell_length: u64,
     /// Cell j covers [j·length − shift, (j + 1)·length − shift).
     shift: u64,
-    /// Most increments start where the one before ended.
+    /// Most increments start where the previous one ended.
     last: Reading,
     /// Scratch: the paths at both ends of an interval, one value per boat.
     low: Vec<f64>,
     high: Vec<f64>,
 }
 
-/// The paths at a place inside of a cell.
+/// The paths at a point within a cell.
 #[derive(Debug, Clone)]
 struct Reading {
     /// The cell, and how many half ticks after its start; `None` before anything was read.
@@ -79,7 +79,7 @@ impl BrownianPaths {
         Self::from_keys(Stream::NOISE.rng(seed), boats, cell_length, shift)
     }
 
-    /// As [`Self::new`], with keys from a stream of one's own.
+    /// As [`Self::new`], with keys from another stream.
     pub(crate) fn from_keys(keys: StreamRng, boats: usize, cell_length: u64, shift: u64) -> Self {
         let zeros = vec![0.0; boats];
         Self {
@@ -163,7 +163,7 @@ impl BrownianPaths {
         high.copy_from_slice(whole);
         let (mut start, mut end, mut node) = (0, self.cell_length, 1_u64);
         loop {
-            // Nodes of the bisection come first, then times.
+            // Keys of the bisection's nodes come first, then keys of times.
             let (middle, key) = if node < 1 << HALVINGS {
                 (start + (end - start) / 2, node)
             } else {

@@ -6,7 +6,7 @@
 use std::sync::LazyLock;
 
 const LAYERS: usize = 256;
-/// Where the lowest layer's tail begins: the value for which the uppermost layer ends at x = 0.
+/// Start of the lowest layer's tail: the value for which the uppermost layer ends at x = 0.
 const TAIL: f64 = 3.654_152_885_361_009;
 
 /// Right edges of the layers and the density there, from the bottom up. The first edge is that of a rectangle
@@ -74,7 +74,7 @@ impl Ziggurat {
         (layer, share * self.0.edges[layer])
     }
 
-    /// Where a place is not certainly under the curve.
+    /// For a position that is not certain to lie under the curve.
     #[cold]
     #[inline(never)]
     fn beyond_layer(self, mut layer: usize, mut x: f64, mut word: u64) -> f64 {

@@ -41,19 +41,19 @@ pub(super) struct Pair {
 pub(super) struct Outcome {
     /// Sum over offsets of the offset times the features of its decisions, in both flocks.
     pub tried: Features,
-    /// Order of the flock with the offsets less that of the one with the opposite ones, summed over decisions.
+    /// Order of the flock with the offsets less that of the flock with the opposite offsets, summed over decisions.
     pub difference: f64,
     /// Features of each offset's decisions, mean of both flocks.
     pub features: Vec<Features>,
     /// Mean order of both.
     pub order: f64,
-    /// Whether a substep of either left an overlap deeper than the tolerance.
+    /// Whether a substep of either flock left an overlap deeper than the tolerance.
     pub is_unsolved: bool,
-    /// Deepest overlap of either since its start, in cm.
+    /// Deepest overlap of either flock since its start, in cm.
     pub worst_overlap_cm: f64,
 }
 
-/// One of both flocks after its branch.
+/// One of the two flocks after its branch.
 struct Side {
     features: Vec<Features>,
     order: f64,
@@ -191,8 +191,8 @@ impl Task {
         })
     }
 
-    /// Writes the actions of a decision, the law's and the offsets tried then, and adds what leaders see to the
-    /// features of these offsets.
+    /// Writes the actions of a decision, the law's plus the offsets, and adds the leaders' observations to the features
+    /// of these offsets.
     fn decide(
         &self,
         law: &LeaningLaw,

@@ -1,5 +1,5 @@
-//! Training of leaders in paired branches: two flocks that start from one state and meet one noise differ only by what
-//! their leaders try.
+//! Training of leaders in paired branches: two flocks start from the same state and meet the same noise, so that they
+//! differ only by their leaders' actions.
 
 mod branch;
 mod regression;

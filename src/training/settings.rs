@@ -46,8 +46,8 @@ declare_fields! {
 /// Numbers of decisions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decisions {
-    /// In a branch, in a hold, in the part of a hold that features are averaged over, in all holds, and before the
-    /// order counts.
+    /// Number of decisions in a branch, in a hold, in the part of a hold over which features are averaged, in all
+    /// holds, and before the order counts.
     pub branch: usize,
     pub hold: usize,
     pub seen: usize,

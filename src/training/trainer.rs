@@ -143,8 +143,8 @@ impl Trainer {
             .map(move |(round, &order)| (hours * f64::from(round), order))
     }
 
-    /// Branches of whole rounds: all, and those in which a flock left an overlap deeper than the tolerance; then the
-    /// deepest overlap of all flocks in cm.
+    /// Number of branches in whole rounds, of those in which a flock left an overlap deeper than the tolerance, and the
+    /// deepest overlap in cm.
     pub fn overlaps(&self) -> (u64, u64, f64) {
         let branches = self.memory.orders.len() * self.task.settings.pairs;
         let Memory {
@@ -155,7 +155,7 @@ impl Trainer {
         (branches as u64, unsolved, worst_overlap_cm)
     }
 
-    /// Takes up to so many more branches of pairs, and a step where a round is over.
+    /// Takes up to this many more branches of pairs, and a step of the weights when a round is over.
     ///
     /// # Errors
     /// [`FlockError::Interrupted`] where `keep_going` said no, and those of the flocks; nothing has changed then.
@@ -245,12 +245,12 @@ impl Trainer {
             let period = Some(settings.decision_period_s);
             return LeaningLaw::new(pool, None, period, &numbers(1.0));
         }
-        // Leans that are not held lead better than those of the training.
+        // The law decides at every control step: it leads better than with the held leans of the training.
         let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
         LeaningLaw::new(pool, Some(gains), None, &numbers(LARGEST_LEAN))
     }
 
-    /// The training between two rounds as bytes; of the round under way the branches are taken again.
+    /// The training after its last whole round as bytes; branches of an unfinished round are taken again.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Task {
             settings,

@@ -32,7 +32,7 @@ pub(super) struct BlockPivoting {
     rights: Vec<f64>,
     /// The islands that no closed form solves.
     left: Vec<u32>,
-    /// Where each boat is among the bodies of an island that is being built; [`NONE`] between two.
+    /// Index of each boat in the island that is being built; all [`NONE`] otherwise.
     indices: Vec<u32>,
 }
 
@@ -138,7 +138,7 @@ impl BlockPivoting {
     }
 
     /// Solves the islands that are left.
-    // Not part of its caller: a jam took 0.4 % more instructions so.
+    // Not inlined: that cost a jam 0.4 % more instructions.
     #[inline(never)]
     fn solve_left(
         &mut self,

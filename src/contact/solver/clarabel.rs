@@ -1,5 +1,5 @@
-//! The interior-point solver clarabel on the primal quadratic program. An independent check: it
-//! stops at residuals of 1e-4 to 1e-7 cm/s, which are reported as they are.
+//! The interior-point solver clarabel on the primal quadratic program. An independent check: it stops at residuals of
+//! 1e-4 to 1e-7 cm/s, and reports them.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};

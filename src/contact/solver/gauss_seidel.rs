@@ -41,7 +41,7 @@ pub(super) fn solve(
             }
         }
     }
-    // Running updates gather rounding; the reported residual is that of the velocities handed out.
+    // Running updates accumulate rounding errors; the residual is computed from the velocities that are returned.
     problem.velocities(impulses, velocities);
     report.residual = problem.natural_residual(impulses, velocities);
     report.converged = report.residual <= EXACT;

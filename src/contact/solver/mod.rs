@@ -29,8 +29,8 @@ pub struct SolveReport {
     pub islands: u64,
 }
 
-/// About how many multiplications the contacts of a whole substep may take, and how many more per boat, whatever shorter
-/// ones it is cut into. A densely packed flock takes a hundredth, while it is placed; in the water it takes less.
+/// About how many multiplications the contacts of a whole substep may take, and how many more per boat, even if it is
+/// cut into shorter ones. A densely packed flock takes a hundredth of that while it is placed, and less once it moves.
 const MOST_WORK: i64 = 1_000_000_000;
 const MOST_WORK_A_BOAT: i64 = 500_000;
 
@@ -45,7 +45,7 @@ pub struct ContactSolver {
     /// The numbers of all islands.
     all: Vec<u32>,
     pivoting: BlockPivoting,
-    /// The work of a whole substep, and the part of it that the present contacts may not use.
+    /// The work budget of a whole substep, and the part of it that the present contacts may not use.
     most_work: i64,
     kept_back: i64,
     /// Work of the earlier substeps.
@@ -66,7 +66,7 @@ impl ContactSolver {
             islands: Islands::default(),
             all: Vec::new(),
             pivoting: BlockPivoting::new(1e-13),
-            // Without a bound until a substep comes.
+            // Unbounded until the first substep sets a budget.
             most_work: 0,
             kept_back: 0,
             work_before: i64::MAX,
@@ -76,7 +76,7 @@ impl ContactSolver {
         }
     }
 
-    /// An exact solver in which every contact gives way by `regularization`·A_kk·λ_k, so that contradicting constraints
+    /// An exact solver in which every contact yields by `regularization`·A_kk·λ_k, so that contradicting constraints
     /// are met as well as possible.
     pub(crate) fn regularized(regularization: f64) -> Self {
         Self {
@@ -115,7 +115,7 @@ impl ContactSolver {
         (self.pivoting.budget, self.kept_back) = (budget, 0);
     }
 
-    /// Limits the next contacts to a small part of the budget, if easier ones can stand in for them.
+    /// Limits the next contacts to a small part of the budget if easier contacts can replace them.
     pub(crate) fn give_up_early(&mut self, easier_possible: bool) {
         let budget = self.pivoting.budget + self.kept_back;
         let spare = (budget - self.most_work / 16).max(0);

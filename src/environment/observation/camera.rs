@@ -1,5 +1,5 @@
-//! The camera between flock and leaders: frames with drop-outs, and one frame late, as in the experiment
-//! (0.3 % of the boats were not recognized in a frame, Section 3.1). Off by default and free then.
+//! The camera between flock and leaders: its frames miss boats and come one frame late, as in the experiment (0.3 % of
+//! the boats were not recognized in a frame, Section 3.1). It is off by default, and then costs nothing.
 
 use super::view::FlockView;
 use crate::analysis::OrderParameters;
@@ -18,8 +18,7 @@ pub(crate) struct Lens {
 }
 
 impl Lens {
-    /// A lens that loses boats at a rate and is some frames late; `None` if the picture does not differ from the
-    /// flock at all.
+    /// A lens that loses boats at a rate and is some frames late; `None` for a perfect picture.
     pub(crate) fn new(dropout_rate: f64, delay_frames: usize) -> Option<Self> {
         let lens = Self {
             dropout_rate,
@@ -80,7 +79,7 @@ impl Camera {
         camera.restored(lens, seed, leaders)
     }
 
-    /// The camera whose frames were stored, with that lens and for the episode of that seed.
+    /// The camera with stored frames, given its lens and its episode's seed.
     pub(crate) fn restored(mut self, lens: Lens, seed: u64, leaders: usize) -> Self {
         (self.lens, self.seed) = (lens, seed);
         self.develop(leaders);

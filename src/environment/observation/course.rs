@@ -44,8 +44,8 @@ impl CourseReader {
         })
     }
 
-    /// The course about a heading that leans by an angle (rad) outward of the target's tangent, in the observation's
-    /// own sense if it is mirrored.
+    /// The course relative to a heading that leans by an angle (rad) outward of the target's tangent; mirrored if the
+    /// observation is.
     pub fn course(&self, observation: &[f32], outward: f64) -> Course {
         let read = |index: usize| f64::from(observation[index]);
         let target = self.target.map_or(1.0, read);
@@ -65,7 +65,7 @@ impl CourseReader {
     }
 }
 
-/// Reads leaders' courses from a flock in view, with the bits of one who reads them from observations.
+/// Reads leaders' courses from a flock in view, to the same bits as from observations.
 #[derive(Debug, Clone)]
 pub struct CourseView {
     reader: CourseReader,
@@ -86,7 +86,7 @@ impl CourseView {
         })
     }
 
-    /// The course of a leader about a heading that leans by an angle (rad) outward of its target's tangent,
+    /// The course of a leader relative to a heading that leans by an angle (rad) outward of its target's tangent,
     /// counter-clockwise positive.
     pub fn course(&self, view: &FlockView, leader: usize, outward: f64) -> Course {
         let frame = LapFrame::at(view.poses[leader].position);

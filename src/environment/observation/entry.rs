@@ -18,8 +18,9 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// In words. Radii are those of the centers of boats that touch the walls; where a pool has no inner wall its center
-    /// is -1, and in open water +1 is 40 boat radii farther. The speed is the faster of the two preferred ones.
+    /// In words. The bounds are the centers of boats that touch the walls. Without an inner wall -1 is the pool's
+    /// center, and in open water +1 is 40 boat radii farther than -1. The speed is the faster of the two preferred
+    /// ones.
     pub fn description(self) -> &'static str {
         match self {
             Self::Plain => "1",
@@ -56,7 +57,8 @@ pub(crate) fn speed_scale_cm_s(parameters: &FlockParameters) -> f64 {
     if fastest > 0.0 { fastest } else { 15.0 }
 }
 
-/// As [`Scale::description`] says.
+/// Gain and offset of a distance from the pool's center: -1 at the inner wall and +1 at the outer one, as
+/// [`Scale::description`] says.
 fn radial(parameters: &FlockParameters) -> (f64, f64) {
     let (pool, radius) = (parameters.pool, Hull::new(parameters).radius);
     let inner = if pool.has_inner_wall() {

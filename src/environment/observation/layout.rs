@@ -5,7 +5,8 @@ use super::entry::{BOAT, CLOCK, Entry};
 use crate::error::{FlockError, Result};
 use crate::parameters::{Kind, Setting, Value, wrong_kind};
 
-/// Version of the observation: of the entries, their order, scales and bounds. A policy needs the version in its file.
+/// Version of the observation: of the entries, their order, scales and bounds. A policy runs only with the version in
+/// its file.
 pub const OBSERVATION_VERSION: u32 = 1;
 
 /// The most neighbors, and the most obstacles, that a leader may observe.

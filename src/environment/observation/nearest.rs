@@ -1,5 +1,5 @@
-//! The nearest boats of leaders. A processor cannot predict which boats are near. So no branch depends on it: a wrong
-//! prediction costs more than the arithmetic for all boats.
+//! The nearest boats of leaders. A processor cannot predict which boats are near, and a wrong prediction costs more
+//! than the arithmetic for all boats. So no branch depends on distances.
 
 use crate::geometry::HullPose;
 use wide::f64x4;
@@ -8,17 +8,16 @@ use wide::f64x4;
 const AT_ONCE: usize = 4;
 /// Up to this many boats are found and sorted without branches.
 const FEW: usize = 16;
-/// Where a leader's boats were found by its last observation, they are looked for within this times the square of the
-/// farthest one's distance.
+/// Boats are looked for within the farthest distance of the leader's last search; its square is multiplied by this.
 const GROWTH: f64 = 1.1;
 
 /// Finds the nearest boats, with its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
-    /// Squared distances of every boat from the leaders at hand; that of a leader from itself is infinite.
+    /// Squared distances of every boat from the present leaders; a leader's distance from itself is infinite.
     squares: Vec<[f64; AT_ONCE]>,
-    /// Squared distances, at most slightly too large, within which each leader had the wanted number of boats in its
-    /// last search.
+    /// Squared distances within which each leader had the wanted number of boats in its last search; they may be
+    /// slightly too large.
     limits: Vec<f64>,
     /// A leader's nearest boats, in front.
     found: Vec<u32>,
@@ -100,7 +99,7 @@ impl Nearest {
         let smallest = &mut smallest[..wanted];
         for &squares in &self.squares {
             let mut square = f64x4::new(squares);
-            // In ascending order: a square that is displaced moves to the next slot.
+            // Kept in ascending order: a displaced square moves to the next slot.
             for kept in &mut *smallest {
                 (*kept, square) = (kept.fast_min(square), kept.fast_max(square));
             }

@@ -12,7 +12,8 @@ use crate::parameters::FlockParameters;
 /// Observations of a flock's leaders without an environment, one after another, given the rudders as they stand.
 ///
 /// # Errors
-/// As for [`Observer::new`], and [`crate::FlockError::Parameter`] where the layout has the order of no boat.
+/// As for [`Observer::new`], and [`crate::FlockError::Parameter`] if the layout has the order of normal boats and there
+/// are none.
 pub fn observe_flock(
     flock: &Flock,
     layout: ObservationLayout,
@@ -41,8 +42,8 @@ impl Observer {
     /// For a checked layout and checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for blocks that are not made for the flock, such as `lean_features` in a
-    /// pool in which they are not standardized.
+    /// [`crate::FlockError::Parameter`] for blocks that cannot serve the flock, such as `lean_features` in a pool in
+    /// which they are not standardized.
     pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         let scaling = Scaling::new(entries, parameters);

@@ -1,4 +1,4 @@
-//! Islands of one and two contacts, which need no guess and no factor.
+//! Islands of one or two contacts, which need no guess and no factor.
 
 use super::rows::{TOLERANCE, residual};
 use super::{BlockPivoting, EXACT, SolveReport};
@@ -9,7 +9,7 @@ use crate::geometry::Velocity;
 const INDEPENDENT: f64 = 1e-6;
 
 impl BlockPivoting {
-    /// One contact pushes as much as it would overlap.
+    /// A single contact pushes just enough not to overlap.
     pub(super) fn solve_alone(
         &self,
         problem: &ContactProblem,
@@ -36,8 +36,8 @@ impl BlockPivoting {
         }
     }
 
-    /// Two contacts push both, or one of them does; returns whether that was solved. Where the two depend on each
-    /// other, or a regularized problem is to give way, it is left to pivoting.
+    /// Solves two contacts, of which both push or one does; returns whether it did. It leaves two contacts that depend
+    /// on each other, and regularized problems, to pivoting.
     pub(super) fn solve_two(
         &self,
         problem: &ContactProblem,

@@ -1,6 +1,6 @@
-//! The way out where pivoting cycles: contacts whose normals nearly depend on each other make the
-//! matrix as good as singular, and signs after a pivot are then those of rounding. (Murty's single
-//! pivots, the usual way out, rely on those signs too, and cycle as well.)
+//! The fallback if pivoting cycles: contacts whose normals nearly depend on each other make the matrix almost singular,
+//! and the signs after a pivot are then due to rounding. (Murty's single pivots, the usual fallback, rely on those
+//! signs, too, and also cycle.)
 //!
 //! Lawson and Hanson's active-set method (1974) on the dual ½·λᵀ·A·λ + bᵀ·λ over λ ≥ 0. Impulses stay
 //! non-negative and every step lowers the dual, so that no active set comes twice.
@@ -9,7 +9,7 @@ use super::island_solver::{IslandSolver, SWEPT_ROWS};
 use super::rows::{Row, TOLERANCE};
 use crate::contact::solver::{EXACT, SolveReport};
 
-/// Impulses (times A_kk, in cm/s) that only constraints which contradict each other demand.
+/// Larger impulses (times A_kk, in cm/s) come only from constraints that contradict each other.
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
@@ -25,8 +25,8 @@ impl IslandSolver {
         }
     }
 
-    /// Descends from impulses that push, or from none; returns whether that solves the island. Contacts enter
-    /// together if some push already, and one by one otherwise.
+    /// Descends from the given impulses, or from zero; returns whether that solves the island. Contacts enter together
+    /// if some push already, and one by one otherwise.
     fn descend_from(
         &mut self,
         mut held: Vec<f64>,
@@ -38,7 +38,7 @@ impl IslandSolver {
         if is_warm {
             self.approach(&mut held, regularization, report);
         }
-        // A contact that would have to pull as soon as it enters depends on the active ones.
+        // If a contact would have to pull as soon as it enters, it depends on the active ones.
         let mut is_refused = vec![false; count];
         let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
@@ -113,9 +113,8 @@ impl IslandSolver {
             .map(|(k, _)| k)
     }
 
-    /// Goes from `held` towards the impulses that close all active gaps, dropping contacts whose
-    /// impulse vanishes on the way, until it gets there; returns how far the first step went, in (0, 1],
-    /// or 0 if it could not be taken.
+    /// Goes from `held` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes on
+    /// the way; returns how far the first step went, in (0, 1], or 0 if it could not be taken.
     fn approach(&mut self, held: &mut [f64], regularization: f64, report: &mut SolveReport) -> f64 {
         let mut first = None;
         loop {
@@ -128,7 +127,7 @@ impl IslandSolver {
             for (k, held) in held.iter_mut().enumerate() {
                 let target = self.rows.rows[k].impulse;
                 *held = (*held + step * (target - *held)).max(0.0);
-                // At a step below 1 this drops at least the contact that stopped it.
+                // If the step is below 1, this drops at least the contact that stopped it.
                 let is_active = self.rows.rows[k].is_active;
                 if is_active && target <= 0.0 && *held <= 1e-14 * (1.0 + target.abs()) {
                     self.set_active(k, false);
@@ -141,7 +140,7 @@ impl IslandSolver {
         }
     }
 
-    /// The largest part of the way from `held` to the impulses on which none turns negative.
+    /// The largest part of the way from `held` to the impulses before one turns negative.
     fn feasible_step(&self, held: &[f64]) -> f64 {
         let pairs = self.rows.rows.iter().zip(held);
         pairs

@@ -1,14 +1,14 @@
 //! The sparse factor A_FF = L·D·Lᵀ of an island's active rows F, row by row.
 //!
-//! A row of L has entries where its elimination tree says (Liu 1990): at the rows that it shares a boat with
-//! and their ancestors before it. The rows on one boat all share it, so they are ancestors of each other, and
-//! a row's entries lie on the paths from the first row on either of its boats. A change of F changes the rows
-//! that enter or leave and their ancestors, and no others.
+//! The elimination tree says where a row of L has entries (Liu 1990): at the rows with which it shares a boat, and at
+//! their ancestors before it. The rows on one boat all share it, so they are ancestors of each other, and a row's
+//! entries lie on the paths from the first row on either of its boats. A change of F changes only the rows that enter
+//! or leave, and their ancestors.
 
 use super::rows::{NONE, Row, Rows, WALLS};
 
-/// Entries come in groups of this many, filled up with zeros: rows hold two or three, and loops whose length
-/// the processor cannot foresee cost more than the arithmetic.
+/// Entries come in groups of this many, padded with zeros: rows have two or three, and loops of unpredictable length
+/// cost more than the arithmetic.
 const GROUP: usize = 2;
 
 /// Rows of fewer entries cost too little to be counted.
@@ -33,7 +33,7 @@ struct Node {
     parent: u32,
     is_factored: bool,
     is_dirty: bool,
-    /// The active row before on either body, times two, plus the side on which that row has it.
+    /// The previous active row on either body, times two, plus the side on which that row has the body.
     before: [u32; 2],
     inverse_pivot: f64,
 }
@@ -78,7 +78,8 @@ pub(super) struct Factor {
     pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
-    /// A row that is being computed; zero between two rows, of other islands too, and always zero beyond the rows.
+    /// The row that is being computed. It is zero between two rows, also of different islands, and always beyond the
+    /// rows.
     work: Vec<f64>,
 }
 
@@ -206,7 +207,7 @@ impl Factor {
             a = if a == column { above } else { a };
             b = if b == column { above } else { b };
         }
-        // Rounding may eat a pivot that only regularization keeps positive.
+        // Rounding may cancel a pivot that only regularization keeps positive.
         let least = 0.5 * regularization * rows[k].diagonal;
         nodes[k].inverse_pivot = 1.0 / if pivot > least { pivot } else { least };
         self.finish(k, count);
@@ -244,7 +245,7 @@ impl Factor {
 
     /// Puts row k's couplings with the active rows before it to `work`.
     fn add_couplings(&mut self, rows: &[Row], k: usize) {
-        // Cut to one length, so that one bounds check serves all three.
+        // Slices of one length, so that one bounds check covers all three.
         let (nodes, work) = (&self.nodes[..rows.len()], &mut self.work[..rows.len()]);
         let row = &rows[k];
         for side in 0..2 {
@@ -257,7 +258,8 @@ impl Factor {
         }
     }
 
-    /// Solves A_FF·x = x in place, for active rows; others hold zeros, and there is one more place at the end.
+    /// Solves A_FF·y = x for the active rows and stores y in x. Other rows hold zeros, and x has one more entry at the
+    /// end.
     pub(super) fn solve(&self, x: &mut [f64]) {
         x[self.nodes.len()] = 0.0;
         for &k in &self.active {

@@ -36,7 +36,7 @@ pub(super) struct IslandSolver {
 }
 
 impl IslandSolver {
-    /// Lays out the rows of some contacts with the free velocities of their boats, unless they are.
+    /// Lays out the rows of some contacts with the free velocities of their boats, unless that has been done.
     pub(super) fn build(
         &mut self,
         problem: &ContactProblem,
@@ -60,7 +60,7 @@ impl IslandSolver {
     }
 
     /// Takes on the free velocities of boats.
-    // Bodies have theirs as they are built, and few solves come with others.
+    // Bodies are built with theirs, and few solves change them.
     #[cold]
     pub(super) fn set_free(&mut self, problem: &ContactProblem) {
         for body in &mut self.rows.bodies[1..] {
@@ -91,9 +91,9 @@ impl IslandSolver {
         report.residual = self.worst_residual(regularization, report.residual);
     }
 
-    /// Whether these rows are certain to depend on each other: no set of rows that solves an island needs more of them
-    /// than its boats have ways to move, and each round with more fills the whole factor. A regularized problem shares
-    /// impulses among all of them.
+    /// Whether these rows must depend on each other: an island never needs more rows than its boats have degrees of
+    /// freedom, and a round with more fills the whole factor. A regularized problem needs all, since it shares impulses
+    /// among them.
     fn are_dependent(&self, regularization: f64, is_in: impl Fn(&Row) -> bool) -> bool {
         let (rows, most) = (&self.rows.rows, self.most_active());
         rows.len() > most.max(SWEPT_ROWS)
@@ -153,7 +153,8 @@ impl IslandSolver {
         })
     }
 
-    /// Impulses that close exactly the active gaps, and the slacks of all; returns factored rows.
+    /// Computes impulses that close exactly the active gaps, and the slacks of all rows; returns the number of factored
+    /// rows.
     pub(super) fn solve_active(&mut self, regularization: f64) -> u64 {
         let computed = self.factor.update(&self.rows, regularization);
         for (value, row) in self.solution.iter_mut().zip(&mut self.rows.rows) {
@@ -164,8 +165,8 @@ impl IslandSolver {
         computed
     }
 
-    /// Regularization and rounding leave a remainder at the active contacts; another solve removes it. A
-    /// regularized problem is meant to give way. Returns whether there was anything to do.
+    /// Regularization and rounding leave a remainder at the active contacts; another solve removes it. A regularized
+    /// problem keeps it: it is meant to yield. Returns whether there was anything to do.
     pub(super) fn refine(&mut self, regularization: f64) -> bool {
         if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
             return false;

@@ -11,8 +11,7 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Index of the walls among an island's bodies: at rest, and nothing moves them.
 pub(super) const WALLS: u32 = 0;
 
-/// Violation of a row, from its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to give
-/// way.
+/// Violation of a row, from its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to yield.
 #[inline]
 pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
     let compliance = if regularization < TOLERANCE {
@@ -56,7 +55,7 @@ pub(super) struct Row {
 pub(super) struct Body {
     /// Its index in the flock; none for the walls.
     pub boat: u32,
-    /// Its velocity without contacts, and with.
+    /// Its velocity without contacts, and with contacts.
     pub free: Motion,
     pub velocity: Motion,
 }
@@ -120,7 +119,7 @@ impl Row {
         add(&mut bodies[second].velocity, &self.response[1], impulse);
     }
 
-    /// Whether the contact pulls, or overlaps although it carries nothing.
+    /// Whether the contact pulls, or overlaps without carrying an impulse.
     #[inline]
     pub(super) fn is_violated(&self) -> bool {
         let value = if self.is_active {
@@ -199,7 +198,7 @@ impl Rows {
         let Self { rows, bodies } = self;
         for _ in 0..sweeps {
             for row in rows.iter_mut() {
-                // Each row waits for the one before it, but not the division; and `f64::max` would take longer.
+                // Each row waits for the one before it, except for the division; `f64::max` would take longer.
                 let inverse = 1.0 / row.diagonal;
                 let (wanted, least) = (-row.slack(bodies) * inverse, -row.impulse);
                 let change = if wanted > least { wanted } else { least };

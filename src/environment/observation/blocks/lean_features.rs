@@ -16,12 +16,11 @@ pub const LEAN_FEATURES: usize = 29;
 /// The pools in which the features are standardized.
 const POOLS: [&str; 2] = ["wide", "narrow"];
 
-/// Standardized features are bounded by this; beyond are flocks far from those that were measured.
+/// Standardized features are clipped here: beyond lie flocks unlike those that were measured.
 const BOUND: f64 = 20.0;
 
-/// Usual values of the features, a row each: the mean and the standard deviation in each of [`POOLS`]. They are those of
-/// three leaders among 27 boats whom the tuned law steers at each pool's critical noise, after 20 s (a least deviation
-/// of 0.05 for one that hardly varies).
+/// Usual values of the features, a row each: the mean and the standard deviation in each of [`POOLS`]. Measured with
+/// three of 27 boats that the tuned law steers at each pool's critical noise, after 20 s. A deviation is at least 0.05.
 const USUAL: &str = include_str!("lean_features.csv");
 
 /// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.
@@ -81,7 +80,7 @@ fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
 
 /// The neighbors that the features look at.
 const SEEN_NEIGHBORS: usize = 6;
-/// Their first index in the view, that of the order parameters, and the end of those.
+/// Where the neighbors start in the view, where the order parameters start, and where these end.
 const NEIGHBORS: usize = OWN.len() + PHASE.len();
 const ORDERS: usize = NEIGHBORS + SEEN_NEIGHBORS * NEIGHBOR.len();
 const VIEW: usize = ORDERS + ORDER.len();
@@ -105,7 +104,7 @@ impl LeanFeatures {
     /// For checked parameters, standardized as is usual in a pool.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for pools in which they are not.
+    /// [`FlockError::Parameter`] for pools in which they are not standardized.
     pub fn standardized(parameters: &FlockParameters, pool: Option<&str>) -> Result<Self> {
         let index = Self::check_pool(pool)?;
         let neighbors = NEIGHBOR.iter().cycle();

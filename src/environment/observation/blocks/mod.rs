@@ -1,5 +1,5 @@
-//! The blocks of an observation. Each has a file with its entries and what writes their physical values, and is
-//! declared here: `mod` and one line of [`declare_blocks`].
+//! The blocks of an observation. Each has a file with its entries and the writer of their physical values, and is
+//! declared here: by `mod` and one line of [`declare_blocks`].
 
 mod lean_features;
 mod neighbors;
@@ -42,12 +42,12 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Anything that is made for a flock. Types with a default are made the same for every flock.
+/// Anything made for a flock. Types that implement `Default` are the same for every flock.
 trait MadeFor: Sized {
     /// Made for checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for flocks that it is not made for.
+    /// [`crate::FlockError::Parameter`] for flocks that it cannot serve.
     fn made_for(parameters: &FlockParameters) -> Result<Self>;
 }
 
@@ -104,7 +104,7 @@ macro_rules! declare_blocks {
             /// For a layout, which says how often each occurs, and checked parameters.
             ///
             /// # Errors
-            /// [`crate::FlockError::Parameter`] for flocks that one of the blocks is not made for.
+            /// [`crate::FlockError::Parameter`] for flocks that one of the blocks cannot serve.
             pub(super) fn new(repeats: impl Fn(Block) -> usize, parameters: &FlockParameters) -> Result<Self> {
                 Ok(Self { $($module: match repeats(Block::$block) {
                     0 => None,
