@@ -24,6 +24,19 @@ pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
     all.filter(|each| !matches!(each.formula, Formula::Structure(_)))
 }
 
+/// Present values of [`quantities`]; NaN for those that a flock without normal boats does not have.
+fn measured(flock: &Flock) -> impl Iterator<Item = f64> {
+    let recorded = flock.recorded(false).ok();
+    let order = flock.order_parameters(false).ok();
+    let target = flock.parameters().target.reference();
+    quantities()
+        .enumerate()
+        .map(move |(index, quantity)| match quantity.formula {
+            Formula::Derived(formula) => order.map_or(f64::NAN, |order| formula(&order, target)),
+            _ => recorded.map_or(f64::NAN, |recorded| recorded[index]),
+        })
+}
+
 /// Statistics that say whether overlaps stayed within the tolerance: names and values.
 pub(crate) fn statistics(of: &Statistics) -> Vec<(String, Value)> {
     match of.named_of_steps() {
@@ -182,9 +195,8 @@ impl Live {
         ] = &mut self.columns;
         time.push(flock.time_s());
         phase.push(flock.phase().phase.index() as f64);
-        analyzed.push(f64::from(u8::from(
-            flock.schedule().in_analysis_window(flock.time()),
-        )));
+        let is_analyzed = flock.schedule().in_analysis_window(flock.time());
+        analyzed.push(f64::from(u8::from(is_analyzed)));
         for pose in flock.poses() {
             poses.extend([pose.position.x, pose.position.y, pose.heading]);
         }
@@ -192,21 +204,7 @@ impl Live {
             velocities.extend([velocity.linear.x, velocity.linear.y, velocity.angular]);
         }
         rudders.extend(&now);
-        let (recorded, order) = (
-            flock.recorded(false).ok(),
-            flock.order_parameters(false).ok(),
-        );
-        let target = flock.parameters().target.reference();
-        series.extend(
-            quantities()
-                .enumerate()
-                .map(|(index, quantity)| match quantity.formula {
-                    Formula::Derived(formula) => {
-                        order.map_or(f64::NAN, |order| formula(&order, target))
-                    }
-                    _ => recorded.map_or(f64::NAN, |recorded| recorded[index]),
-                }),
-        );
+        series.extend(measured(flock));
         let counted = statistics(flock.statistics());
         *counts = counted.iter().map(|(_, value)| number(value)).collect();
         self.taken += 1;
