@@ -219,16 +219,22 @@ fn inertia_fades_with_the_relaxation_time() {
     }
 }
 
+/// Five boats that have moved water with inertia for 30 s: their parameters, the flock and the water's speed in cm/s.
+fn moved_water(scheme: Scheme) -> (FlockParameters, Flock, f64) {
+    let p = FlockParameters {
+        n_boats: 5,
+        ..inert(scheme, 0.5, 20.0)
+    };
+    let mut flock = ring(&p, 5, FRAC_PI_2);
+    flock.advance(30.0, None).expect("finite motion");
+    let water = flock.current_cm_s();
+    (p, flock, water)
+}
+
 #[test]
 fn water_with_inertia_runs_on_through_a_change_of_parameters() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            n_boats: 5,
-            ..inert(scheme, 0.5, 20.0)
-        };
-        let mut flock = ring(&p, 5, FRAC_PI_2);
-        flock.advance(30.0, None).expect("finite motion");
-        let water = flock.current_cm_s();
+        let (p, mut flock, water) = moved_water(scheme);
         assert!(water < -3.0, "{scheme:?}: {water}");
         let mut change = |current_gain, current_cap_cm_s, current_relaxation_s| {
             flock
@@ -252,13 +258,7 @@ fn water_with_inertia_runs_on_through_a_change_of_parameters() {
 #[test]
 fn water_runs_out_once_nothing_drives_it() {
     for scheme in SCHEMES {
-        let p = FlockParameters {
-            n_boats: 5,
-            ..inert(scheme, 0.5, 20.0)
-        };
-        let mut flock = ring(&p, 5, FRAC_PI_2);
-        flock.advance(30.0, None).expect("finite motion");
-        let water = flock.current_cm_s();
+        let (p, mut flock, water) = moved_water(scheme);
         let still = FlockParameters {
             current_gain: 0.0,
             ..p
