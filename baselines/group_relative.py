@@ -51,7 +51,7 @@ class Settings:
     #: Standard deviation of a weight that explores, and the first learning rate, which falls to 0.
     sigma: float = 0.1
     learning_rate: float = 2e-3
-    #: Passes over the decisions of all branches, in so many parts each.
+    #: Passes over the decisions of all branches, and parts of each pass.
     epochs: int = 4
     parts: int = 4
     clip_range: float = 0.2

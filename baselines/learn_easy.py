@@ -64,7 +64,7 @@ def orders(policy: Any, flocks: int) -> np.ndarray:
 
 
 class Curve(BaseCallback):
-    """Scores the mean policy every so many samples, against a law in the same flocks."""
+    """Scores the mean policy at regular intervals of samples, against a law in the same flocks."""
 
     def __init__(self, seed: int, samples: int, law: np.ndarray) -> None:
         super().__init__()

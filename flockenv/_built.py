@@ -26,9 +26,12 @@ def check() -> None:
 def _missing(stubs: str) -> str | None:
     """Return the first name of the stubs that the core lacks."""
     owner: object = _core
-    for of_class, is_method, function, constant in _DECLARED.findall(stubs):
-        owner = getattr(_core, of_class, None) if of_class else owner if is_method else _core
-        name: str = of_class or function or constant
-        if not name.startswith("_") and not hasattr(_core if of_class else owner, name):
+    for class_name, is_method, function, constant in _DECLARED.findall(stubs):
+        name: str = class_name or function or constant
+        if not is_method:
+            owner = _core
+        if not name.startswith("_") and not hasattr(owner, name):
             return name
+        if class_name:
+            owner = getattr(_core, class_name, None)
     return None

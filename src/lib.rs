@@ -21,7 +21,7 @@
 //! # Ok::<(), flockenv::FlockError>(())
 //! ```
 //!
-//! The folder `examples` has self-propelled rods in a dish, a steering law of one's own, and a batch of environments.
+//! The folder `examples` has self-propelled rods in a dish, a custom steering law, and a batch of environments.
 //!
 //! # Flow
 //! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →

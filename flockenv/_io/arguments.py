@@ -125,7 +125,7 @@ def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def series(values: object, name: str) -> NDArray[np.float64]:
-    """Return a sequence of numbers as an array, shape (n,); others are refused."""
+    """Return a sequence of numbers as an array, shape (n,); refuse anything else."""
     found = with_gaps(items(values, name), name)
     if found.ndim != 1:
         raise ParameterError(f"{name} has shape {found.shape}, expected (n,)")

@@ -72,7 +72,7 @@ TASK_IDS: Mapping[str, str] = {
 """The environment of each task."""
 
 TASKS: tuple[Case, ...] = tuple(_task(name, env_id) for name, env_id in TASK_IDS.items())
-"""The tasks, of which docs/suite.md says what each asks of leaders."""
+"""The tasks; docs/suite.md describes them."""
 
 
 def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:

@@ -51,7 +51,7 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
     "gelu": _gelu,
     "identity": lambda values: values,
 }
-"""Activations after a layer; "identity" is none."""
+"""Activations after a layer; "identity" stands for none."""
 
 Norm = tuple[ArrayLike, ArrayLike, float]
 """A layer's normalization, as torch's ``LayerNorm``: scale, shift, and what is added to the

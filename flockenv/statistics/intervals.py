@@ -29,8 +29,8 @@ CONFIDENCE = 0.95
 """Level of every interval."""
 
 FEW = 12
-"""Below so many values a mean has Student's interval: BCa intervals hold the mean of 4, 8 and 12
-normal values 80, 89 and 93 times of 100."""
+"""Below this number of values a mean has Student's interval: BCa intervals hold the mean of 4, 8
+and 12 normal values 80, 89 and 93 times of 100."""
 
 _BCA_RESAMPLES = 9999
 

@@ -119,7 +119,7 @@ class BranchTraining:
     def advance(self) -> None:
         """Take a round: a branch of every pair, and a step of the weights.
 
-        Ctrl-C ends it as if it had not begun.
+        If Ctrl-C ends it early, the training is as before the round.
         """
         self._core.advance(self.options["pairs"])
 

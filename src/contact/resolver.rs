@@ -405,7 +405,7 @@ impl ContactResolver {
         Solution::Overlapping
     }
 
-    /// Moves the boats to the end of a substep that was solved, if the prediction is of it.
+    /// Moves the boats to the end of the solved substep, if the prediction is up to date.
     pub(crate) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         self.predicted.take_end(poses, hulls)
     }

@@ -124,7 +124,7 @@ impl EnvBatch {
     /// As [`Self::step`], asking now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::step`]; [`FlockError::Interrupted`] where `keep_going` said no: all flocks have to be reset then.
+    /// As for [`Self::step`]; [`FlockError::Interrupted`] if `keep_going` said no: all flocks have to be reset then.
     ///
     /// # Panics
     /// As for [`Self::step`].
@@ -189,7 +189,7 @@ impl EnvBatch {
     /// As [`Self::reset`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::reset`]; [`FlockError::Interrupted`] where `keep_going` said no.
+    /// As for [`Self::reset`]; [`FlockError::Interrupted`] if `keep_going` said no.
     pub fn reset_while(
         &mut self,
         keep_going: KeepGoing,

@@ -23,7 +23,7 @@ named_choice! {
         /// minus psi_o*max(cos(phi_o), 0)*max(1 - psi_v/preferred speed, 0), in [-1, 0]; the same for all leaders
         Jam = "jam",
         /// tangential momentum that the leader's contacts gave to normal boats towards the target, sum of
-        /// impulse*(normal*tangent) over the step's length, in cm/s^2; 0 where no contact_... or touched_order has a
+        /// impulse*(normal*tangent) over the step's length, in cm/s^2; 0 if no contact_... or touched_order has a
         /// weight
         ContactPush = "contact_push",
         /// angular velocity that the leader's contacts gave to normal boats, each times the sine of the angle that the

@@ -35,7 +35,8 @@ declare_fields! {
     control_hz: f64 = 10.0, "1/s", Range::Within(0.1, 1000.0, "0.1 to 1000 control steps per second"), "chosen";
     /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned law steers, so that 0 is that law
     action_mode: ActionMode = ActionMode::Rudder, "", Range::Any, "chosen";
-    /// time in s from one decision to the next, a whole number of control steps, through which a step holds its action; None: one control step
+    /// time in s from one decision to the next, a whole number of control steps; the action is held meanwhile; None:
+    /// one control step
     decision_period_s: Option<f64> = None, "s", Range::Dependent("a whole number of control steps"), "chosen";
     /// bw_s of each episode, fixed or drawn uniformly from a range (low, high); None: the parameters' own
     bw_s: Option<Drawn> = None, "s", Range::NonNegative, "chosen";
@@ -49,7 +50,8 @@ declare_fields! {
     delay_frames: usize = 0, "", Range::Within(0.0, 1.0, "0 or 1"), "chosen";
     /// weights of the reward's terms, or a list of such weights, one per leader; terms that are not named weigh nothing
     reward: Weights = Weights::default(), "", Range::Any, "chosen";
-    /// time T in s: a control step's reward counts for its length over T, so that sums over T are means, of order one; None: each counts in full
+    /// time T in s: each control step's reward is weighted by its length over T, so that sums over T are means, of
+    /// order one; None: weight 1
     reward_horizon_s: Option<f64> = None, "s", Range::Positive, "chosen";
     /// number of levels of the discrete action, 2 to 1001; None: continuous
     rudder_levels: Option<usize> = None, "", Range::Within(2.0, 1001.0, "2 to 1001 choices, or none for continuous rudders"), "chosen";

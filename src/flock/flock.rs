@@ -56,7 +56,7 @@ impl Flock {
     /// As [`Self::new`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::new`]; [`FlockError::Interrupted`] where `keep_going` said no.
+    /// As for [`Self::new`]; [`FlockError::Interrupted`] if `keep_going` said no.
     pub fn new_while(
         keep_going: KeepGoing,
         parameters: FlockParameters,

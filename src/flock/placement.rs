@@ -37,7 +37,7 @@ const SURVEYED: u32 = 1024;
 ///
 /// # Errors
 /// [`FlockError::Placement`] if no placement without overlap was found, [`FlockError::Interrupted`]
-/// where `keep_going` said no.
+/// if `keep_going` said no.
 pub(super) fn place(
     parameters: &FlockParameters,
     seed: u64,
@@ -215,7 +215,7 @@ impl Region {
         clear
     }
 
-    /// Number of boats that overlap none before them in the order.
+    /// Number of boats that can be placed in turn without overlapping those already placed.
     fn count_disjoint(&self, poses: &[Pose]) -> usize {
         let mut placed: Vec<HullPose> = Vec::with_capacity(poses.len());
         for pose in poses {

@@ -230,7 +230,7 @@ impl<T: Real> Recorder<T> {
         })
     }
 
-    /// The same run, of which contacts are recorded too.
+    /// The same run with its contacts recorded, too.
     #[must_use]
     pub fn with_contacts(mut self) -> Self {
         self.recording.contacts = Some(ContactSamples::default());

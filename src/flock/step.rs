@@ -8,15 +8,15 @@ use crate::geometry::rms_distance;
 use crate::integrator::Steering;
 use crate::parameters::{FlockParameters, Noise};
 
-/// An error is the distance from where substeps lead that are so many times as short. Halves do not show it: an impact's
+/// The error is the distance from a run with substeps this many times shorter. Halves would not show it: an impact's
 /// error depends on when in its substep it happens, and that may be as wrong in both.
 const FINER: f64 = 8.0;
 /// The shortest substep in s.
 const SHORTEST_S: f64 = 1e-6;
 
 impl Flock {
-    /// Changes `dt_s` from now on. White noise keeps its paths: flocks that were made alike meet the same noise whatever
-    /// their steps.
+    /// Changes `dt_s` from now on. White noise keeps its paths: flocks made with the same parameters and seed meet the
+    /// same noise at any later step.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a step out of range; the flock is unchanged then.

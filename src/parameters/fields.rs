@@ -62,9 +62,9 @@ declare_fields! {
     dt_s: f64 = 0.02, "s", Range::Dependent("1e-6 to 1, to 0.1 for the schemes moreau and paper"), "chosen";
     /// Overlap that the paper scheme accepts without a projection.
     overlap_tolerance_cm: f64 = 0.01, "cm", Range::NonNegative, "chosen";
-    /// Deepest overlap that a substep may leave. Contacts that leave more are solved again from the gaps where their boats
-    /// end, then the substep is halved. Infinite: gaps are linearized once. The paper scheme leaves up to
-    /// overlap_tolerance_cm.
+    /// Deepest overlap that a substep may leave. Contacts that leave more are solved again from the gaps at the
+    /// substep's end; if that fails, the substep is halved. Infinite: gaps are linearized once. The paper scheme leaves
+    /// up to overlap_tolerance_cm.
     tolerance_cm: f64 = 1e-4, "cm", Range::Dependent("1e-10 or more, in a large pool 4e-15 of its outer radius; infinite: off"), "chosen";
     /// Constant rudder of the normal boats, positive turns counter-clockwise (Section 4.5); 0: off.
     turning_bias: f64 = 0.0, "", Range::Within(-1.0, 1.0, "a rudder in [-1, 1]"), "Section 4.5, off";
@@ -75,14 +75,14 @@ declare_fields! {
     current_gain: f64 = 0.0, "", Range::Within(0.0, 1.0, "0 (off) to 1"), "Section 4.5, off";
     /// Cap of that current's speed (Section 4.5).
     current_cap_cm_s: f64 = 5.0, "cm/s", Range::Positive, "Section 4.5 (3 to 5)";
-    /// Discs that stand in the water, a row (x_cm, y_cm, radius_cm) each; none: off. They may reach over the pool's
-    /// walls and overlap each other.
+    /// Discs that stand in the water, one row (x_cm, y_cm, radius_cm) per disc; none: off. They may reach over the
+    /// pool's walls and overlap each other.
     discs: Vec<Disc> = Vec::new(), "cm", Range::Dependent("up to 1000 rows (x_cm, y_cm, radius_cm) with a part in the water"), "chosen, off";
-    /// Straight walls without thickness in the water, a row (x0_cm, y0_cm, x1_cm, y1_cm) of their two ends each; none:
-    /// off. They may reach over the pool's walls and cross each other.
+    /// Straight walls without thickness in the water, one row (x0_cm, y0_cm, x1_cm, y1_cm) per wall with its two ends;
+    /// none: off. They may reach over the pool's walls and cross each other.
     walls: Vec<Wall> = Vec::new(), "cm", Range::Dependent("up to 1000 rows (x0_cm, y0_cm, x1_cm, y1_cm) with a part in the water"), "chosen, off";
-    /// Leaders' preferred speeds over those of the normal boats (Section 2.6: "similar"). The strength of their rudder is
-    /// c2, which no boat without a rudder has.
+    /// Leaders' preferred speeds as a multiple of the normal boats' (Section 2.6: "similar"). The strength of their
+    /// rudder is c2.
     leader_speed_factor: f64 = 1.0, "", Range::Within(0.0, 10.0, "0 to 10"), "Section 2.6 (similar speed and power)";
     /// Time in which the water current follows the flock: it approaches what `current_gain` sets exponentially, from
     /// rest; 0: it follows at once.

@@ -17,7 +17,7 @@ named_choice! {
 named_choice! {
     /// Resolution of an environment's physics.
     pub enum Physics ("physics") {
-        /// As the parameters have it.
+        /// The parameters' own substep and tolerance.
         Default = "default",
         /// Coarser, for training: fewer, longer substeps.
         Training = "training",

@@ -40,7 +40,7 @@ pub struct Judged {
 /// The damped law about a heading that leans outward of the target's tangent: by bias + Σ weight·feature in rad, where
 /// the features are the standardized lean features. Without gains the sum is the rudder itself, for a clockwise target.
 ///
-/// As it is stored: JSON, with the weights by the names of their features.
+/// The stored form: JSON, with weights by the names of their features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeaningLaw {

@@ -98,7 +98,7 @@ impl Numbers {
     fn read_array(&mut self, array: &Bound<'_, PyAny>, name: &str) -> PyResult<bool> {
         let py = array.py();
         let mask = array.getattr("mask");
-        // Others have a method of that name.
+        // Other types may have a method of that name.
         if let Ok(any) = mask.and_then(|mask| mask.call_method0("any"))
             && any.is_truthy()?
         {

@@ -44,7 +44,7 @@ fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
     }
 }
 
-/// Whether it is NumPy's complex number, of which extracting a float drops a part.
+/// Whether it is NumPy's complex number: extracting a float would drop the imaginary part.
 fn is_complex(object: &Bound<'_, PyAny>) -> bool {
     let kind = object
         .getattr("dtype")

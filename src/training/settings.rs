@@ -37,7 +37,7 @@ declare_fields! {
     offset: f64 = 0.33, "", Range::Within(1e-6, 1.0, "above 0, at most 1"), "chosen";
     /// root mean square of the change of an action by the first round, as a part of the largest one; it falls to 0
     step: f64 = 0.0167, "", Range::Within(1e-9, 1.0, "above 0, at most 1"), "chosen";
-    /// weight of the rounds before, which falls by this factor with each round
+    /// factor by which the weight of earlier rounds falls with each round
     memory: f64 = 0.93, "", Range::Within(0.0, 0.9999, "0 to 0.9999"), "chosen";
     /// ridge of the regression, as a part of the features' mean square
     ridge: f64 = 0.1, "", Range::Within(1e-6, 1e6, "1e-6 to 1e6"), "chosen";

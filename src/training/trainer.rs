@@ -158,7 +158,7 @@ impl Trainer {
     /// Takes up to this many more branches of pairs, and a step of the weights when a round is over.
     ///
     /// # Errors
-    /// [`FlockError::Interrupted`] where `keep_going` said no, and those of the flocks; nothing has changed then.
+    /// [`FlockError::Interrupted`] if `keep_going` said no, and those of the flocks; nothing has changed then.
     pub fn advance(&mut self, keep_going: KeepGoing, branches: usize) -> Result<()> {
         if self.has_ended() {
             return Ok(());

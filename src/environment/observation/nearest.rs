@@ -82,7 +82,7 @@ impl Nearest {
         }
     }
 
-    /// Sets the limits of the leaders at hand by their distances.
+    /// Sets the limits of the present leaders from their distances.
     fn set_limits(&mut self, first: usize, wanted: usize) {
         let limits = if wanted <= FEW {
             self.largest_of_smallest(wanted)
@@ -93,7 +93,7 @@ impl Nearest {
         self.limits[first..first + AT_ONCE].copy_from_slice(&limits);
     }
 
-    /// The largest of the `wanted` smallest squares, at most [`FEW`], for each leader at hand.
+    /// The largest of the `wanted` smallest squares, at most [`FEW`], for each of the present leaders.
     fn largest_of_smallest(&self, wanted: usize) -> f64x4 {
         let mut smallest = [f64x4::splat(f64::INFINITY); FEW];
         let smallest = &mut smallest[..wanted];

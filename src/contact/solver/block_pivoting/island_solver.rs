@@ -24,7 +24,7 @@ const SWEEPS: u32 = 2;
 pub(super) struct IslandSolver {
     pub rows: Rows,
     pub factor: Factor,
-    /// Whether the rows are those of the contacts at hand.
+    /// Whether the rows are those of the present contacts.
     pub is_built: bool,
     /// Whether the active rows are those of the substep before.
     is_guess_old: bool,
@@ -178,7 +178,7 @@ impl IslandSolver {
         true
     }
 
-    /// Adds the solution for the right-hand side at hand to the impulses, and brings slacks up to date.
+    /// Adds the solution for the present right-hand side to the impulses, and updates the slacks.
     #[inline(always)]
     fn add_solution(&mut self) {
         self.factor.solve(&mut self.solution);

@@ -191,8 +191,8 @@ impl Rows {
         *index
     }
 
-    /// Guesses which rows are active: those that push after sweeps of projected Gauss–Seidel, from the impulses at
-    /// hand. Most changes of one substep are local, so that two sweeps find them.
+    /// Guesses the active rows: those that push after sweeps of projected Gauss–Seidel from the present impulses. Most
+    /// changes of one substep are local, so that two sweeps find them.
     pub(super) fn sweep(&mut self, sweeps: u32) {
         self.set_velocities();
         let Self { rows, bodies } = self;
