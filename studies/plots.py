@@ -117,12 +117,12 @@ def seed_points(axes: Axes, found: Sequence[Row], x: str, **style: Any) -> None:
 
 
 def levels(axes: Axes, laws: Sequence[Row]) -> None:
-    """Draw what laws reach as bands as high as their intervals, their names at the left."""
+    """Draw what laws reach as bands as high as their intervals, their names at the left.
+
+    Names are in ink: colors of lines are too pale for letters, on light ground or on dark.
+    """
     for row in laws:
         name, (mean, low, high) = row["policy"], numbers(row)
         axes.axhspan(low, high, color=COLORS[name], alpha=0.2, lw=0)
         axes.axhline(mean, color=COLORS[name], lw=1.5)
-        axes.annotate(
-            name, (0.0, mean), (4, 3), axes.get_yaxis_transform(), "offset points",
-            color=COLORS[name],
-        )  # fmt: skip
+        axes.annotate(name, (0.0, mean), (4, 3), axes.get_yaxis_transform(), "offset points")

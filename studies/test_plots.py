@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 
 from docs.scripts import dark
@@ -19,6 +20,7 @@ from docs.scripts.plots import (
     letters_px,
 )
 from studies import make
+from studies.plots import levels
 from studies.study import DENSITIES
 
 STUDIES = Path(__file__).parent
@@ -28,6 +30,7 @@ PLOTS = {
     if name.endswith("/draw")
 }
 DARK = dict(dark.plots())
+LAWS = ("damped law", "paper's law", "tuned law")
 EVERY = [(folder, name) for folder, plots in PLOTS.items() for name in plots]
 
 
@@ -104,6 +107,31 @@ def test_a_phone_scrolls_no_picture_of_the_first_page():
     assert len(shown) == 2
     for name in shown:
         assert letters_px(STUDIES / name, PHONE_PX) >= LEAST_LETTERS_PX, name
+
+
+def luminance(rgb: np.ndarray) -> float:
+    """Return the relative luminance of a color as WCAG 2 defines it."""
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["light", "dark"])
+def test_names_of_laws_are_read_on_light_ground_and_on_dark(tmp_path, turned):
+    """The orange of the tuned law had a contrast of 2.2 on paper, and of 3.5 in the dark."""
+    figure = Figure()
+    levels(
+        figure.subplots(),
+        [{"policy": name, "signed_order": "0.4", "low": "0.3", "high": "0.5"} for name in LAWS],
+    )
+    names = figure.axes[0].texts
+    assert [each.get_text() for each in names] == [*LAWS]
+    for each in names:
+        inks = np.array([[mpl.colors.to_rgb(each.get_color()), (1.0, 1.0, 1.0)]])
+        file = tmp_path / "inks.png"
+        Image.fromarray((255 * inks).round().astype(np.uint8)).save(file)
+        shown = dark.darkened(file)[0] / 255 if turned else inks[0]
+        faint, bright = sorted(luminance(color) for color in shown)
+        assert (bright + 0.05) / (faint + 0.05) > 4.5, each.get_text()
 
 
 def test_densities_begin_at_the_ground_in_light_and_in_dark(tmp_path):

@@ -117,6 +117,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.set_yticks(range(len(lines)), names)
         axes.invert_yaxis()
         axes.set_xlabel("difference from dt = 0.005 s")
+        axes.locator_params("x", nbins=6)
         axes.legend(loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
 
 

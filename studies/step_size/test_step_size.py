@@ -1,11 +1,19 @@
 """Law: an error is inside only if its whole interval is, and a bias only if it shows."""
 
+import itertools
+from contextlib import nullcontext
+from pathlib import Path
+
+import matplotlib as mpl
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 import flockenv
+from docs.scripts.plots import page_style
 from studies.claim import Interval
 from studies.step_size import step_size
+from studies.study import Options
 
 
 @pytest.mark.parametrize(
@@ -43,3 +51,18 @@ def test_the_physics_are_those_of_the_environments(physics: str) -> None:
     env = flockenv.LeadersEnv(physics=physics)
     parameters = env.parameters
     assert (parameters.dt_s, parameters.tolerance_cm) == step_size.PHYSICS[physics]
+
+
+def test_numbers_below_the_picture_do_not_meet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are as wide as their signs, and became a row without gaps."""
+    folder = Path(step_size.__file__).parent
+    table = pd.read_csv(folder / "results" / "step_size.csv.gz")
+    with mpl.rc_context(page_style(9.0)):
+        figure = Figure(figsize=(6.7, 5.9), layout="constrained")
+        monkeypatch.setattr(step_size, "picture", lambda *_, **__: nullcontext(figure))
+        step_size.draw(Options(folder), table)
+        figure.draw_without_rendering()
+    (axes,) = figure.axes
+    boxes = [label.get_window_extent() for label in axes.get_xticklabels() if label.get_text()]
+    assert len(boxes) > 3
+    assert all(one.x1 < other.x0 for one, other in itertools.pairwise(boxes))

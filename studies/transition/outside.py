@@ -45,7 +45,7 @@ def draw(options: Options, found: pd.DataFrame) -> None:
     """Draw the coverage outside of jams against that of all boats, a panel for each size."""
     sizes = sorted(found["n_boats"].unique())
     colors = dict(zip(sorted(found["c4"].unique()), COLORS, strict=False))
-    with picture(options, "outside", height_cm=7.5) as figure:
+    with picture(options, "outside", height_cm=9.0) as figure:
         panels = figure.subplots(1, len(sizes), sharex=True, sharey=True, squeeze=False)[0]
         for axes, n in zip(panels, sizes, strict=True):
             _panel(axes, found[found["n_boats"] == n], colors)
@@ -53,7 +53,7 @@ def draw(options: Options, found: pd.DataFrame) -> None:
         panels[0].set_ylabel("coverage outside of jams")
         for c4, color in colors.items():
             panels[0].plot([], [], "o-", color=color, label=f"{c4:g}")
-        panels[0].legend(title="c4", loc="upper left")
+        figure.legend(title="c4", loc="outside lower center", ncols=len(colors))
 
 
 def _panel(axes: Any, found: pd.DataFrame, colors: dict[float, str]) -> None:
