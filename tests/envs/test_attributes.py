@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import re
+from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -13,6 +15,7 @@ from flockenv.envs.reset_options import RESET_OPTIONS
 
 from .conftest import EVERY
 
+ROOT = Path(__file__).parents[2]
 SMALL = {"n_boats": 9, "n_leaders": 2, "episode_s": 1.0}
 ARGUMENTS = ("seed", "reset_mask", "render_mode", "render_size", "num_envs", "num_flocks")
 
@@ -109,8 +112,14 @@ def test_what_holds_for_the_next_episodes_is_set_by_a_method(make):
     assert bare._batch.core.to_bytes() == before
 
 
+def bw_s_after_some_episodes(venv) -> set[float]:
+    venv.reset()
+    for _ in range(12):
+        venv.step(np.zeros((venv.num_envs, *venv.action_space.shape)))
+    return {each["bw_s"] for each in venv.env_method("episode")}
+
+
 def test_a_curriculum_reaches_flocks_in_stable_baselines3s_monitor():
-    """`set_attr` reaches the monitor alone, whatever the flocks do: the recipe is another."""
     pytest.importorskip("stable_baselines3")
     from stable_baselines3.common.env_util import make_vec_env
 
@@ -119,7 +128,39 @@ def test_a_curriculum_reaches_flocks_in_stable_baselines3s_monitor():
         flockenv.sb3.LeaderVecEnv(2, **SMALL),
     ):
         venv.env_method("set_next_episodes", bw_s=0.6)
-        venv.reset()
-        for _ in range(12):
-            venv.step(np.zeros((venv.num_envs, *venv.action_space.shape)))
-        assert {each["bw_s"] for each in venv.env_method("episode")} == {0.6}
+        assert bw_s_after_some_episodes(venv) == {0.6}
+
+
+def test_set_attr_stays_with_stable_baselines3s_monitor_as_the_page_says():
+    """An environment does not hear of it: what is set is an attribute of the wrapper around it."""
+    pytest.importorskip("stable_baselines3")
+    from stable_baselines3.common.env_util import make_vec_env
+
+    venv = make_vec_env("flockenv/Leaders-v0", 2, env_kwargs={**SMALL, "bw_s": 0.3})
+    venv.set_attr("bw_s", 0.6)
+    assert bw_s_after_some_episodes(venv) == {0.3}
+    # Without a wrapper around it, it is refused.
+    bare = venv.envs[0].unwrapped
+    with pytest.raises(AttributeError, match="set_next_episodes"):
+        bare.bw_s = 0.6
+    page = (ROOT / "docs" / "training_reference.md").read_text(encoding="utf-8")
+    assert "`set_attr` would set an attribute of stable-baselines3's `Monitor`" in page
+
+
+def test_no_recipe_sets_options_by_set_attr():
+    """But on a `LeaderVecEnv`, whose own it is."""
+    files = [
+        each
+        for folder, kinds in (("docs", ("*.md", "*.ipynb")), ("examples", ("*.py", "*.ipynb")))
+        for kind in kinds
+        for each in (ROOT / folder).rglob(kind)
+        if "_build" not in each.parts
+    ]
+    calls = [
+        line.strip()
+        for each in [*files, ROOT / "README.md", *(ROOT / "baselines").glob("*.py")]
+        for line in each.read_text(encoding="utf-8").splitlines()
+        if re.search(r"\.set_attr\(", line)
+    ]
+    assert len(files) > 30
+    assert calls == []
