@@ -23,22 +23,22 @@ _DAY_S = 86_400.0
 _STOPWATCH = re.compile(r"^\s*(\d+:\d+\.\d*)\s*$")
 
 
-def times_of(table: Table, layout: TrackLayout) -> Floats:
-    """Return the times in s, from the least."""
-    found = table.column(layout.frame)
+def times_of(table: Table) -> Floats:
+    """Return the times of all boats' rows in s, from the least."""
+    layout, found = table.layout, table.column(table.layout.frame)
     times = _typed(require("pandas", "plot"), found)
-    if times is not None and layout.fps is not None:
-        raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
     if times is None:
-        times = table.numbers(layout.frame, layout)
+        times = table.numbers(layout.frame)
         _check_kind(times, layout)
         times = times / (layout.fps or 1.0)
+    elif layout.fps is not None:
+        raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
     if not np.isfinite(times).all():
         line = found.index[~np.isfinite(times)][0]
         raise ParameterError(
             f"column {layout.frame!r} has rows without a number, such as {found.index.name} {line}"
         )
-    return times - times.min() if len(times) else times
+    return np.tile(times - times.min() if len(times) else times, len(table.boats))
 
 
 def _typed(pandas: Any, found: Any) -> Floats | None:
@@ -52,21 +52,16 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
     texts = found.dropna()
     if types.is_numeric_dtype(found) or not len(texts) or ":" not in str(texts.iloc[0]):
         return None
-    for convert, options in (
-        (pandas.to_timedelta, {}),
-        (pandas.to_datetime, {"utc": True, "format": "ISO8601"}),
-        (pandas.to_datetime, {"utc": True, "format": "%d.%m.%Y %H:%M:%S"}),
-        (pandas.to_datetime, {"utc": True, "format": "%d.%m.%Y %H:%M:%S.%f"}),
-    ):
-        # Loggers write 12:34:56,789, and stopwatches 34:56.7.
-        points = (
-            found.astype(str).str.replace(",", ".").str.replace(_STOPWATCH, r"00:\1", regex=True)
-        )
-        values = convert(points, errors="coerce", **options)
-        if values[texts.index].notna().all():
-            if convert is pandas.to_datetime:
-                return _typed(pandas, values)
-            return _past_midnight(values.dt.total_seconds().to_numpy(np.float64))
+    # Loggers write 12:34:56,789, and stopwatches 34:56.7.
+    points = found.astype(str).str.replace(",", ".")
+    points = points.str.replace(_STOPWATCH, r"00:\1", regex=True)
+    times = pandas.to_timedelta(points, errors="coerce")
+    if times[texts.index].notna().all():
+        return _past_midnight(times.dt.total_seconds().to_numpy(np.float64))
+    for form in ("ISO8601", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f"):
+        dates = pandas.to_datetime(points, errors="coerce", utc=True, format=form)
+        if dates[texts.index].notna().all():
+            return _typed(pandas, dates)
     raise ParameterError(
         f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is no number, no "
         "time 12:34:56.7 and no date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
@@ -89,17 +84,14 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     if not len(steps):
         return
     is_whole = bool((stamps == np.rint(stamps)).all())
+    per_s = PER_S.get(unit_of(layout.frame))
     # Steps of 12 may be seconds if the name says so, and 0, 1, 2 are frames whatever it says.
-    unit = unit_of(layout.frame)
-    says_s = PER_S.get(unit) == 1.0 and steps.min() > 1.0
-    if layout.fps is None and PER_S.get(unit, 1.0) != 1.0:
-        raise ParameterError(
-            f"fps is missing: column {layout.frame!r} counts {unit} (fps = {PER_S[unit]:.6g})"
-        )
-    if layout.fps is None and is_whole and not says_s:
-        raise ParameterError(
-            f"fps is missing: column {layout.frame!r} holds whole numbers (fps = 1 if it counts s)"
-        )
+    says_s = per_s == 1.0 and steps.min() > 1.0
+    if layout.fps is None and (per_s not in (None, 1.0) or (is_whole and not says_s)):
+        counts = "holds whole numbers (fps = 1 if it counts s)"
+        if per_s not in (None, 1.0):
+            counts = f"counts {unit_of(layout.frame)} (fps = {per_s:.6g})"
+        raise ParameterError(f"fps is missing: column {layout.frame!r} {counts}")
     if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "

@@ -20,8 +20,8 @@ def is_dataset(source: Any) -> bool:
     return hasattr(source, "data_vars")
 
 
-def table_of(dataset: Any, layout: TrackLayout) -> tuple[Table, TrackLayout]:
-    """Return a dataset as a table, and the layout with the dataset's own fields.
+def table_of(dataset: Any, layout: TrackLayout) -> Table:
+    """Return a dataset as a table, by the layout with the dataset's own fields.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
     such as ``nose_x``. A ParameterError names a missing variable or coordinate.
@@ -46,7 +46,7 @@ def table_of(dataset: Any, layout: TrackLayout) -> tuple[Table, TrackLayout]:
     for index, stem in enumerate(stems.values()):
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
     rows = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return Table(rows), _said(dataset, layout, stems)
+    return Table(rows, _said(dataset, layout, stems))
 
 
 def _standard(variable: Any, *own: str) -> Any:

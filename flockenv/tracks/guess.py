@@ -13,7 +13,7 @@ from flockenv.tracks.clock import PER_S, unit_of
 from flockenv.tracks.dataset import CM
 from flockenv.tracks.formats import MOT, plain, recognized
 from flockenv.tracks.layout import TrackLayout, description_of, naming
-from flockenv.tracks.rows import FULL_TURN, long_table, names_nobody
+from flockenv.tracks.rows import FULL_TURN, names_nobody
 from flockenv.tracks.table import (
     Table,
     check_ending,
@@ -72,13 +72,13 @@ def _guess_fields(table: Table, form: Form, doubts: Doubts) -> None:
         doubts["pool"] = ("", "fill in: outer and inner radius in cm")
     else:
         layout = TrackLayout(pool="wide", **{"heading": "", **form, "confidence": ""})
-        if "id" in form and names_nobody(table, layout):
+        table = Table(table.rows, layout)
+        if "id" in form and names_nobody(table):
             form["id"] = ""
-        rows = long_table(table, layout) if layout.is_wide else table
-        _guess_place(rows, layout, form, doubts)
-        _guess_time(rows, layout, form, doubts)
+        _guess_place(table, form, doubts)
+        _guess_time(table, form, doubts)
         if form.get("heading") and isinstance(form["heading"], str):
-            _guess_turn(rows.numbers(form["heading"], layout), form, doubts)
+            _guess_turn(table.numbers(form["heading"]), form, doubts)
     if "confidence" in form:
         doubts["least_confidence"] = (0.6, "check: rows with less are left out")
     if "heading" not in form:
@@ -116,10 +116,10 @@ def _header(count: int, form: Form, doubts: Doubts) -> list[str]:
     return names
 
 
-def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:
+def _guess_place(table: Table, form: Form, doubts: Doubts) -> None:
     """Guess the pool, its center and the scale from all positions."""
-    names = [layout.columns[axis][0] for axis in ("x", "y")]
-    points = np.stack([rows.numbers(name, layout) for name in names], axis=-1)
+    names = [table.layout.columns[axis][0] for axis in ("x", "y")]
+    points = np.stack([table.numbers(name) for name in names], axis=-1)
     points = points[np.isfinite(points).all(axis=1)]
     lost = []
     for mark in ([0.0, 0.0], [-1.0, -1.0]):
@@ -154,12 +154,12 @@ def _guess_place(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -
         doubts["lost"] = (lost, "check: points that stand for a boat that is not there")
 
 
-def _guess_time(rows: Table, layout: TrackLayout, form: Form, doubts: Doubts) -> None:
+def _guess_time(table: Table, form: Form, doubts: Doubts) -> None:
     if "fps" in form:
         return
     name, per_s = plain(form["frame"])[0], PER_S.get(unit_of(form["frame"]))
     try:
-        counts = rows.numbers(form["frame"], layout)
+        counts = table.numbers(form["frame"])
     except ParameterError:  # Dates and clock times.
         return
     is_whole = (counts[np.isfinite(counts)] % 1 == 0).all()

@@ -220,6 +220,16 @@ class TrackLayout:
         return self.cm_per_unit or 1.0
 
     @property
+    def up(self) -> float:
+        """Sign of y of the file, counted upwards."""
+        return -1.0 if self.y_down else 1.0
+
+    @property
+    def turns(self) -> str:
+        """The way in which headings grow, "cw" or "ccw"."""
+        return self.heading_turns or ("cw" if self.y_down else "ccw")
+
+    @property
     def columns(self) -> dict[str, tuple[str, ...]]:
         """The columns of each field but those of times and names."""
         heading = self.heading if self.quaternion is None else None

@@ -77,16 +77,16 @@ class Motion:
         long = steps[steps > self.longest_s]
         return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0
 
-    def cosine(self, pose: Floats) -> float:
+    def cosine(self, heading: Floats) -> float:
         """Return the mean cosine between heading and motion, weighted by speed; NaN for none."""
-        ahead, speed = self.ahead(pose[..., 2]), np.hypot(*np.moveaxis(self.velocity, -1, 0)[:2])
-        return float(np.nansum(ahead) / np.nansum(speed)) if np.nansum(speed) > 0.0 else np.nan
+        speed = np.nansum(np.hypot(self.velocity[..., 0], self.velocity[..., 1]))
+        return float(np.nansum(self.ahead(heading)) / speed) if speed > 0.0 else np.nan
 
     def ahead(self, heading: Floats) -> Floats:
         """Return the speeds of boats along their headings."""
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
 
-    def check(self, pose: Floats, layout: TrackLayout) -> None:
+    def check(self, heading: Floats, layout: TrackLayout) -> None:
         """Refuse tracks in which most steps are too fast, and axes given as directions."""
         steps = (
             self.present[1:] & self.present[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
@@ -97,41 +97,35 @@ class Motion:
                 f"{layout.max_speed_cm_s:g}: do cm_per_unit, fps and times fit this table, and "
                 "is it one film?"
             )
-        is_angle = len(layout.columns["heading"]) == 1
-        if is_angle:
-            self._check_unit(pose, layout)
-        jumps = (np.abs(np.diff(pose[..., 2], axis=0)) > _AXIS_JUMP * np.pi) & steps
-        may_be_axes = is_angle and not layout.axis and jumps.sum() >= 3 and _is_half(pose[..., 2])
-        if may_be_axes and self.cosine(_with(pose, bows_of(pose[..., 2], self))) > self.cosine(
-            pose
-        ):
+        if len(layout.columns["heading"]) != 1:
+            return
+        self._check_unit(heading, layout)
+        jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & steps
+        if layout.axis or jumps.sum() < 3 or not _is_half(heading):
+            return
+        if self.cosine(bows_of(heading, self)) > self.cosine(heading):
             raise ParameterError(
                 "headings lie within half a turn and jump from one end of it to the other: set "
                 "axis = true if they are axes without a bow, as of ellipses"
             )
 
-    def _check_unit(self, pose: Floats, layout: TrackLayout) -> None:
+    def _check_unit(self, heading: Floats, layout: TrackLayout) -> None:
         """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
-        turned = pose[..., 2] - HEADING_ZERO[layout.heading_zero]
-        own_turn = TURN[layout.heading_unit]
+        turned = heading - HEADING_ZERO[layout.heading_zero]
         for unit, turn in TURN.items():
             # A full turn of the smaller unit, and headings over more than half of one.
-            least = TURN["rad"] * turn / own_turn
-            if turn >= own_turn or np.nanmax(np.abs(turned)) > 1.003 * least:
+            share = turn / TURN[layout.heading_unit]
+            least = TURN["rad"] * share
+            if share >= 1.0 or np.nanmax(np.abs(turned)) > 1.003 * least:
                 continue
-            other = _with(pose, pose[..., 2] + turned * (own_turn / turn - 1.0))
-            if np.ptp(turned[self.present]) > 0.5 * least and self.cosine(other) > self.cosine(
-                pose
-            ):
+            other = heading + turned * (1.0 / share - 1.0)
+            is_wide = np.ptp(turned[self.present]) > 0.5 * least
+            if is_wide and self.cosine(other) > self.cosine(heading):
                 raise ParameterError(
                     f"headings never exceed a full turn in {UNIT[unit]}, and fit the motion better "
                     f"in {UNIT[unit]} than in {UNIT[layout.heading_unit]}: is heading_unit = "
                     f"{unit!r}?"
                 )
-
-
-def _with(pose: Floats, heading: Floats) -> Floats:
-    return np.concatenate([pose[..., :2], heading[..., None]], axis=-1)
 
 
 def _is_half(heading: Floats) -> bool:

@@ -66,24 +66,22 @@ def read_tracks(
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table in memory has no file beside it")
-        if is_dataset(source):
-            return _recording(*table_of(source, layout), report)
-        return _recording(plain_table(source), layout, report)  # type: ignore[arg-type]
+        as_table: Any = table_of if is_dataset(source) else plain_table
+        table = as_table(source, layout)
+        return _recording(table, report)
     path = Path(source)
     if layout is None:
         description = description_of(path)
         check_ending(path)
         layout = read_layout(description)
     with naming(path):
-        return _recording(read_table(path, layout), layout, report)
+        return _recording(read_table(path, layout), report)
 
 
-def _recording(
-    table: Table, layout: TrackLayout, report: Callable[[TrackReport], object]
-) -> Recording:
-    unnamed = names_nobody(table, layout)
-    layout = replace(layout, id=None) if unnamed else layout
-    rows = rows_of(table, layout)
+def _recording(table: Table, report: Callable[[TrackReport], object]) -> Recording:
+    unnamed = names_nobody(table)
+    layout = replace(table.layout, id=None) if unnamed else table.layout
+    rows = rows_of(Table(table.rows, layout) if unnamed else table)
     twice = rows["id"].notna() & rows.duplicated(["id", "time", "x", "y", "heading"])
     rows["why"] = rows["why"].mask(twice & (rows["why"] == ""), _TWICE)
     unsorted = int((rows[rows["why"] != _TWICE].groupby("id")["time"].diff() < 0.0).sum())
@@ -108,7 +106,7 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
         pose[..., 2] = bows_of(pose[..., 2], motion)
     pose[..., 2] = unwrapped(pose[..., 2])
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    motion.check(pose, layout)
+    motion.check(pose[..., 2], layout)
     return motion
 
 
@@ -133,7 +131,7 @@ def _report(
         longest_gap_s=float(gaps.max(initial=0.0)),
         broken=motion.broken,
         lone=int((present & np.isnan(speed)).sum()),
-        cosine=motion.cosine(pose),
+        cosine=motion.cosine(pose[..., 2]),
         stuck=_stuck(rows, layout),
         held=_held(rows),
     )

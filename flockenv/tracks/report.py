@@ -70,77 +70,75 @@ class TrackReport:
         return {name: None if value != value else value for name, value in asdict(self).items()}
 
     def __str__(self) -> str:
-        all_of = self.samples + self.missing
         rows = sum(sum(boats.values()) for boats in self.left_out.values())
-        reasons = (
+        reasons = [
             f"{sum(boats.values())} {reason}{_by_boat(boats)}"
             for reason, boats in self.left_out.items()
-        )
-        gaps = f"{self.gaps}" + (f", the longest {self.longest_gap_s:.4g} s" if self.gaps else "")
+        ]
+        longest = f", the longest {self.longest_gap_s:.4g} s" if self.gaps else ""
         lines = [
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; "
-            f"missing: {self.missing} of {all_of} boat-frames",
+            f"missing: {self.missing} of {self.samples + self.missing} boat-frames",
             f"{self.duration_s:.6g} s, a frame every {self.step_s:.4g} s; median speed "
             f"{self.median_speed_cm_s:.3g} cm/s",
             f"left out: {rows} rows" + (f" ({', '.join(reasons)})" if rows else ""),
-            f"gaps: {gaps}; steps too fast for a velocity: {self.broken}; "
+            f"gaps: {self.gaps}{longest}; steps too fast for a velocity: {self.broken}; "
             f"samples without a velocity: {self.lone}",
             f"mean cosine between heading and motion: {self.cosine:.2f}",
         ]
-        if self.lone == self.samples and self.frames > 1:
-            lines[-1] += ": no boat is there in two frames one after another; are the names right?"
-        if self.cosine < _WEAK:
-            lines[-1] += (
-                ", far from 1: are y_down, heading_unit, heading_turns, heading_zero and the order "
-                "of x and y right, and are headings no axes?"
-            )
-        return "\n  ".join([*lines, *self._doubts(), *self._marks()])
+        return "\n  ".join([*lines, *(words for holds, words in self._doubts() if holds)])
 
-    def _marks(self) -> list[str]:
-        """Return lines about points and headings that may mark a lost boat."""
-        lines = []
-        if self.stuck:
-            points = (
-                f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
-                for name, (x, y, count) in list(self.stuck.items())[:5]
-            )
-            more = f", and {len(self.stuck) - 5} more boats" if len(self.stuck) > 5 else ""
-            lines.append(
-                f"the same point in many frames: {', '.join(points)}{more}; "
-                "if one stands for a lost boat, name it in `lost`"
-            )
-        if self.held:
-            lines.append(
-                f"the same heading in many frames{_by_boat(self.held)}; "
-                "if a number stands for no heading, name it in `missing`"
-            )
-        return lines
-
-    def _doubts(self) -> list[str]:
-        """Return lines about unusual values, which may be correct."""
-        lines = []
-        if self.unsorted:
-            lines.append(
-                f"rows are not in the order of time ({self.unsorted} steps back), and were sorted: "
-                "is it one film?"
-            )
-        if self.unnamed:
-            lines.append("the column of names is empty: all rows are of one boat")
-        if self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S:
-            lines.append(
-                "that is slow for boats: are times in s? `fps` says how many units a s has"
-            )
+    def _doubts(self) -> list[tuple[bool, str]]:
+        """Return lines about unusual values, which may be correct, and whether they apply."""
         outside = sum(self.left_out.get("in no water", {}).values())
-        if outside > _MANY_OUTSIDE * (outside + self.samples):
-            lines.append(
-                f"{outside / (outside + self.samples):.0%} of the detections lie beside the pool: "
-                "do cm_per_unit, center and pool fit?"
-            )
-        return lines
+        share = outside / max(1, outside + self.samples)
+        points = [
+            f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
+            for name, (x, y, count) in self.stuck.items()
+        ]
+        return [
+            (
+                self.lone == self.samples and self.frames > 1,
+                "no boat is there in two frames one after another: are the names right?",
+            ),
+            (
+                self.cosine < _WEAK,
+                "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero "
+                "and the order of x and y right, and are headings no axes?",
+            ),
+            (
+                self.unsorted > 0,
+                f"rows are not in the order of time ({self.unsorted} steps back), and were "
+                "sorted: is it one film?",
+            ),
+            (self.unnamed, "the column of names is empty: all rows are of one boat"),
+            (
+                self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S,
+                "that is slow for boats: are times in s? `fps` says how many units a s has",
+            ),
+            (
+                share > _MANY_OUTSIDE,
+                f"{share:.0%} of the detections lie beside the pool: do cm_per_unit, center and "
+                "pool fit?",
+            ),
+            (
+                bool(points),
+                f"the same point in many frames: {_first_five(points)}; if one stands for a lost "
+                "boat, name it in `lost`",
+            ),
+            (
+                bool(self.held),
+                f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
+                "heading, name it in `missing`",
+            ),
+        ]
 
 
 def _by_boat(boats: Mapping[str, int]) -> str:
     named = sorted(((count, name) for name, count in boats.items() if name), reverse=True)
-    words = [f"{name} {count}" for count, name in named[:5]]
-    more = [f"{len(named) - 5} more boats"] if len(named) > 5 else []
-    return f": {', '.join(words + more)}" if named else ""
+    return f": {_first_five([f'{name} {count}' for count, name in named])}" if named else ""
+
+
+def _first_five(words: list[str]) -> str:
+    more = [f"{len(words) - 5} more boats"] if len(words) > 5 else []
+    return ", ".join(words[:5] + more)

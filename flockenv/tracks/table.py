@@ -6,6 +6,8 @@ import gzip
 import io
 import itertools
 import os
+import re
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,20 +34,39 @@ NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan
 
 
 class Table:
-    """Rows of tracks, numbered by their line or row, with columns found by name in any case."""
+    """Rows of tracks, numbered by their line or row, as a layout reads them.
 
-    def __init__(self, rows: "pd.DataFrame") -> None:
-        self.rows = rows
+    Columns are found by their names in any case. A column whose name in the layout holds {id}
+    stands for those of all boats, one after the other.
+    """
+
+    def __init__(self, rows: "pd.DataFrame", layout: TrackLayout) -> None:
+        self.rows, self.layout = rows, layout
         self.names = [*map(str, rows)]
         self._by_key: dict[str, list[int]] = {}
         for index, name in enumerate(self.names):
             self._by_key.setdefault(_key(name), []).append(index)
 
-    def __contains__(self, name: str) -> bool:
-        return _key(name) in self._by_key
+    @cached_property
+    def boats(self) -> list[str]:
+        """The names that stand for {id}; "0" in a table that has one row per boat."""
+        if not self.layout.is_wide:
+            return ["0"]
+        fields = [name for columns in self.layout.columns.values() for name in columns]
+        first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+        names = [found[1] for name in self.names if (found := first.fullmatch(name.strip()))]
+        wanted = {name: {_key(field.replace("{id}", name)) for field in fields} for name in names}
+        names = [name for name in names if wanted[name] <= self._by_key.keys()]
+        if not names:
+            looks = " and ".join(map(repr, fields))
+            raise ParameterError(f"no columns look like {looks}; there are {listed(self.names)}")
+        return names
 
-    def __len__(self) -> int:
-        return len(self.rows)
+    @property
+    def index(self) -> "pd.Index[Any]":
+        """The line or row of each of the boats' rows."""
+        index = self.rows.index
+        return index.append([index] * (len(self.boats) - 1)).rename(index.name)
 
     def index_of(self, name: str) -> int:
         """Return the index of a column, whose name may differ in case or blanks."""
@@ -59,19 +80,23 @@ class Table:
         return found[0]
 
     def column(self, name: str) -> "pd.Series[Any]":
-        """Return the column of a name."""
-        return self.rows.iloc[:, self.index_of(name)]
+        """Return the column of a name, or the columns of all boats one after the other."""
+        if "{id}" not in name:
+            return self.rows.iloc[:, self.index_of(name)]
+        boats = [self.index_of(name.replace("{id}", boat)) for boat in self.boats]
+        cells = self.rows.iloc[:, boats].to_numpy().T.ravel()
+        return require("pandas", "plot").Series(cells, self.index)  # type: ignore[no-any-return]
 
-    def numbers(self, name: str, layout: TrackLayout) -> Floats:
+    def numbers(self, name: str) -> Floats:
         """Return a column as numbers, NaN for missing and infinite ones."""
         pandas, found = require("pandas", "plot"), self.column(name)
         types = pandas.api.types
         if types.is_bool_dtype(found) or types.is_complex_dtype(found):
             raise ParameterError(f"column {name!r} holds other things than numbers")
         if not types.is_numeric_dtype(found):
-            found = _parsed(pandas, found, name, layout)
+            found = _parsed(pandas, found, name, self.layout)
         values = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-        none = pandas.to_numeric(list(layout.missing), errors="coerce")
+        none = pandas.to_numeric(list(self.layout.missing), errors="coerce")
         values[np.isinf(values) | np.isin(values, none)] = np.nan
         return values
 
@@ -121,7 +146,7 @@ def read_table(path: Path, layout: TrackLayout) -> Table:
     check_ending(path)
     try:
         if not is_text(path):
-            return plain_table(_read_parquet(pandas, path))
+            return plain_table(_read_parquet(pandas, path), layout)
         separator = layout.separator or usual_separator(path)
         return _read_text(pandas, text_of(path), layout, separator)
     except Exception as error:  # Parsers raise errors of many unrelated classes.
@@ -206,7 +231,7 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
     blank = (table.isna() | (table == "")).all(axis=1)
     # Some write units, or longer names, into the lines under the header.
     under = [n for n, row in table.head(4).iterrows() if not any(map(is_value, row))]
-    return Table(table[~blank & ~table.index.isin([] if layout.header else under)])
+    return Table(table[~blank & ~table.index.isin([] if layout.header else under)], layout)
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
@@ -237,7 +262,7 @@ def is_value(cell: Any) -> bool:
     return str(cell).lstrip("-+.")[:1].isdigit()
 
 
-def plain_table(table: "pd.DataFrame") -> Table:
+def plain_table(table: "pd.DataFrame", layout: TrackLayout) -> Table:
     """Return a table with one name per column, the index among the columns."""
     if not hasattr(table, "columns") or not hasattr(table, "index"):
         raise TypeError(
@@ -262,7 +287,7 @@ def plain_table(table: "pd.DataFrame") -> Table:
                 f"the index and a column are both called {name!r}, and differ: rename one"
             )
         table = table if name is None else table.assign(**{str(name): values})
-    return Table(table.reset_index(drop=True).rename_axis(index="row"))
+    return Table(table.reset_index(drop=True).rename_axis(index="row"), layout)
 
 
 def _key(name: object) -> str:
