@@ -1,8 +1,6 @@
 """Tracks of tables and datasets as recordings, with a report of omitted rows."""
 
 import os
-import re
-import unicodedata
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -168,7 +166,7 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
     if len(frames) * len(names) > max(1 << 22, 16 * len(every)):
         raise ParameterError(
             f"{len(names)} names in {len(frames)} frames are too many for {len(every)} rows: join "
-            "fragments of tracks, or read a part of the file"
+            "fragments of tracks"
         )
     wide = rows.pivot(index="frame", columns="id").reindex(frames.index)
     time_s = frames.to_numpy()
@@ -180,34 +178,30 @@ def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Float
 
 def _check_names(rows: "pd.DataFrame") -> None:
     """Refuse spellings of one name that are never there at once: they would be two boats."""
-    spellings: dict[str, list[str]] = {}
-    for name in rows["id"].unique():
-        plain = unicodedata.normalize("NFKC", name).casefold()
-        spellings.setdefault(re.sub(r"(?<!\d)0+(?=\d)", "", plain), []).append(name)
-    for names in spellings.values():
-        if len(names) > 1 and rows.loc[rows["id"].isin(names), "frame"].is_unique:
+    names = rows["id"].drop_duplicates()
+    plain = names.str.normalize("NFKC").str.casefold()
+    plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
+    for _, like in names.groupby(plain):
+        if len(like) > 1 and rows.loc[rows["id"].isin(like), "frame"].is_unique:
             raise ParameterError(
-                f"the names {', '.join(map(repr, names))} are never in one frame, and differ in "
+                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
                 "case or leading zeros alone: write one boat's name in one way"
             )
 
 
 def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
     """Return boats that are at the very same point in many samples, in units of the file."""
-    up = -1.0 if layout.y_down else 1.0
     used = rows[rows["why"] == ""]
-    used = used.assign(
-        x=used["x"] / layout.scale + layout.center[0],
-        y=up * used["y"] / layout.scale + layout.center[1],
-    )
     counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10
     # Two boats are never at one point.
     shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
     is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
     counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
-    counts = counts.drop_duplicates("id")
-    return {str(n): (float(x), float(y), int(c)) for n, x, y, c in counts.itertuples(index=False)}
+    found = counts.drop_duplicates("id").set_index("id").astype(float)
+    x = found["x"] / layout.scale + layout.center[0]
+    y = layout.up * found["y"] / layout.scale + layout.center[1]
+    return {str(n): (x[n], y[n], int(found["count"][n])) for n in found.index}
 
 
 def _held(rows: "pd.DataFrame") -> dict[str, int]:

@@ -59,3 +59,5 @@ class Honest:
     #: Whether headings are those of the boats; otherwise places and speeds are compared.
     has_headings: bool = True
     boats: tuple[int, ...] = tuple(range(1, BOATS + 1))
+    #: Rows that the report says are left out, by reason.
+    left_out: Mapping[str, int] = field(default_factory=dict)

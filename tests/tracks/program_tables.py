@@ -20,14 +20,19 @@ def wide(column: Callable[[str, Any], str], names: tuple[str, ...] = ("x", "y"))
     return pd.DataFrame(parts).reset_index()
 
 
-def deeplabcut(several: bool, parts: tuple[str, ...] = ("nose", "tail")) -> Rows:
+def deeplabcut(
+    several: bool, parts: tuple[str, ...] = ("nose", "tail"), *, unsure: bool = False
+) -> Rows:
+    """Key points in levels of header; if `unsure`, the fourth boat is seen badly in a frame."""
     columns = {}
     for boat, own in rows().set_index("frame").groupby("id"):
         if not several and boat != 1:
             continue
         for part in parts:
             for coord in ("x", "y", "likelihood"):
-                values = own.get(f"{part}_{coord}", own["x"] * 0 + 0.98)
+                values = own.get(f"{part}_{coord}", own.get(coord, own["x"] * 0 + 0.98)).copy()
+                if unsure and boat == 4 and coord == "likelihood":
+                    values[30] = 0.1
                 levels = (f"fish{boat}", part) if several else (part,)
                 columns["DLC_resnet50_model", *levels, coord] = values
     table = pd.DataFrame(columns)
@@ -66,6 +71,16 @@ def mot(columns: int) -> str:
     for name in ("conf", "x", "y", "z")[: columns - 6]:
         found[name] = 1 if name == "conf" else -1
     return found.to_csv(index=False, header=False)
+
+
+def ethovision() -> str:
+    """One animal, once lost: lines before the header, and units under it."""
+    table = rows()[rows()["id"] == 1].assign(t=lambda t: t["frame"] / HZ).astype(object)
+    table.iloc[5, table.columns.get_indexer(["x", "y", "angle"])] = "-"
+    lines = table[["t", "x", "y", "angle"]].to_csv(sep=";", index=False, header=False)
+    before = '"Number of header lines:";"5"\n"Start time";"05/04/2026 10:00:00"\n\n'
+    header = '"Trial time";"X center";"Y center";"Direction"\n"s";"px";"px";"deg"\n'
+    return before + header + lines
 
 
 MOT = ["frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z"]

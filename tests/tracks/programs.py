@@ -1,6 +1,7 @@
 """Programs of the field: each with a table that it writes, and the layout that reads it."""
 
 import numpy as np
+import pandas as pd
 
 from .honest import ANGLE, CENTER, HZ, PIXEL_CM, PLACE, Honest, rows, truth
 from .program_tables import (
@@ -8,10 +9,12 @@ from .program_tables import (
     METERS,
     MIDDLE,
     MOT,
+    SIDES,
     SLEAP_COLUMNS,
     boxes,
     deeplabcut,
     dotted,
+    ethovision,
     mot,
     motive,
     movement,
@@ -28,11 +31,13 @@ PROGRAMS: dict[str, Honest] = {
         trex,
         {"pool": "narrow", "center": [c * PIXEL_CM for c in CENTER], "y_down": True}
         | {"frame": "time", "x": "X#wcentroid (cm)", "y": "Y#wcentroid (cm)", "heading": "ANGLE"},
+        left_out={"without a position": 10},
     ),
     "TRex by frames, empty cells": Honest(
         lambda: trex(np.nan),
         {"pool": "narrow", "center": [c * PIXEL_CM for c in CENTER], "y_down": True, "fps": HZ}
         | {"x": "X#wcentroid (cm)", "y": "Y#wcentroid (cm)", "heading": "ANGLE"},
+        left_out={"without a position": 10},
     ),
     "idtracker.ai": Honest(
         lambda: (
@@ -47,6 +52,19 @@ PROGRAMS: dict[str, Honest] = {
         lambda: wide(lambda n, b: f"{n}{b}", ("x", "y", "angle")),
         {**PLACE, **ANGLE, "fps": HZ, "x": "x{id}", "y": "y{id}", "heading": "angle{id}"},
     ),
+    **{
+        f"numbered columns like {x}": Honest(
+            lambda x=x: (
+                wide(lambda n, b: x.format(b).replace("x", n).replace("X", n.upper()), ("x", "y"))
+                .assign(frame=lambda t: t["frame"] / HZ)
+                .rename(columns={"frame": "seconds"})
+                .join(wide(lambda n, b: f"{n}{b}", ("angle",)).drop(columns="frame"))
+            ),
+            {**PLACE, **ANGLE, "frame": "seconds", "heading": "angle{id}"}
+            | {"x": x.format("{id}"), "y": x.replace("x", "y").replace("X", "Y").format("{id}")},
+        )
+        for x in ("x{}", "X_{}", "x{} [px]")
+    },
     "UMATracker": Honest(
         lambda: wide(lambda n, b: f"{n}{b - 1}").rename(columns={"frame": "position"}),
         {**PLACE, "frame": "position", "fps": HZ, "x": "x{id}", "y": "y{id}", "heading": None},
@@ -76,6 +94,25 @@ PROGRAMS: dict[str, Honest] = {
         {**PLACE, "fps": HZ, **dotted(MIDDLE, "{id}."), "least_confidence": 0.6}
         | {"confidence": ("{id}.nose_likelihood", "{id}.tail_likelihood")},
         options={"index": True},
+    ),
+    "DeepLabCut with a center, unsure once": Honest(
+        lambda: deeplabcut(True, ("nose", "tail", "center"), unsure=True),
+        {**PLACE, "fps": HZ, "least_confidence": 0.6, "x": "{id}.center_x", "y": "{id}.center_y"}
+        | dotted(SIDES, "{id}.")
+        | {"confidence": ("{id}.nose_likelihood", "{id}.tail_likelihood")},
+        options={"index": True},
+        left_out={"with too little confidence": 1},
+    ),
+    "DeepLabCut of one animal with a center": Honest(
+        lambda: deeplabcut(False, ("nose", "tail", "center")),
+        {**DLC, **SIDES, "x": "center_x", "y": "center_y", "id": None},
+        boats=(1,),
+        options={"index": True},
+    ),
+    "SLEAP with instances of no track": Honest(
+        lambda: pd.concat([sleap(), sleap()[::50].assign(track="")]).sort_values("frame_idx"),
+        {**PLACE, "fps": HZ, "frame": "frame_idx", "id": "track", **SLEAP_COLUMNS},
+        left_out={"without a name": 19},
     ),
     "SLEAP": Honest(
         sleap, {**PLACE, "fps": HZ, "frame": "frame_idx", "id": "track", **SLEAP_COLUMNS}
@@ -146,20 +183,17 @@ PROGRAMS: dict[str, Honest] = {
         | {"x": "{id}.Position_X", "y": "{id}.Position_Z"}
         | {"quaternion": [f"{{id}}.Rotation_{axis}" for axis in "XZYW"]},
     ),
-    "EthoVision": Honest(
-        lambda: (
-            'Number of header lines:;"3"\nExperiment;circle\n\n'
-            + rows()[rows()["id"] == 1]
-            .assign(t=lambda t: t["frame"] / HZ)[["t", "x", "y", "angle"]]
-            .to_csv(
-                sep=";", index=False, header=["Trial time", "X center", "Y center", "Direction"]
-            )
-            .replace("Direction\n", "Direction\ns;px;px;deg\n")
-        ),
-        {**PLACE, "frame": "Trial time", "id": None, "x": "X center", "y": "Y center"}
-        | {"heading": "Direction", "heading_unit": "deg", "separator": ";", "skip": 3},
-        boats=(1,),
-    ),
+    **{
+        f"EthoVision in {encoding}": Honest(
+            ethovision,
+            {**PLACE, "frame": "Trial time", "id": None, "x": "X center", "y": "Y center"}
+            | {"heading": "Direction", "heading_unit": "deg", "separator": ";", "skip": 3},
+            boats=(1,),
+            options={"encoding": encoding},
+            left_out={"without a position": 1},
+        )
+        for encoding in ("utf-8", "utf-16")
+    },
     "BioTracker": Honest(
         lambda: rows()[["frame", "id", "x", "y", "angle"]].set_axis(
             ["FRAME", "ID", "xpx", "ypx", "deg"], axis=1
