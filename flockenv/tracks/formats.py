@@ -18,18 +18,26 @@ class Format(NamedTuple):
     columns: Mapping[str, str]
     #: Other fields of a layout: the clock, the axes, the hull's columns.
     fields: Mapping[str, Any] = MappingProxyType({})
+    #: How lines of a header in levels begin, in small letters: the first, and those of names.
+    levels: tuple[str, ...] = ()
 
 
 MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
 _BOX = {"box": MOT[4:6], "heading": None, "y_down": True}
 _MOTIVE = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
 _ABOVE = {"quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True}
+_BODIES_IN_LEVELS = ("type", "name", "", "frame")
+_PARTS_IN_LEVELS = ("scorer", "individuals", "bodyparts", "coords")
 _PLACE = {"x": "{id}.Position_X", "y": "{id}.Position_Z"}
 
 FORMATS = (
     Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"}, _BOX),
-    Format("OptiTrack Motive", {"frame": "Time (Seconds)", **_PLACE}, _ABOVE),
-    Format("DeepLabCut, several animals", {"frame": "frame", "x": "{id}.{part}_x"}),
+    Format("OptiTrack Motive", {"frame": "Time (Seconds)", **_PLACE}, _ABOVE, _BODIES_IN_LEVELS),
+    Format(
+        "DeepLabCut, several animals",
+        {"frame": "frame", "x": "{id}.{part}_x"},
+        levels=_PARTS_IN_LEVELS,
+    ),
     Format("DeepLabCut", {"frame": "frame", "x": "{part}_x", "confidence": "{part}_likelihood"}),
     Format("SLEAP", {"frame": "frame_idx", "id": "track", "x": "{part}.x"}),
     Format("movement", {"frame": "time", "id": "individual*", "x": "{part}_x"}),

@@ -18,9 +18,6 @@ HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2
 TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
 """A full turn in the units of headings."""
 
-UNIT = {"turn": "turns", "rad": "radians", "deg": "degrees"}
-"""Names of the units."""
-
 _AXIS_JUMP = 0.8
 _MOST_BROKEN = 0.5
 
@@ -122,9 +119,8 @@ class Motion:
             is_wide = np.ptp(turned[self.present]) > 0.5 * least
             if is_wide and self.cosine(other) > self.cosine(heading):
                 raise ParameterError(
-                    f"headings never exceed a full turn in {UNIT[unit]}, and fit the motion better "
-                    f"in {UNIT[unit]} than in {UNIT[layout.heading_unit]}: is heading_unit = "
-                    f"{unit!r}?"
+                    f"headings never exceed a full turn in {unit}, and fit the motion better than "
+                    f"in {layout.heading_unit}: is heading_unit = {unit!r}?"
                 )
 
 

@@ -9,7 +9,7 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.clock import times_of
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.motion import HEADING_ZERO, TURN, UNIT, in_water
+from flockenv.tracks.motion import HEADING_ZERO, TURN, in_water
 from flockenv.tracks.table import NONE, Floats, Table, listed
 
 if TYPE_CHECKING:
@@ -173,9 +173,9 @@ def _check_turn(heading: Floats, strange: Any, layout: TrackLayout) -> None:
         return
     largest, unit_given = np.abs(heading[strange]).max(), layout.heading_unit
     units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= FULL_TURN[u])
-    unit = next((f"heading_unit = {u!r} if they are in {UNIT[u]}, " for u in units), "")
+    unit = next((f"heading_unit = {u!r} if they are in {u}, " for u in units), "")
     raise ParameterError(
-        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {UNIT[unit_given]}: "
+        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {unit_given}: "
         f"{unit}wrapped = false if they count whole turns"
     )
 

@@ -18,6 +18,7 @@ from flockenv._io.array_file import most_held
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, short_repr
+from flockenv.tracks.formats import FORMATS
 from flockenv.tracks.layout import TrackLayout
 
 if TYPE_CHECKING:
@@ -238,15 +239,15 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
     """Return the names of columns, and how many lines they take: some write them in levels."""
     if not rows or not any(rows[0]):
         raise ParameterError("there is no header in its first line")
-    first = [row[0].lower() if row else "" for row in rows]
-    if first[0] == "scorer" and "coords" in first[:4]:  # DeepLabCut.
-        height = first.index("coords") + 1
-        return ["frame", *map(_joined, list(zip(*rows[1:height], strict=True))[1:])], height
-    if first[0] == "" and "frame" in first and rows[0][1:2] == ["Type"]:  # OptiTrack Motive.
-        last = first.index("frame")
-        name = next(row for row in rows[1:last] if row[1] == "Name")
-        columns = zip(name[2:], rows[last - 1][2:], rows[last][2:], strict=False)
-        return [*rows[last][:2], *map(_joined, columns)], last + 1
+    # The columns of times are unnamed but for what the lines themselves are called.
+    own = 1 if rows[0][0] else 2
+    starts = [next(filter(None, row[:own]), "").lower() for row in rows]
+    for levels in (program.levels for program in FORMATS if program.levels):
+        if starts[0] == levels[0] and levels[-1] in starts:
+            height = starts.index(levels[-1]) + 1
+            used = [rows[line][own:] for line in range(1, height) if starts[line] in levels]
+            names = ["frame", *rows[height - 1][1:own]]
+            return [*names, *map(_joined, zip(*used, strict=False))], height
     # A separator at the end of the line leaves an empty name.
     return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
 

@@ -88,17 +88,17 @@ def test_axes_are_no_directions(seen, axis):
 @pytest.mark.parametrize(
     ("change", "fields", "words"),
     [
-        (np.radians, {}, "fit the motion better in radians than in degrees"),
-        (lambda a: a / 360, {}, "never exceed a full turn in turns"),
+        (np.radians, {}, "in rad, and fit the motion better than in deg"),
+        (lambda a: a / 360, {}, "never exceed a full turn in turn,"),
         (
             lambda a: (a + 180) % 360 / 360 - 0.5,
             {"heading_unit": "rad"},
             "is heading_unit = 'turn'?",
         ),
-        (np.radians, {"heading_unit": "turn"}, "heading_unit = 'rad' if they are in radians, "),
-        (lambda a: a, {"heading_unit": "rad"}, "heading_unit = 'deg' if they are in degrees"),
+        (np.radians, {"heading_unit": "turn"}, "heading_unit = 'rad' if they are in rad, "),
+        (lambda a: a, {"heading_unit": "rad"}, "heading_unit = 'deg' if they are in deg,"),
         (lambda a: a * 10, {}, "wrapped = false if they count whole turns"),
-        (lambda a: a * 10, {"heading_unit": "rad"}, "exceed a full turn in radians: wrapped"),
+        (lambda a: a * 10, {"heading_unit": "rad"}, "exceed a full turn in rad: wrapped"),
     ],
 )
 def test_headings_of_another_unit_are_refused(seen, change, fields, words):
