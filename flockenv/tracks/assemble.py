@@ -74,14 +74,22 @@ def recording_of(
         repeated names.
     """
     times, poses = _checked_poses(time_s, pose)
-    names, leaders = _names(ids, poses.shape[1]), [str(name) for name in items(leaders, "leaders")]
-    order = _leaders_first(names, leaders)
+    names = [str(name) for name in items(range(poses.shape[1]) if ids is None else ids, "ids")]
+    leaders = [str(name) for name in items(leaders, "leaders")]
+    order = _leaders_first(names, leaders, poses.shape[1])
     poses[..., 2] = unwrapped(poses[..., 2])
-    motion = _velocities(velocity, times, poses)[:, order]
-    poses = poses[:, order]
-    others = {"target": materialized(target), "discs": discs, "walls": walls}
+    own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
+    motion = with_gaps(own, "velocity")
+    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
+    poses, motion = poses[:, order], motion[:, order]
+    others: dict[str, Any] = {
+        "target": materialized(target),
+        "discs": discs,
+        "walls": walls,
+        "pool": pool,
+    }
     parameters = FlockParameters(
-        **_hull(hull), n_boats=len(names), n_leaders=len(leaders), pool=pool, **others
+        **_hull(hull), n_boats=len(names), n_leaders=len(leaders), **others
     )
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)
@@ -113,22 +121,6 @@ def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
     return times, poses
 
 
-def _names(ids: Sequence[str] | None, boats: int) -> list[str]:
-    """Return a name for each boat."""
-    names = [str(name) for name in items(range(boats) if ids is None else ids, "ids")]
-    if len(names) != boats:
-        raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
-    return names
-
-
-def _velocities(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
-    """Return the velocities that are given, or differences of the poses."""
-    given = None if velocity is None else with_gaps(velocity, "velocity")
-    motion = Motion.from_poses(times, poses).velocity if given is None else given
-    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
-    return motion
-
-
 def _hull(hull: tuple[float, float]) -> dict[str, Any]:
     """Return the fields of a hull by name."""
     lengths = series(hull, "hull")
@@ -146,8 +138,10 @@ def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArr
     return phases.astype(PHASES.dtype), analyzed
 
 
-def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
+def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int]:
     """Return the indices of leaders, in their order, and then those of the others."""
+    if len(names) != boats:
+        raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
     refuse_unknown(leaders, names, "leader among the ids")
     if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
         raise ParameterError("ids or leaders holds a name more than once")
@@ -156,7 +150,7 @@ def _leaders_first(names: list[str], leaders: list[str]) -> list[int]:
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
-    distance, speed = (np.hypot(rows[..., 0], rows[..., 1]) for rows in (pose, velocity))
+    speed = np.hypot(velocity[..., 0], velocity[..., 1])
     moves = ~np.isnan(speed).all(axis=0)
     fastest = np.nanmedian(speed[:, moves], axis=0).max(initial=0.0)
     if fastest > _FASTEST_CM_S:
@@ -164,12 +158,11 @@ def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) ->
             f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
-    present = ~np.isnan(distance)
-    margin = 2 * parameters.boat_radius_cm
-    outside = present & ~in_water(parameters.pool, pose, margin)
+    present = ~np.isnan(pose[..., 0])
+    outside = present & ~in_water(parameters.pool, pose, 2 * parameters.boat_radius_cm)
     if outside.any():
         raise ParameterError(
             f"{outside.sum() / present.sum():.0%} of the centers ({outside.sum()}) lie outside the "
             "pool, or in the obstacle in its middle: are positions in cm, from the center of the "
-            "pool, and rows of boats that are not there NaN?"
+            "pool, and rows of missing boats NaN?"
         )

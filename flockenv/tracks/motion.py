@@ -24,26 +24,17 @@ _MOST_BROKEN = 0.5
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocities of boats, and the times and presence of the poses that they come from.
+    """Velocities of boats, and the times and presence of the poses that they come from."""
 
-    Attributes
-    ----------
-    stamps : float64 array, shape (t, n)
-        Times of poses in s.
-    present : bool array, shape (t, n)
-        Whether a boat has a pose.
-    velocity : float64 array, shape (t, n, 3)
-        [cm/s, cm/s, rad/s], NaN where there is no neighbor in time.
-    broken : int
-        Steps that were too fast.
-    longest_s : float
-        Steps that last longer are gaps.
-    """
-
+    #: Times of poses in s, shape (t, n).
     stamps: Floats
+    #: Whether a boat has a pose, shape (t, n).
     present: NDArray[np.bool_]
+    #: [cm/s, cm/s, rad/s], shape (t, n, 3), NaN where there is no neighbor in time.
     velocity: Floats
+    #: Steps that were too fast.
     broken: int
+    #: Steps that last longer are gaps.
     longest_s: float
 
     @classmethod

@@ -10,59 +10,41 @@ _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackReport:
-    """Report of tracks: the used and the omitted parts.
+    """Report of tracks: the used and the omitted parts."""
 
-    Attributes
-    ----------
-    frames, boats, samples : int
-        Different times, different names, and poses that are used.
-    missing : int
-        Boat-frames without a pose: times at which a boat is missing, summed over boats; empty
-        frames count, too.
-    duration_s, step_s, median_speed_cm_s : float
-        From the first to the last time, the median step between times, and the median of the boats'
-        speeds, NaN for none: what a wrong `fps` or `cm_per_unit` shows in.
-    left_out : dict of dict of int
-        Rows that are left out, by reason and boat; "" for no boat.
-    unsorted : int
-        How often the times of a boat go back from one row to the next; rows are sorted.
-    unnamed : bool
-        Whether the column of names holds none, so that all rows are of one boat.
-    gaps : int, and longest_gap_s : float
-        How often a boat is missing between two of its poses, and the longest of these times.
-    broken : int
-        Steps above the greatest speed, such as of wrong detections and of names that were
-        exchanged: both samples are used, and no velocity is taken across.
-    lone : int
-        Samples without a neighbor in time. They have no velocity, and no quantity counts them.
-    cosine : float
-        Mean cosine between heading and motion, weighted by the way. It is near 1 for boats that
-        move ahead, and small or negative if axes, units or directions are wrong; NaN if nothing
-        moves.
-    stuck : dict of (float, float, int)
-        Boats that are at one point in at least 20 samples and a tenth of theirs, or at a point
-        where others are, too, at the time: x and y in units of the file, and the number of samples.
-    held : dict of int
-        Boats that move, and have one heading in at least 20 samples and any other in a tenth of
-        them at most: the number of samples.
-    """
-
+    #: Different times, different names, and poses that are used.
     frames: int
     boats: int
     samples: int
+    #: Times at which a boat is missing, summed over boats; empty frames count, too.
     missing: int
+    #: From the first to the last time, the median step, and the median of the boats' speeds, NaN
+    #: for none: what a wrong `fps` or `cm_per_unit` shows in.
     duration_s: float
     step_s: float
     median_speed_cm_s: float
+    #: Rows that are left out, by reason and boat; "" for no boat.
     left_out: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    #: How often the times of a boat go back from one row to the next; rows are sorted.
     unsorted: int = 0
+    #: Whether the column of names holds none, so that all rows are of one boat.
     unnamed: bool = False
+    #: How often a boat is missing between two of its poses, and the longest of these times.
     gaps: int = 0
     longest_gap_s: float = 0.0
+    #: Steps above the greatest speed, such as of wrong detections and of names that were
+    #: exchanged: both samples are used, and no velocity is taken across.
     broken: int = 0
+    #: Samples without a neighbor in time. They have no velocity, and no quantity counts them.
     lone: int = 0
+    #: Mean cosine between heading and motion, weighted by the way: near 1 for boats that move
+    #: ahead, small or negative if axes, units or directions are wrong; NaN if nothing moves.
     cosine: float = float("nan")
+    #: Boats that are at one point in at least 20 samples and a tenth of theirs, or where others
+    #: are, too, at the time: x and y in units of the file, and the number of samples.
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
+    #: Boats that move, and have one heading in at least 20 samples and any other in a tenth of
+    #: them at most: the number of samples.
     held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:
