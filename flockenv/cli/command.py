@@ -58,7 +58,7 @@ def _refuse_decimal_comma(args: Sequence[str], error: typer.BadParameter) -> Non
 
 
 def _refuse_repeated(order: Sequence[Any], given: Set[str]) -> None:
-    """Refuse an option of one value that a line gives twice.
+    """Refuse an option that takes one value and is given twice.
 
     The same flag may be repeated, but not contradicted.
     """

@@ -82,7 +82,7 @@ class ObservationSpace(_Box):
         return f"ObservationSpace({self.shape}, leaders={self.leaders}, {words})"
 
     def policy_options(self) -> dict[str, Any]:
-        """Return `options`, also of a space that another build stored in the file of a model.
+        """Return `options`, also of a space that another build stored in a model's file.
 
         An option or a block that the file does not know has its default. ParameterError for unknown
         ones.

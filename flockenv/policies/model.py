@@ -36,7 +36,7 @@ class ModelPolicy:
     `LeaderVecEnv`), for any number of leaders, or those of k leaders one after another (trained on
     ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. If the model chooses
     levels (`rudder_levels`), they become rudders. If its environment is a `VecNormalize`,
-    observations are normalized the same way; the file of a model does not hold that.
+    observations are normalized the same way; a model's file does not hold the statistics.
 
     A leader acts the same however many are steered at once, if the network has linear layers with
     hyperbolic tangents or rectifiers between them, like the default `MlpPolicy`. With other layers,
@@ -80,8 +80,7 @@ class ModelPolicy:
         if lacks_normalizing(model):
             raise ParameterError(
                 "a model that was trained in VecNormalize and loaded without it is not accepted: "
-                "load it with env = VecNormalize.load(...), which has how observations were "
-                "normalized"
+                "load it with env = VecNormalize.load(...), which holds the statistics"
             )
         self._take(model, space, model.action_space, provenance)
 

@@ -43,7 +43,7 @@ class LayoutError(ParameterError):
 
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of the file of a recording with these fields, by name."""
+    """Return the arrays, by name, that a recording's file holds for these fields."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
     arrays |= {f"{_OWN}{name}": values for name, values in fields["quantities"].items()}
@@ -67,7 +67,7 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
 
 
 def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
-    """Return the fields of a recording from all arrays of its file."""
+    """Return a recording's fields from the arrays of its file."""
     form = arrays.get("format")
     if form is not None and str(form) != FORMAT:
         raise LayoutError(f"format = {str(form)!r} is not accepted: {FORMAT!r}")

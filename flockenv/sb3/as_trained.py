@@ -29,8 +29,7 @@ class AsTrained:
         if not layers and lacks_normalizing(self.model):
             raise ParameterError(
                 f"{short_repr(self.model)} was trained in VecNormalize and loaded without it: "
-                "evaluate it "
-                "in VecNormalize.load(..., env), which has how observations were normalized"
+                "evaluate it in VecNormalize.load(..., env), which holds the statistics"
             )
         if theirs and own is None and getattr(self.model, "env", None) is not None:
             raise ParameterError(
@@ -45,8 +44,8 @@ class AsTrained:
                 f"{own.obs_rms.mean.shape}, not {shape}: evaluate it in wrappers in the same order"
             )
         if own is not None:
-            for name in theirs:
-                _follow(own, name)
+            for layer in theirs:
+                _follow(own, layer)
         self._normalizing = None if theirs else own
 
     def predict(

@@ -47,7 +47,7 @@ pub fn wrap_angle(angle: f64) -> f64 {
     }
 }
 
-/// The smaller of two numbers. `f64::min` also checks for NaN, which doubles its time.
+/// The smaller of two numbers. `f64::min` also checks for NaN, which takes twice as long.
 #[inline]
 pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }

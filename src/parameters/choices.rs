@@ -34,9 +34,9 @@ impl Target {
 named_choice! {
     /// Time integrator of a substep.
     pub enum Scheme ("scheme") {
-        /// Velocities at half steps, Crank–Nicolson: second order while contacts persist.
+        /// Velocities at half steps and Crank–Nicolson: second order while contacts persist.
         Leapfrog = "leapfrog",
-        /// Semi-implicit Euler with the same quadratic program: first order, the yardstick.
+        /// Semi-implicit Euler with the same quadratic program: first order, for comparison.
         Moreau = "moreau",
         /// Steps 1–6 of the paper's appendix, taken literally.
         Paper = "paper",

@@ -2,7 +2,7 @@
 
 use crate::environment::observation::LEAN_FEATURES;
 
-/// Numbers of the features, and of the weights: the last one belongs to the bias.
+/// Number of weights: one for each lean feature, then the bias.
 pub(super) const SIZE: usize = LEAN_FEATURES + 1;
 
 /// Features, weights, or a row of a matrix.

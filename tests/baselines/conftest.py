@@ -2,11 +2,13 @@
 
 import importlib.util
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from flockenv.policies import load
 
 BASELINES = Path(__file__).parents[2] / "baselines"
 
@@ -22,3 +24,18 @@ def script(request: pytest.FixtureRequest) -> Iterator[ModuleType]:
         patch.syspath_prepend(str(BASELINES))
         spec.loader.exec_module(module)
         yield module
+
+
+@pytest.fixture
+def assert_repeats(script: ModuleType, tmp_path: Path) -> Callable[[list[str]], None]:
+    """Return a function that trains with seeds 3, 3 and 4, and compares the laws."""
+
+    def train(arguments: list[str]) -> None:
+        runs = (("a", "3"), ("b", "3"), ("c", "4"))
+        for folder, seed in runs:
+            script.main([*arguments, "--seed", seed, "--out", str(tmp_path / folder)])
+        one, same, other = (load(tmp_path / folder / seed / "policy.json") for folder, seed in runs)
+        assert one.weights == same.weights != other.weights
+        assert any(one.weights.values())
+
+    return train

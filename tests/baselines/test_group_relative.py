@@ -5,7 +5,6 @@ import dataclasses
 import numpy as np
 import pytest
 
-from flockenv.policies import load
 from flockenv.training.branching import BranchingFlocks
 
 
@@ -58,15 +57,10 @@ def test_it_learns_which_way_to_lean(script, monkeypatch: pytest.MonkeyPatch):
     assert not weights[:-1].any()
 
 
-def test_a_training_is_repeated_by_its_seed_and_its_file_steers(script, tmp_path, monkeypatch):
+def test_a_training_is_repeated_by_its_seed_and_its_file_steers(
+    script, assert_repeats, monkeypatch
+):
     small = dataclasses.replace(script.Settings(), groups=2, size=2, branch_s=8, judged_s=4)
     monkeypatch.setattr(script, "Settings", lambda: small)
     arguments = ["--flock-hours", str(3 * 4 * 8 / 3600)]
-    for folder, seed in (("a", "3"), ("b", "3"), ("c", "4")):
-        script.main([*arguments, "--seed", seed, "--out", str(tmp_path / folder)])
-    one, same, other = (
-        load(tmp_path / folder / seed / "policy.json")
-        for folder, seed in (("a", "3"), ("b", "3"), ("c", "4"))
-    )
-    assert one.weights == same.weights != other.weights
-    assert any(one.weights.values())
+    assert_repeats(arguments)
