@@ -19,8 +19,8 @@ out.mkdir(parents=True, exist_ok=True)
 
 def neighbor_alignment(run):
     """Return the mean cosine between the headings of each boat and its nearest neighbor."""
-    place, heading = run.pose[..., :2], run.pose[..., 2]
-    away = np.linalg.norm(place[:, :, None] - place[:, None], axis=-1)
+    position, heading = run.pose[..., :2], run.pose[..., 2]
+    away = np.linalg.norm(position[:, :, None] - position[:, None], axis=-1)
     away[:, *np.diag_indices(away.shape[1])] = np.inf
     neighbor = np.take_along_axis(heading, away.argmin(axis=2), axis=1)
     return np.cos(heading - neighbor).mean(axis=1)

@@ -22,7 +22,7 @@ fn main() -> Result<()> {
 }
 
 /// Index of a quantity among the recorded ones, which are in the order of the table.
-fn place(name: &str) -> usize {
+fn index_of(name: &str) -> usize {
     let mut names = QUANTITIES.iter().map(|quantity| quantity.name);
     names
         .position(|known| known == name)
@@ -55,7 +55,7 @@ fn means(boat_shape: f64) -> Result<[f64; 3]> {
         flock.advance(0.5, None)?;
         let recorded = flock.recorded(true)?;
         for (sum, name) in sums.iter_mut().zip(NAMES) {
-            *sum += recorded[place(name)].abs() / f64::from(samples);
+            *sum += recorded[index_of(name)].abs() / f64::from(samples);
         }
     }
     Ok(sums)

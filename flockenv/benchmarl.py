@@ -153,7 +153,7 @@ class LeadersTask(Task):
         return task
 
 
-# By name they are known to BenchMARL: ``flockenv/leaders`` and so on.
+# BenchMARL then knows the tasks by name: ``flockenv/leaders`` and so on.
 task_config_registry.update(
     {f"{_ENV_NAME}/{name.lower()}": task for name, task in LeadersTask.__members__.items()}
 )

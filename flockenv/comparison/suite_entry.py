@@ -216,8 +216,8 @@ def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":
         "budget": table["budget"].map([*map(str, BUDGETS), "more"].index),
         "score": -table["score"],
     }
-    places = table.assign(**order).sort_values([*order], kind="stable").index
-    return table.loc[places].reset_index(drop=True)
+    ranked = table.assign(**order).sort_values([*order], kind="stable").index
+    return table.loc[ranked].reset_index(drop=True)
 
 
 _KEYS = (

@@ -142,9 +142,9 @@ class Decisions:
         Parameters
         ----------
         signs
-            Shape (leaders,): of their targets, 1 for clockwise.
+            Sign of each leader's target, shape (leaders,): 1 for clockwise.
         observations
-            For each layout shape (leaders, size): what they observe.
+            The leaders' observations, one array of shape (leaders, size) per layout.
         """
         leaders = sum(len(seat.leaders) for seat in self._seats)
         rudders = np.zeros((len(signs) // leaders, leaders))

@@ -12,8 +12,8 @@ use crate::parameters::FlockParameters;
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
 pub(super) const PENETRATION_SLOP: f64 = 0.002;
-/// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5): the linearization holds no
-/// farther. A boat turns by 1 rad at most.
+/// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5): beyond that the linearization
+/// does not hold. A boat turns by 1 rad at most.
 const LARGEST_STEP: f64 = 0.2;
 
 /// Number of passes after which a substep accepts the remaining overlaps.

@@ -120,7 +120,7 @@ pub(super) fn grid_spacing(view: &View) -> f64 {
     found.unwrap_or_else(|| rounded(1, decade + 1))
 }
 
-/// A symbol as large as the island that turns towards the target.
+/// A symbol as large as the pool's obstacle, on which it is drawn. It turns in the target's direction.
 fn arrow(canvas: &mut Pixmap, middle: Point, radius: f32, target: Target) {
     let symbol = match target {
         Target::Clockwise => "↻",

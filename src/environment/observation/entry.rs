@@ -46,11 +46,11 @@ impl Scale {
     }
 }
 
-/// The angular velocity that others are divided by, in rad/s.
+/// The angular velocity by which others are divided, in rad/s.
 pub(crate) const ANGULAR_VELOCITY_SCALE: f64 = 2.0;
 
-/// The speed that velocities are divided by: the fastest preferred speed of any boat without a spread, 15 cm/s where
-/// all are 0.
+/// The speed by which velocities are divided: the fastest preferred speed of any boat, not counting the spread; 15 cm/s
+/// if all are 0.
 pub(crate) fn speed_scale_cm_s(parameters: &FlockParameters) -> f64 {
     let fastest = parameters.speed_cm_s.max(parameters.reverse_speed_cm_s)
         * parameters.leader_speed_factor.max(1.0);
