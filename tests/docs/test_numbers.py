@@ -240,6 +240,12 @@ def readme() -> list[Number]:
                 ("`moreau` by {} cm ([speed", "moreau / linear"),
             )
         ),
+        *readme_of_studies(page),
+    ]
+
+
+def readme_of_studies(page: str) -> list[Number]:
+    return [
         Number(
             page,
             "50 boats in `wide` by # or more in {} of",
@@ -272,54 +278,43 @@ def readme() -> list[Number]:
     ]
 
 
+DIFFERENCES, CLOSE_MEANS = f"{LEADERS}close_differences.csv", f"{LEADERS}close_means.csv"
+
+
 def leaders(page: str) -> list[Number]:
     """What the front page and the page of leaders say of them."""
-    difference, means = f"{LEADERS}close_differences.csv", f"{LEADERS}close_means.csv"
     words = "leads better than the tuned law, by {}" + (" (" if page == "README.md" else ", and")
     return [
         Number(page, "{} trainings gain", TRAININGS, column="seeds", form="d"),
         Number(page, "trainings gain {} on the tuned law", TRAININGS, column="gain"),
         Number(page, "on average ({} to #; the interval", TRAININGS, column="gain_low"),
         Number(page, "on average (# to {}; the interval", TRAININGS, column="gain_high"),
-        Number(page, words, difference, CLOSE, "mean"),
+        Number(page, words, DIFFERENCES, CLOSE, "mean"),
+        *(leaders_in_brief(page) if page == "README.md" else leaders_at_length(page)),
+    ]
+
+
+def leaders_in_brief(page: str) -> list[Number]:
+    return [
+        Number(page, "({} against #, # episodes)", CLOSE_MEANS, CLOSE, "signed_order"),
+        Number(page, "(# against {}, # episodes)", CLOSE_MEANS, TUNED, "signed_order"),
+        Number(page, "(# against #, {} episodes)", DIFFERENCES, CLOSE, "n", "d"),
+    ]
+
+
+def leaders_at_length(page: str) -> list[Number]:
+    reached = "in other flocks, and reaches a signed order of {}"
+    narrow = (
+        ("tuned law: it reaches {}", "tuned law"),
+        ("and the paper's law {}", "paper's law"),
+    )
+    return [
+        Number(page, reached, CLOSE_MEANS, CLOSE, "signed_order"),
+        Number(page, "and with a single leader by {}", DIFFERENCES, SINGLE, "mean"),
+        Number(page, "eq. (10), reaches {}", f"{LEADERS}means.csv", PAPERS, "signed_order"),
         *(
-            [
-                Number(page, "({} against #, # episodes)", means, CLOSE, "signed_order"),
-                Number(page, "(# against {}, # episodes)", means, TUNED, "signed_order"),
-                Number(page, "(# against #, {} episodes)", difference, CLOSE, "n", "d"),
-            ]
-            if page == "README.md"
-            else [
-                Number(
-                    page,
-                    "in other flocks, and reaches a signed order of {}",
-                    means,
-                    CLOSE,
-                    "signed_order",
-                ),
-                Number(
-                    page,
-                    "and with a single leader by {}",
-                    difference,
-                    SINGLE,
-                    "mean",
-                ),
-                Number(page, "eq. (10), reaches {}", f"{LEADERS}means.csv", PAPERS, "signed_order"),
-                Number(
-                    page,
-                    "tuned law: it reaches {}",
-                    f"{LEADERS}means.csv",
-                    NARROW | {"policy": "tuned law"},
-                    "signed_order",
-                ),
-                Number(
-                    page,
-                    "and the paper's law {}",
-                    f"{LEADERS}means.csv",
-                    NARROW | {"policy": "paper's law"},
-                    "signed_order",
-                ),
-            ]
+            Number(page, words, f"{LEADERS}means.csv", NARROW | {"policy": policy}, "signed_order")
+            for words, policy in narrow
         ),
     ]
 
@@ -410,60 +405,67 @@ def headlines() -> list[Number]:
 
 def studies() -> list[Number]:
     """Numbers of the studies' first paragraphs."""
-    current, density = "studies/current/README.md", "studies/density/README.md"
-    section, loops = "studies/section4/README.md", "studies/transition/README.md"
-    preset = {"reading": "preset constants, narrow, n = 27"}
-    lost = "bw (s) at which mean Ψ_o falls through 0.3, "
-    area = "area of the loop in c4 in |m|, 80 min per noise"
-    cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
-    quiet = {"preset": "simulation", "pool": "wide", "n_boats": 20}
+    return [*section_4(), *current(), *transition(), *density()]
+
+
+LOST_BELOW = "bw (s) at which mean Ψ_o falls through 0.3, "
+
+
+def section_4() -> list[Number]:
+    page = "studies/section4/README.md"
     return [
-        *(
-            Number(section, words, "studies/section4/claims.csv", {"quantity": quantity})
-            for words, quantity in (
-                ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),
-                ("and at {} s (# to #) with three. Through", f"{DENSITY}, 3 leaders, CW"),
-                ("bound of disorder, at {} s", f"{lost}no leaders"),
-                (
-                    "disorder, at # s (# to #), and with three leaders {} s",
-                    f"{lost}with 3 clockwise leaders minus without",
-                ),
-            )
-        ),
-        *(
-            Number(current, words, "studies/current/claims.csv", preset | {"quantity": quantity})
-            for words, quantity in (
-                ("it is lost at {} s (# to #) with the strong", f"{lost}gain 0.32, k = 0"),
-                ("strong current, instead of {} s", f"{lost}gain 0.04, k = 0"),
-            )
-        ),
-        *(
-            Number(
-                loops,
-                words,
-                "studies/transition/claims.csv",
-                {"quantity": area, "reading": cell + n},
-                form=".3f",
-            )
-            for words, n in (
-                ("its area in |m| is {} (", "100"),
-                ("with 100 boats, {} (", "200"),
-                ("with 200 and {} (", "400"),
-            )
-        ),
-        *(
-            Number(
-                density,
-                words,
-                "studies/density/results/quiet.csv",
-                quiet | {"c4": c4},
-                mean("abs_m"),
-            )
-            for words, c4 in (
-                ("|m| is {}, #, #, # and #,", 0.0),
-                ("|m| is #, #, #, # and {},", 0.1),
-            )
-        ),
+        Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
+        for words, quantity in (
+            ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),
+            ("and at {} s (# to #) with three. Through", f"{DENSITY}, 3 leaders, CW"),
+            ("bound of disorder, at {} s", f"{LOST_BELOW}no leaders"),
+            (
+                "disorder, at # s (# to #), and with three leaders {} s",
+                f"{LOST_BELOW}with 3 clockwise leaders minus without",
+            ),
+        )
+    ]
+
+
+def current() -> list[Number]:
+    page, preset = "studies/current/README.md", {"reading": "preset constants, narrow, n = 27"}
+    return [
+        Number(page, words, "studies/current/claims.csv", preset | {"quantity": quantity})
+        for words, quantity in (
+            ("it is lost at {} s (# to #) with the strong", f"{LOST_BELOW}gain 0.32, k = 0"),
+            ("strong current, instead of {} s", f"{LOST_BELOW}gain 0.04, k = 0"),
+        )
+    ]
+
+
+def transition() -> list[Number]:
+    page, area = "studies/transition/README.md", "area of the loop in c4 in |m|, 80 min per noise"
+    cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
+    return [
+        Number(
+            page,
+            words,
+            "studies/transition/claims.csv",
+            {"quantity": area, "reading": cell + n},
+            form=".3f",
+        )
+        for words, n in (
+            ("its area in |m| is {} (", "100"),
+            ("with 100 boats, {} (", "200"),
+            ("with 200 and {} (", "400"),
+        )
+    ]
+
+
+def density() -> list[Number]:
+    page, quiet = "studies/density/README.md", "studies/density/results/quiet.csv"
+    flock = {"preset": "simulation", "pool": "wide", "n_boats": 20}
+    return [
+        Number(page, words, quiet, flock | {"c4": c4}, mean("abs_m"))
+        for words, c4 in (
+            ("|m| is {}, #, #, # and #,", 0.0),
+            ("|m| is #, #, #, # and {},", 0.1),
+        )
     ]
 
 

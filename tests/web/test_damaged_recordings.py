@@ -61,11 +61,17 @@ def test_flipped_bytes(recording, said_of, tmp_path, compressed):
 
 def changes(recording: flockenv.Recording) -> dict[str, dict]:
     """Arrays that a harmed file has in place of those of a whole one; None for none."""
-    n, time = len(recording), recording.time_s
-    gone = recording.pose.copy()
-    gone[3, 1, 0] = np.nan
-    far = np.full_like(recording.pose, 1e300)
-    contacts = recording.contacts
+    return {
+        **changed_origins(recording),
+        **changed_times(recording.time_s),
+        **changed_motions(recording),
+        **changed_series(recording),
+        **changed_contacts(recording.contacts),
+        **changed_names(recording),
+    }
+
+
+def changed_origins(recording: flockenv.Recording) -> dict[str, dict]:
     toml = recording.parameters.to_toml()
     return {
         "another format": {"format": np.array("flockenv recording 999")},
@@ -78,20 +84,48 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "a duration in single precision": {"duration_s": np.array(6.0, np.float32)},
         "a duration without end": {"duration_s": np.array(1e300)},
         "two durations": {"duration_s": np.array([6.0, 6.0])},
+        "parameters out of range": {
+            "parameters": np.array(toml.replace("n_boats = 5", "n_boats = 0"))
+        },
+        "noise that is no number": {"parameters": np.array(toml.replace("bw_s = ", "bw_s = -"))},
+    }
+
+
+def changed_times(time: np.ndarray) -> dict[str, dict]:
+    return {
         "times that run backwards": {"time_s": time[::-1].copy()},
         "times that stand still": {"time_s": np.where(time > 3, 3.0, time)},
         "times before the start": {"time_s": time - 1.0},
         "times beyond the end": {"time_s": time + 1.0},
         "times that are no numbers": {"time_s": np.where(time > 3, np.nan, time)},
         "times in single precision": {"time_s": time.astype(np.float32)},
-        "poses that are no numbers": {"pose": gone},
+    }
+
+
+def changed_motions(recording: flockenv.Recording) -> dict[str, dict]:
+    far = np.full_like(recording.pose, 1e300)
+    return {
+        "poses that are no numbers": {"pose": half_there(recording)},
         "velocities without end": {"velocity": np.full_like(recording.velocity, np.inf)},
         "fewer poses": {"pose": recording.pose[:-1]},
-        "poses of more boats": {"pose": np.zeros((n, 6, 3))},
+        "poses of more boats": {"pose": np.zeros((len(recording), 6, 3))},
         "poses out of reach": {"pose": far},
         "velocities out of reach": {"velocity": -far},
         "poses in whole numbers": {"pose": recording.pose.astype(np.int64)},
         "velocities in single precision": {"velocity": recording.velocity.astype(np.float32)},
+    }
+
+
+def half_there(recording: flockenv.Recording) -> np.ndarray:
+    """Return poses of which one lacks a number."""
+    pose = recording.pose.copy()
+    pose[3, 1, 0] = np.nan
+    return pose
+
+
+def changed_series(recording: flockenv.Recording) -> dict[str, dict]:
+    n = len(recording)
+    return {
         "unknown phases": {"phase": np.full(n, "fwd")},
         "longer names of phases": {"phase": recording.phase.astype("<U8")},
         "phases that are not there": {"phase": np.full(n, "", "<U4")},
@@ -108,22 +142,28 @@ def changes(recording: flockenv.Recording) -> dict[str, dict]:
         "an own quantity without a name": {"quantity_1st": np.zeros(n)},
         "an own quantity in whole numbers": {"quantity_own": np.zeros(n, np.int64)},
         "a short own quantity": {"quantity_own": np.zeros(2)},
+    }
+
+
+def changed_contacts(contacts: flockenv.ContactSeries) -> dict[str, dict]:
+    return {
         "contacts of more boats": {"contacts_i": contacts.i + 5},
         "contacts of no obstacle": {"contacts_j": np.full_like(contacts.j, -9)},
         "contacts that pull": {"contacts_force": -contacts.force},
         "more contacts than there are": {"contacts_count": contacts.count + 1},
         "contacts that are no numbers": {"contacts_normal": contacts.normal * np.nan},
         "contacts in double precision": {"contacts_force": contacts.force.astype(np.float64)},
+    }
+
+
+def changed_names(recording: flockenv.Recording) -> dict[str, dict]:
+    return {
         "fewer names than boats": {"ids": np.array(["a", "b"])},
         "names twice": {"ids": np.array(["a"] * 5)},
         "names that are numbers": {"ids": np.arange(5)},
-        "a boat that is half there": {"ids": np.array([*"abcde"]), "pose": gone},
+        "a boat that is half there": {"ids": np.array([*"abcde"]), "pose": half_there(recording)},
         "unsolved substeps that are a list": {"statistics_unsolved": np.array([0, 0])},
         "a deepest overlap that is a text": {"statistics_worst_overlap_cm": np.array("0")},
-        "parameters out of range": {
-            "parameters": np.array(toml.replace("n_boats = 5", "n_boats = 0"))
-        },
-        "noise that is no number": {"parameters": np.array(toml.replace("bw_s = ", "bw_s = -"))},
     }
 
 
