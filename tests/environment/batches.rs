@@ -114,24 +114,13 @@ fn resets_happen_as_a_whole() {
 
 #[test]
 fn a_flock_that_explodes_ends_its_own_episode_alone() {
-    // Constants so wild that spins leave the range of a state.
-    let wild = FlockParameters {
-        c0: 1e6,
-        c1: 0.0,
-        c2: 1e6,
-        c3: 0.0,
-        speed_cm_s: 1e6,
-        dt_s: 0.1,
-        scheme: Scheme::Moreau,
-        ..parameters(1)
-    };
     for mode in [
         Autoreset::NextStep,
         Autoreset::SameStep,
         Autoreset::Disabled,
     ] {
         let own = changed(settings(30), |own| own.autoreset_mode = mode);
-        let members = vec![parameters(1), wild.clone(), parameters(1)];
+        let members = vec![parameters(1), wild(), parameters(1)];
         let mut batch = EnvBatch::new(own.clone(), members).unwrap();
         batch.reset(&[seeded(1), seeded(2), seeded(3)]).unwrap();
         let (steps, error) = (1..=20)
@@ -140,13 +129,6 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
         let words = error.to_string();
         assert!(matches!(error, FlockError::Solver(_)));
         assert!(words.starts_with("flock 1: ") && words.ends_with("the other flocks go on"));
-        let episodes = |batch: &EnvBatch| -> Vec<_> {
-            let episode = |env: &FlockEnv| {
-                let episode = env.episode().unwrap();
-                (episode.schedule().step, episode.has_ended())
-            };
-            batch.envs().iter().map(episode).collect()
-        };
         assert_eq!(
             episodes(&batch),
             [(steps, false), (steps - 1, true), (steps, false)]
@@ -169,6 +151,29 @@ fn a_flock_that_explodes_ends_its_own_episode_alone() {
         }
         assert_eq!(flock(&batch, 2).poses(), flock(&alone, 0).poses());
     }
+}
+
+/// Constants so wild that spins leave the range of a state.
+fn wild() -> FlockParameters {
+    FlockParameters {
+        c0: 1e6,
+        c1: 0.0,
+        c2: 1e6,
+        c3: 0.0,
+        speed_cm_s: 1e6,
+        dt_s: 0.1,
+        scheme: Scheme::Moreau,
+        ..parameters(1)
+    }
+}
+
+/// The control steps of each flock's episode, and whether it has ended.
+fn episodes(batch: &EnvBatch) -> Vec<(u32, bool)> {
+    let episode = |env: &FlockEnv| {
+        let episode = env.episode().unwrap();
+        (episode.schedule().step, episode.has_ended())
+    };
+    batch.envs().iter().map(episode).collect()
 }
 
 #[test]
