@@ -38,7 +38,7 @@ OTHERS = {
     "docs/environments/index.md": {"flockenv/leaders", "flockenv/lean"},
     "docs/extend/task.md": {"carousel.monitor.csv"},
     "docs/reference/files.md": {"flockenv recording 1", "runs/VERSION-RESULTS/XX/KEY.npz"},
-    "docs/tracks.md": {"model.toml"},
+    "docs/tracks.md": {"model.toml", "trajectories.csv"},
 }
 """What readers of a page make themselves, and names of other programs."""
 
