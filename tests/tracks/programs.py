@@ -46,6 +46,7 @@ PROGRAMS: dict[str, Honest] = {
             .rename(columns={"frame": "seconds"})
         ),
         {**PLACE, "frame": "seconds", "x": "x{id}", "y": "y{id}", "heading": None},
+        name="trajectories.csv",
         has_headings=False,
     ),
     "idtracker.ai with angles": Honest(
