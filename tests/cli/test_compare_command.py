@@ -3,7 +3,6 @@
 import json
 import re
 import shlex
-import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,7 @@ import pandas as pd
 import pytest
 
 import flockenv
-from flockenv.cli.compare import REFERENCES
+from flockenv.cli.compare_plan import REFERENCES
 from flockenv.comparison.case import Case
 from flockenv.comparison.suite import TASKS
 from flockenv.envs.observation import observation_entries
@@ -211,8 +210,7 @@ def test_errors_are_one_line_with_exit_code_2(
 
 def test_a_suite_says_first_how_long_it_takes(cli, tmp_path, monkeypatch):
     short = [replace(task, seeds=task.seeds[:2], episode_s=20.0) for task in TASKS[:2]]
-    command = sys.modules["flockenv.cli.compare"]  # The name is the function's, too.
-    monkeypatch.setattr(command, "tasks_named", lambda *_: short)
+    monkeypatch.setattr("flockenv.cli.compare_plan.tasks_named", lambda *_: short)
     before = []
     run = Case.run
     monkeypatch.setattr(
