@@ -146,8 +146,7 @@ def _link_environment_pages(
 
 
 def _link_copies(app: Sphinx, docname: str, source: list[str]) -> None:
-    # Links to and from the folder studies, and to notebooks, where they were copied to; notebooks
-    # have their depth.
+    # Studies and notebooks are copied into the site's sources, so links to and from them change.
     link, here = (
         ("../../studies/", "../studies/") if "/" in docname else ("../studies/", "studies/")
     )

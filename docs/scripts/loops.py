@@ -1,7 +1,7 @@
 """The moving pictures of the pages: drawn when pages are built, and kept until they would differ.
 
-A picture depends on the commands or the code that make it, and on the package; it lies below
-docs/_build, beside a still of it for those whose system asks for less motion.
+A picture depends on the package and on the commands or the code that draw it. It lies below
+docs/_build, beside a still for readers whose system asks for less motion.
 """
 
 import hashlib

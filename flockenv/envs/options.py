@@ -151,7 +151,7 @@ def _instead(name: str, counts: str | None) -> str:
 
 
 def _plain(value: object) -> Any:
-    """Return a mapping, or each of a list, as the dictionary that the core reads."""
+    """Return a mapping, or each mapping of a list, as the dictionary that the core reads."""
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
     return dict(value) if isinstance(value, Mapping) else value

@@ -81,15 +81,15 @@ class LeadersEnv(
     of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and, of its contacts,
     `contact_push`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
 
-    With `target` a list of "cw" and "ccw", one per leader, each leader has a target of its own: its
-    observation, the reflection by `mirror_to_target`, its actions and all its reward terms refer to
-    that target, as if it were everybody's. Leaders with opposite targets play a general-sum game:
-    their `signed_order` sums to zero, the terms of a leader alone do not. The joint reward stays
-    the mean over leaders, so that k1 leaders against k2 are rewarded with (k1 - k2)/k of the signed
-    order towards the k1 leaders' target. Quantities of the whole flock refer to leader 0's target:
-    the `signed_order` and `share_towards_target` of the `"episode_summary"`, the reflection of
-    `state()`, and the flock features (a `LeaderVecEnv` has them in the frame of each slot's
-    target). The `target` of `state()` is the mean over leaders.
+    If `target` is a list of "cw" and "ccw", one per leader, each leader has its own target. Its
+    observation, the reflection by `mirror_to_target`, its actions and its reward terms refer to
+    that target. Leaders with opposite targets play a general-sum game: their `signed_order` sums to
+    zero, the terms of a leader alone do not. The joint reward stays the mean over leaders, so that
+    k1 leaders against k2 are rewarded with (k1 - k2)/k of the signed order towards the k1 leaders'
+    target. Quantities of the whole flock refer to leader 0's target: the `signed_order` and
+    `share_towards_target` of the `"episode_summary"`, the reflection of `state()`, and the flock
+    features (a `LeaderVecEnv` has them in the frame of each slot's target). The `target` of
+    `state()` is the mean over leaders.
 
     ## Starting state
     Boats start at rest at random positions with random headings, without overlap, in phase fw. The

@@ -358,7 +358,7 @@ class LeaningLaw(LawPolicy):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the law to a JSON file, whole or not at all.
 
-        If it cannot be written, which is an OSError, what was there before is still there.
+        If it cannot be written, an OSError is raised and the old file is still there.
         """
         write_text(path, self.to_json() + "\n")
 

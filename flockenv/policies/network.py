@@ -236,7 +236,7 @@ class NetworkPolicy(RowPolicy):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the policy to an ``.npz`` file, whole or not at all.
 
-        If it cannot be written, which is an OSError, what was there before is still there.
+        If it cannot be written, an OSError is raised and the old file is still there.
         """
         header, arrays = self._contents()
         stored = {"format": FORMAT, "observation_version": OBSERVATION_VERSION, **header}

@@ -359,7 +359,7 @@ class Recording(HintsAtNames):
         ParameterError
             For a name that does not end in ``.npz``.
         OSError
-            If the file cannot be written; what was there before is still there.
+            If the file cannot be written; the old file is still there then.
         """
         if Path(path).suffix.lower() != ".npz":
             words = "a name that ends in .npz; to_dataframe() has to_csv(), to_parquet() and others"

@@ -41,7 +41,7 @@ def save_animation(
     TypeError
         For frames that are not such arrays.
     OSError
-        If the file cannot be written; what was there before is still there.
+        If the file cannot be written; the old file is still there then.
     MissingExtraError
         If the extra is not installed.
     """

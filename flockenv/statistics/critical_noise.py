@@ -60,7 +60,7 @@ def critical_noise(
     if max(group[:, 1].mean() for group in groups) < LEAST_ROTATION:
         return unknown
 
-    def of_places(*indices: object, axis: int) -> NDArray[np.float64]:
+    def of_drawn_runs(*indices: object, axis: int) -> NDArray[np.float64]:
         drawn = [group[np.asarray(at, int)] for group, at in zip(groups, indices, strict=True)]
         psi_o, rotation = (
             np.stack(np.broadcast_arrays(*(curve[..., column].mean(-1) for curve in drawn)))
@@ -68,7 +68,9 @@ def critical_noise(
         )
         return loss_of_order(levels, psi_o, rotation)
 
-    return bootstrap_interval([np.arange(len(g)) for g in groups], of_places, seed, paired=False)
+    return bootstrap_interval(
+        [np.arange(len(g)) for g in groups], of_drawn_runs, seed, paired=False
+    )
 
 
 def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> NDArray[np.float64]:

@@ -163,7 +163,7 @@ pub(crate) fn wrong_kind<T>(field: &'static str, accepted: impl Into<String>) ->
     Err(FlockError::Kind { field, accepted })
 }
 
-/// The name that the value of a field is.
+/// A field's value as a name.
 ///
 /// # Errors
 /// [`FlockError::Kind`] for anything else.

@@ -313,7 +313,7 @@ fn partner(contact: &ContactForce) -> i32 {
     }
 }
 
-/// Draws flocks at one size, several threads one after another and none with the interpreter.
+/// Draws flocks at one size. Threads take turns, and the interpreter lock is released meanwhile.
 #[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
 pub(super) struct PyFrameRenderer(Mutex<FrameRenderer>);
 

@@ -46,9 +46,9 @@ pub(crate) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OW
     ]
 }
 
-/// Cosine and sine of the LAP orientation φ. Where the heading is opposite to the target's, to rounding, they
-/// come by way of the steering law's own misalignment δ = φ − φ_target: its jump at δ = ±π then has the same
-/// sign for whoever reads the observation.
+/// Cosine and sine of the LAP orientation φ. If the heading is opposite to the target's, up to rounding, they are
+/// computed from the steering law's misalignment δ = φ − φ_target. A reader of the observation then finds the same sign
+/// at the jump δ = ±π as the law.
 fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
     let orientation = frame.components(view.hulls[leader].axis);
     let target = view.targets.of(leader);
