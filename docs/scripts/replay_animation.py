@@ -72,7 +72,7 @@ def frames(page: Path) -> Iterator[Image.Image]:
         # The frames together.
         Select(driver.find_element("id", "speed")).select_by_value(f"{STEP_S * FPS:g}")
         Select(driver.find_element("id", "trails")).select_by_value("5")
-        # The page plays by itself; these frames are taken at times of their own.
+        # The page plays in real time, but these frames are taken at fixed times of the recording.
         driver.execute_script("document.activeElement.blur(); player.toggle()")
         for frame in range(FRAMES):
             driver.execute_script(

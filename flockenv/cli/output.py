@@ -40,9 +40,9 @@ def load_recording(
 
     Rows that were left out are printed, unless `quiet`, and passed to `report`.
 
-    The layout of tracks is by default that of the TOML file beside them. If there is none, a layout
-    is guessed from the columns, and the lines to check are printed. A ParameterError names a file
-    that cannot be read, is damaged, or is neither a recording nor a table.
+    The layout of tracks is read from the TOML file beside them unless one is given. If there is
+    none, a layout is guessed from the columns, and the lines to check are printed. A ParameterError
+    names a file that cannot be read, is damaged, or is neither a recording nor a table.
     """
     from flockenv.tracks import check_ending, description_of, guess_layout, read_layout, read_tracks
 

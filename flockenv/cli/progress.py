@@ -1,4 +1,4 @@
-"""Work that a command does: how far it is, and its end by Ctrl-C."""
+"""Progress of a command's work, and how Ctrl-C ends it."""
 
 import functools
 from collections.abc import Callable, Iterator

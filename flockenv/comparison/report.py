@@ -64,7 +64,7 @@ class ComparisonReport:
 
     @cached_property
     def differences(self) -> "pd.DataFrame":
-        """Signed order of each policy minus that of each one after it, its ``reference``.
+        """Signed order of each policy minus that of every later policy, its ``reference``.
 
         Seed by seed, for each case and number of leaders; empty for a single policy.
         """
@@ -199,7 +199,7 @@ def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str
 
 
 def titled(policy: Policy | Mapping[str, Policy]) -> str:
-    """Return the name of a policy, or those of the policies of leaders, in one line."""
+    """Return in one line the name of a policy, or the names of each leader's policy."""
     if isinstance(policy, Policy):
         return policy.name
     return "; ".join(f"{leader}: {one.name}" for leader, one in policy.items())

@@ -173,7 +173,7 @@ def scored(
     flocks: int = FLOCKS,
     progress: Progress = no_progress,
 ) -> Iterator[tuple["pd.DataFrame", "pd.DataFrame"]]:
-    """Score entries one after another, each on those of the levels that it has policies for.
+    """Score entries one after another, each on the levels for which it has policies.
 
     After each entry, yields the ranked rows of all entries so far, and the orders of all flocks,
     which start with those of each level's two references. Raises the errors of `SuiteEntry.run`.

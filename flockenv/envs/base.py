@@ -1,4 +1,4 @@
-"""Base classes of the environments: of all, of those of many flocks, and of those of one."""
+"""Base classes of all environments, of those with many flocks, and of those with one."""
 
 import copy
 from typing import Any, ClassVar, Self

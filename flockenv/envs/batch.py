@@ -50,7 +50,7 @@ class LeaderBatch:
         new_seed: Callable[[], int],
         mask: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Start episodes, of all flocks or of those in a mask, as `reset_requests` asks.
+        """Start episodes of all flocks, or of those in a mask, from `reset_requests`.
 
         `new_seed` gives a seed to flocks that never had one.
         """

@@ -13,7 +13,7 @@ class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
     Names in another case or without their unit are refused, too. A subclass may have attributes of
-    any name but those in `_kept`. Its methods set them on ``self``, and its classmethods on
+    any name, except those in `_kept`. Its methods set them on ``self``, and its classmethods on
     instances that they make. From then on they may be set from outside too, as may attributes of
     its class.
     """

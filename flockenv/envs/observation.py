@@ -1,4 +1,4 @@
-"""Observations of leaders: their tables, and those of a flock without an environment."""
+"""Observations of leaders: their tables, and observing a flock without an environment."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple

@@ -22,7 +22,8 @@ _ACCEPTED = (
     "linear layers with biases, after each of them a LayerNorm or none, and then one of "
     f"{', '.join(_ACTIVATIONS)} or none"
 )
-#: How many observations a module is tried on, and how far its output may be from its layers'.
+#: Number of observations on which a module is tried, and the largest difference from its layers'
+#: output.
 _TRIED, _AS_NEAR_AS = 16, 1e-4
 
 

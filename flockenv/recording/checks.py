@@ -131,7 +131,7 @@ def check_share(after: object) -> None:
 
 
 def check_ids(ids: object, boats: int) -> None:
-    """Refuse a number of names other than that of boats, and repeated names."""
+    """Refuse names unless there is one per boat and none twice."""
     if not isinstance(ids, np.ndarray) or ids.dtype.kind != "U" or ids.shape != (boats,):
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
     if len(set(ids.tolist())) != boats:

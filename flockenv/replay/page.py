@@ -128,7 +128,7 @@ def write_replay(
 def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
     """Return a page of at most `MOST_BYTES`, and which of the samples it shows."""
     longest = max(len(recording) for recording in recordings.values())
-    # Samples that are further apart compress no better: nothing is packed that cannot fit.
+    # Sparser samples compress no better, so pages that cannot fit are not packed.
     least_every = max(1.0, longest / _MOST_SAMPLES)
     for every in _THINNING:
         if every < least_every:

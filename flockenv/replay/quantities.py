@@ -46,7 +46,7 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
 
 
 def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
-    """Return where the minute of the largest change starts, in s, and what it is in words.
+    """Return the start in s of the minute with the largest change, and a description.
 
     Of one recording it is the minute in which signed order changes most: the mean over its second
     half minus that over its first, in absolute value. Of two it is the minute in which the mean of

@@ -67,7 +67,7 @@ class AsTrained:
 
 
 def trained(model: object, flocks: VecEnv) -> AsTrained:
-    """Return a model as it acts in flocks whose task is that of its training."""
+    """Return a model that acts as it was trained, in flocks with the task of its training."""
     (leaders,) = (layer.leaders for layer in layers_of(flocks) if isinstance(layer, PerFlock))
     _check_task(model, flocks, leaders)
     return AsTrained(model, flocks, leaders)

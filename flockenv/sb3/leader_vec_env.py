@@ -279,7 +279,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             }
             summary = infos[slot]["episode_summary"]
             if leader == 0:
-                # The infos of `Monitor`, without the time: they depend on seeds alone.
+                # The infos of `Monitor` without its time, so that they depend only on seeds.
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 

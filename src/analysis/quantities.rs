@@ -188,7 +188,7 @@ impl Quantity {
     }
 }
 
-/// Numbers of recorded quantities, and of those averaged in an episode summary.
+/// Number of recorded quantities, and number of quantities averaged in an episode summary.
 const COUNTS: [usize; 2] = {
     let (mut recorded, mut summarized, mut index) = (0, 0, 0);
     while index < QUANTITIES.len() {

@@ -22,7 +22,7 @@ pub struct Contact {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// End of `boat` at which it is.
+    /// End of `boat` at which the contact is.
     pub feature: Feature,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,

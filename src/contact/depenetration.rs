@@ -13,7 +13,7 @@ use crate::parameters::FlockParameters;
 /// to the velocities.
 pub(super) const PENETRATION_SLOP: f64 = 0.002;
 /// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5): beyond that the linearization
-/// does not hold. A boat turns by 1 rad at most.
+/// does not hold. A boat turns by at most 1 rad.
 const LARGEST_STEP: f64 = 0.2;
 
 /// Number of passes after which a substep accepts the remaining overlaps.

@@ -48,7 +48,8 @@ impl CachedImpulse {
 /// The contacts and impulses of one substep, to be looked up by contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WarmStartCache {
-    /// In the order of detection, the contacts of a pair one after the other; those without an impulse may be missing.
+    /// Entries in the order of detection, with the contacts of a pair one after the other. Contacts without an impulse
+    /// may be missing.
     entries: Vec<CachedImpulse>,
     /// The last entry of each boat, and for each entry the one before it of the same boat.
     of_boat: Vec<u32>,

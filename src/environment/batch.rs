@@ -317,7 +317,7 @@ const FLOCKS_BETWEEN_LOOKS: usize = 16;
 
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.
 const MOST_BYTES: u64 = 16 << 30;
-/// Bytes of a flock besides its boats, and of a boat with its contacts, at most.
+/// Upper bounds of the bytes of a flock without its boats, and of a boat with its contacts.
 const BYTES_A_FLOCK: u64 = 16 << 10;
 const BYTES_A_BOAT: u64 = 2 << 10;
 

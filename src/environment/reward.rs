@@ -65,7 +65,7 @@ impl RewardTerm {
     }
 }
 
-/// Terms as they are stored: by name, 0 where one is missing.
+/// The stored form of terms: by name, 0 if one is missing.
 pub(super) mod stored_terms {
     use super::{RewardTerm, RewardTerms, by_name};
 
@@ -88,7 +88,7 @@ pub(super) mod stored_terms {
     }
 }
 
-/// Rows of terms, one per leader, as they are stored: a column a term, by name.
+/// The stored form of rows of terms, one row per leader: a column per term, by name.
 pub(super) mod stored_rows {
     use super::{RewardTerm, RewardTerms, TERMS, by_name};
 
@@ -274,7 +274,7 @@ impl Setting for Weights {
     }
 }
 
-/// The terms of one control step: those of the flock worked out once, those of a leader on request.
+/// The terms of one control step: the flock's are computed once, a leader's on request.
 #[derive(Debug, Clone, Copy)]
 pub struct Reward {
     reference: Target,

@@ -46,7 +46,7 @@ impl EpisodeSchedule {
         (schedule, share)
     }
 
-    /// The targets of the control step that comes next; after the last one, those of the last.
+    /// The targets of the next control step; after the last step, the targets of the last.
     pub fn targets(&self) -> Targets {
         if !self.alternates {
             return self.targets.clone();
@@ -63,8 +63,8 @@ impl EpisodeSchedule {
     }
 }
 
-/// The seeds of an environment's episodes: the first is the environment's own, the others follow from it
-/// and their number.
+/// The seeds of an environment's episodes: the first is the environment's own, and the others follow from it and from
+/// the episode's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct EpisodeSeeds {
     seed: u64,

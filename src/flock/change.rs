@@ -8,7 +8,7 @@ use crate::parameters::{FlockParameters, Pool, Targets};
 /// A change of a flock at some time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
-    /// The direction that leaders follow from now on, or that of each.
+    /// The direction that all leaders follow from now on, or one direction per leader.
     Target(Targets),
     /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the
     /// pool changes, each boat keeps its angle about the center and its share of the way between the walls. Boats that

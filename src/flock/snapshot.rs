@@ -164,8 +164,8 @@ impl Flock {
         flock
     }
 
-    /// Continues from a snapshot of a flock with the same parameters (the target aside, which the
-    /// snapshot brings along), with the noise of the snapshot or that of another seed.
+    /// Continues from a snapshot of a flock with the same parameters (except for the target, which the snapshot holds),
+    /// with the noise of the snapshot or that of another seed.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`]; the flock is unchanged then.

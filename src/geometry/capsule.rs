@@ -95,7 +95,7 @@ impl HullPose {
         }
     }
 
-    /// Replaces `into` by the hulls at some poses, bit for bit those of [`Self::new`].
+    /// Replaces `into` by the hulls at some poses, with the bits of [`Self::new`].
     pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
         into.clear();
         let (fours, rest) = poses.as_chunks::<4>();
@@ -110,7 +110,7 @@ impl HullPose {
         into.extend(rest.iter().map(Self::new));
     }
 
-    /// Replaces the hulls of some boats by those at their poses, bit for bit those of [`Self::new`].
+    /// Replaces the hulls of some boats by the hulls at their poses, with the bits of [`Self::new`].
     pub(crate) fn replace_some(hulls: &mut [Self], poses: &[Pose], boats: &[u32]) {
         for four in boats.chunks(4) {
             let boat = |lane: usize| four[lane.min(four.len() - 1)] as usize;

@@ -1,4 +1,4 @@
-//! Laws of leaders, as they steer by themselves and as they read observations.
+//! Laws of leaders: by name, by gains or from JSON, and evaluated from observations.
 
 use super::error::refusal;
 use super::observation::layout_from;

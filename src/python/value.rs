@@ -163,7 +163,7 @@ pub(super) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) 
 /// Repr of a value for messages, cut to fit a line.
 fn shown(object: &Bound<'_, PyAny>) -> String {
     const LONGEST: usize = 80;
-    // A repr may fail: that of an int of more than 4300 digits does.
+    // A repr may fail; for an int of more than 4300 digits it does.
     let full = object.repr().map_or_else(
         |_| "a value that cannot be printed".to_owned(),
         |repr| repr.to_string_lossy().into_owned(),

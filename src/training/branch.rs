@@ -149,7 +149,7 @@ impl Task {
         }
     }
 
-    /// Leads one flock through a branch; `offsets` has those of all leaders, one hold after another.
+    /// Leads one flock through a branch; `offsets` holds all leaders' offsets, one hold after another.
     fn lead(
         &self,
         keep_going: KeepGoing,

@@ -265,7 +265,7 @@ impl Trainer {
         )
     }
 
-    /// A training from its bytes, which goes on to the same bits.
+    /// A training from its bytes, which continues to the same bits.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed training with finite weights.

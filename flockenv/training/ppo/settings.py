@@ -103,7 +103,7 @@ class TrainingSettings:
         }
 
     def held_out(self) -> FlockParameters:
-        """Return the flocks that trained leaders are compared in: those of the training.
+        """Return the flocks in which trained leaders are compared: the training's own kind.
 
         They have its physics, and its changes of the flock. If it draws the noise from a range,
         they have the critical one.

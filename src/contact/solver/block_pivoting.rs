@@ -121,7 +121,7 @@ impl BlockPivoting {
             );
             return true;
         }
-        // Contacts that neither carry nor close anything: their boats move as they are.
+        // Contacts that carry no impulse and do not close: their boats keep their free velocities.
         let is_idle = contacts
             .iter()
             .all(|&k| !active[k as usize] && self.rights[k as usize] >= 0.0);

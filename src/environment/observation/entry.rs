@@ -4,7 +4,7 @@
 use crate::geometry::Hull;
 use crate::parameters::{FlockParameters, Value, named_fields};
 
-/// The physical value of an observed 1.0, and for the radius that of 0.0 too.
+/// The physical value of an observed 1.0; for the radius also the physical value of 0.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "`description` says what each is")]
 pub enum Scale {
@@ -78,7 +78,7 @@ fn radial(parameters: &FlockParameters) -> (f64, f64) {
 /// One number of an observation or of the global state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Its name; entries of a neighbor or boat share names with those of the others.
+    /// Its name; all neighbors have entries of the same names, and so do all boats.
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: &'static str,

@@ -22,7 +22,7 @@ pub struct ObservationLayout {
     pub is_mirrored: bool,
 }
 
-/// Blocks as they are stored: by name; missing ones occur as often as by default.
+/// The stored form of blocks, by name; missing ones occur as often as by default.
 mod stored_repeats {
     use super::Block;
     use crate::by_name;

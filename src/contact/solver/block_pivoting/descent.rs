@@ -89,7 +89,7 @@ impl IslandSolver {
     }
 
     /// Activates all contacts whose gaps close, or the fastest of them, at most as many as can be independent of each
-    /// other. Those that would have to pull leave again at once; in a large island the others are mostly far apart.
+    /// other. Contacts that would have to pull leave again at once. In a large island the rest are mostly far apart.
     fn enter_violated(&mut self) {
         let rows = &self.rows.rows;
         let active = rows.iter().filter(|row| row.is_active).count();

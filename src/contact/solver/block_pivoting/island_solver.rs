@@ -188,7 +188,8 @@ impl IslandSolver {
         (self.violations, self.worst) = self.rows.update();
     }
 
-    /// Subtracts the work of a round that was not the last from the budget, apart from long rows of the factor.
+    /// Subtracts the work of a round, unless it was the last, from the budget; long rows of the factor have been
+    /// subtracted already.
     #[cold]
     pub(super) fn charge_round(&mut self) {
         let rows = ROUND * self.rows.rows.len() as u64;

@@ -80,7 +80,7 @@ macro_rules! declare_blocks {
             /// Number of occurrences of each by default.
             pub(super) const DEFAULT: [usize; Self::COUNT] = [$($default),+];
 
-            /// Whether the block may occur more than once, as that of a neighbor does.
+            /// Whether the block may occur more than once, like a neighbor's.
             pub fn is_counted(self) -> bool {
                 match self { $(Self::$block => declare_blocks!(@ $counted),)+ }
             }
@@ -90,7 +90,7 @@ macro_rules! declare_blocks {
                 match self { $(Self::$block => concat!("observation ", $name),)+ }
             }
 
-            /// Its entries; those of a counted block are one neighbor's or obstacle's.
+            /// Its entries; a counted block has the entries of one neighbor or obstacle.
             pub(crate) fn entries(self) -> &'static [Entry] {
                 match self { $(Self::$block => &$module::$entries,)+ }
             }
