@@ -14,6 +14,11 @@ use crate::geometry::Velocity;
 use island_solver::IslandSolver;
 use rows::NONE;
 
+/// Rows that solvers may hold memory for, and how many more per boat. Each solver keeps what the largest of its islands
+/// took, which sums up to many times the rows of a large flock, if its islands have other numbers in each substep.
+const MOST_ROWS_HELD: usize = 1000;
+const MOST_ROWS_HELD_A_BOAT: usize = 8;
+
 /// The solvers of islands.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlockPivoting {
@@ -22,9 +27,12 @@ pub(super) struct BlockPivoting {
     /// Whether each island keeps its factor for another solve. Otherwise all share one solver, whose memory stays
     /// in the processor's cache.
     pub keeps_factors: bool,
-    islands: Vec<IslandSolver>,
-    /// Whether any of them is built.
-    is_any_built: bool,
+    solvers: Vec<IslandSolver>,
+    /// The solver of each island, or [`NONE`], and how many solvers have an island.
+    solver_of: Vec<u32>,
+    taken: usize,
+    /// Rows that the solvers have memory for.
+    rows_held: usize,
     /// Multiplications that are left; negative if an island was given up.
     pub budget: i64,
     /// J·v_free and b, contact by contact.
@@ -48,14 +56,18 @@ impl BlockPivoting {
 
     /// Forgets the factors, and prepares for the next numbers of islands and boats.
     pub(super) fn reset(&mut self, boats: usize, islands: usize) {
-        let solvers = if self.keeps_factors { islands } else { 1 };
-        if self.islands.len() < solvers {
-            self.islands.resize_with(solvers, IslandSolver::default);
+        if self.keeps_factors {
+            self.solver_of.clear();
+            self.solver_of.resize(islands, NONE);
+            self.taken = 0;
         }
-        for island in &mut self.islands {
-            island.is_built = false;
+        if self.rows_held > MOST_ROWS_HELD + MOST_ROWS_HELD_A_BOAT * boats {
+            self.solvers.clear();
+            self.rows_held = 0;
         }
-        self.is_any_built = false;
+        if self.solvers.is_empty() {
+            self.solvers.push(IslandSolver::default());
+        }
         self.indices.resize(boats, NONE);
     }
 
@@ -65,10 +77,8 @@ impl BlockPivoting {
         self.rates.clear();
         self.rates
             .extend(contacts.map(|contact| contact.gap_rate(problem.free)));
-        if self.is_any_built {
-            for island in self.islands.iter_mut().filter(|island| island.is_built) {
-                island.set_free(problem);
-            }
+        for solver in &mut self.solvers[..self.taken] {
+            solver.set_free(problem);
         }
     }
 
@@ -149,14 +159,30 @@ impl BlockPivoting {
         velocities: &mut [Velocity],
         report: &mut SolveReport,
     ) {
-        self.is_any_built |= !self.left.is_empty();
         let indices = &mut self.indices;
         for &number in &self.left {
             let number = number as usize;
-            let island = &mut self.islands[if self.keeps_factors { number } else { 0 }];
-            island.is_built &= self.keeps_factors;
+            let mut solver = 0;
+            let mut is_built = false;
+            if self.keeps_factors {
+                let own = &mut self.solver_of[number];
+                is_built = *own != NONE;
+                if !is_built {
+                    *own = self.taken as u32;
+                    self.taken += 1;
+                    if self.solvers.len() < self.taken {
+                        self.solvers.push(IslandSolver::default());
+                    }
+                }
+                solver = *own as usize;
+            }
+            let island = &mut self.solvers[solver];
             let contacts = islands.contacts(number);
-            island.build(problem, contacts, active, impulses, indices);
+            if !is_built {
+                let held = island.rows.rows.capacity();
+                island.build(problem, contacts, active, impulses, indices);
+                self.rows_held += island.rows.rows.capacity() - held;
+            }
             island.set_right(problem, &self.rights);
             island.factor.budget = self.budget;
             island.solve(self.regularization, report);

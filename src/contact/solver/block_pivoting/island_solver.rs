@@ -24,8 +24,6 @@ const SWEEPS: u32 = 2;
 pub(super) struct IslandSolver {
     pub rows: Rows,
     pub factor: Factor,
-    /// Whether the rows are those of the present contacts.
-    pub is_built: bool,
     /// Whether the active rows are those of the substep before.
     is_guess_old: bool,
     /// Right-hand side and solution, row by row.
@@ -36,7 +34,7 @@ pub(super) struct IslandSolver {
 }
 
 impl IslandSolver {
-    /// Lays out the rows of some contacts with the free velocities of their boats, unless that has been done.
+    /// Lays out the rows of some contacts with the free velocities of their boats.
     pub(super) fn build(
         &mut self,
         problem: &ContactProblem,
@@ -45,10 +43,6 @@ impl IslandSolver {
         impulses: &[f64],
         indices: &mut [u32],
     ) {
-        if self.is_built {
-            return;
-        }
-        self.is_built = true;
         self.is_guess_old = true;
         self.rows.build(problem, contacts, indices);
         self.solution.resize(self.rows.rows.len() + 1, 0.0);
