@@ -11,6 +11,7 @@ mpl.use("Agg")
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from matplotlib.ticker import NullLocator
 from measurements import BOX2D, RAPIER, Measurements, in_words, ours
 
 from docs.scripts.plots import page_style, write_png
@@ -93,7 +94,7 @@ def _tolerance(m: Measurements) -> plt.Figure:
     finite = sorted(cm for cm in ours.tolerance_cm.unique() if math.isfinite(cm))
     # Gaps that are linearized once have no tolerance: they stand right of the largest.
     once_cm = 100 * finite[-1]
-    figure, axes = plt.subplots(1, 3, figsize=(10.5, 3.9), layout="constrained")
+    figure, axes = plt.subplots(1, 3, figsize=(8.6, 4.2), layout="constrained")
     panels = [
         ("jam_us_per_step", "µs per step of the jam"),
         ("jam_overlap_max_cm", "deepest overlap in the jam [cm]"),
@@ -106,9 +107,11 @@ def _tolerance(m: Measurements) -> plt.Figure:
             at = rows.tolerance_cm.replace(math.inf, once_cm)
             axis.plot(at, rows[column], label=f"{dt_s:g} s", **_line(OKABE_ITO[color], "o", True))
         axis.set(xscale="log", yscale="log", ylabel=label, xlabel="tolerance_cm")
-        axis.set_xticks([*finite, once_cm], [*(f"{cm:.0e}" for cm in finite), "once"])
-        axis.minorticks_off()
-    axes[0].legend(title="dt")
+        names = [f"{cm:.0e}".replace("e-0", "e-") for cm in finite]
+        axis.set_xticks([*finite, once_cm], [*names, "once"])
+        axis.xaxis.set_minor_locator(NullLocator())
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, title="dt", loc="outside lower center", ncols=len(colors))
     return figure
 
 
@@ -174,7 +177,7 @@ def _growth(m: Measurements) -> plt.Figure:
         (of_factor, "in use, of the factor", OKABE_ITO["vermilion"], "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_line(color, marker, True))
-    axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s", ylim=(1, 5e3))
+    axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s")
     axes[1].legend(loc="upper center", bbox_to_anchor=(0.45, -0.16))
     for axis in axes:
         axis.set(xscale="log", yscale="log", xlabel="boats")

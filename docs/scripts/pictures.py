@@ -13,6 +13,7 @@ LEARNERS = DOCS / "throughput/learners.csv"
 MANY_AGENTS = DOCS / "throughput/many_agents.csv"
 SHOWN = {
     "leapfrog, gaps solved once": "leapfrog / exact / linear",
+    "leapfrog, gaps to 1e-4 cm": "leapfrog / exact / 1e-4 cm",
     "leapfrog, gaps to 1e-6 cm": "leapfrog / exact / 1e-6 cm",
     "leapfrog, gaps to 1e-9 cm": "leapfrog / exact / 1e-9 cm",
     "moreau, gaps solved once": "moreau / exact / linear",
@@ -24,7 +25,7 @@ SHOWN = {
     "MuJoCo": "MuJoCo Newton",
 }
 OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
-N_OURS = 5
+N_OURS = 6
 
 
 def engines(figure: Figure) -> None:

@@ -86,8 +86,8 @@ def gain_of_plan(rows: Any, place: int = 0) -> float:
 
 
 SPEED = "docs/speed_vs_error/"
-OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / linear", "dt_s": 0.01}
-MOREAU = OURS | {"setting": "moreau / block-pivoting / linear"}
+OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / 1e-4 cm", "dt_s": 0.01}
+MOREAU = OURS | {"setting": "moreau / block-pivoting / 1e-4 cm"}
 RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
 JAM = {"scene": "jam", "n": 27, **OURS}
 
@@ -129,6 +129,35 @@ def throughput() -> list[Number]:
         Number(page, "That is {} and # million agent steps", table, rows["wide"], agent_steps),
         Number(page, "That is # and {} million agent steps", table, rows["narrow"], agent_steps),
     ]
+
+
+def speed() -> list[Number]:
+    """Times over those of other engines."""
+    page, table, threads = "docs/speed_vs_error.md", f"{SPEED}speed.csv", f"{SPEED}threads.csv"
+    cycle = JAM | {"scene": "cycle"}
+    found = [
+        Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
+        Number(page, "and {} µs if they move", table, cycle, "us_per_step", ".1f"),
+        Number(page, "rapier needs {} and # times", table, JAM, "faster", ".1f"),
+        Number(page, "rapier needs # and {} times", table, cycle, "faster", ".0f"),
+        Number(
+            page,
+            "10 000 boats runs {} times",
+            f"{SPEED}growth.csv",
+            {"n": 10_000},
+            "times_real_time",
+            ".1f",
+        ),
+    ]
+    engines = {"rapier2d-f64, `parallel`": "rapier2d-f64", "Box2D": "Box2D (f32)"}
+    scenes = (("jam", 27, ".1f"), ("cycle", 27, ".0f"), ("jam", 1000, ".1f"))
+    for words, engine in engines.items():
+        for place, (scene, n, form) in enumerate(scenes):
+            shown = " | ".join("{}" if k == place else "#" for k in range(3))
+            row = {"engine": engine, "scene": scene, "n": n}
+            cells = f"| {words} | 2 | {shown} |"
+            found.append(Number(page, cells, threads, row, "times_as_long", form))
+    return found
 
 
 def entries() -> list[Number]:
@@ -489,6 +518,7 @@ def lessons() -> list[Number]:
 
 NUMBERS = [
     *readme(),
+    *speed(),
     *throughput(),
     *levels(),
     *gradients(),
