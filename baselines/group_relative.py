@@ -48,7 +48,8 @@ class Settings:
     #: The order counts in this last part of a branch: before, it may answer the wrong way.
     judged_s: int = 30
     episode_s: int = 480
-    #: Standard deviation of a weight that explores, and the first learning rate, which falls to 0.
+    #: Standard deviation of the weights that explore, and the learning rate at the start: it
+    #: falls to 0.
     sigma: float = 0.1
     learning_rate: float = 2e-3
     #: Passes over the decisions of all branches, and parts of each pass.

@@ -48,7 +48,8 @@ class Settings:
     #: The order counts in this last part of a branch: before, it may answer the wrong way.
     judged_s: int = 32
     episode_s: int = 480
-    #: Standard deviation of the changes of a weight, and the first learning rate, which falls to 0.
+    #: Standard deviation of the changes of a weight, and the learning rate at the start: it falls
+    #: to 0.
     sigma: float = 0.2
     learning_rate: float = 0.01
 

@@ -145,7 +145,7 @@ class LeadersTask(Task):
         return LeadersTaskClass
 
     def get_from_yaml(self, path: str | None = None) -> LeadersTaskClass:
-        """Return the task with a configuration's file, its own in `CONF` if none is given."""
+        """Return the task with the configuration of a file, by default the task's own in `CONF`."""
         own = CONF / "task" / _ENV_NAME / f"{self.name.lower()}.yaml"
         task: LeadersTaskClass = self.get_task(
             _read_yaml_config(str(own if path is None else path))
@@ -170,7 +170,7 @@ def network_policy(
         An experiment of a `LeadersTask` whose policy is BenchMARL's MLP, shared by all leaders. The
         critic may be any.
     provenance
-        As of `NetworkPolicy`.
+        As for `NetworkPolicy`.
 
     Raises
     ------

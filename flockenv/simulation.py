@@ -57,7 +57,7 @@ def simulate(
     Parameters
     ----------
     parameters
-        Of the flock.
+        Parameters of the flock.
     seed
         Seed of all random streams, 0 to 2^64 - 1.
     duration_s

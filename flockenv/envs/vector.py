@@ -141,7 +141,7 @@ class LeadersVectorEnv(
         observations : numpy.ndarray
             Shape (num_envs, k * observation size), float32, of all flocks.
         infos : dict
-            Of the flocks that were reset.
+            Infos of the flocks that were reset.
         """
         seeds = seeds_of_flocks(seed, self.num_envs)
         requests = reset_requests(options, self.num_envs, takes=(*RESET_OPTIONS, "reset_mask"))

@@ -28,7 +28,7 @@ class Flock(HintsAtNames):
     Parameters
     ----------
     parameters : FlockParameters
-        Of the flock.
+        Parameters of the flock.
     seed : int
         Seed of all random streams, 0 to 2^64 - 1.
 
@@ -77,7 +77,7 @@ class Flock(HintsAtNames):
         Parameters
         ----------
         parameters, seed
-            As of the class.
+            As for the class.
         state
             ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
             as in `set_state`, whose errors these are. Other keys are refused.
@@ -227,15 +227,15 @@ class Flock(HintsAtNames):
         Parameters
         ----------
         seconds, rudder
-            As of `advance`.
+            As for `advance`.
 
         Raises
         ------
         ParameterError
-            As `advance`; also for noise_scheme "per-step", whose noise depends on the step, and for
-            dt_s below 8e-6. The flock is unchanged then.
+            As for `advance`; also for noise_scheme "per-step", whose noise depends on the step, and
+            for dt_s below 8e-6. The flock is unchanged then.
         SolverError
-            As from `advance`.
+            As for `advance`.
         """
         return self._in_core.advance_with_error(seconds, rudder)
 
@@ -249,7 +249,7 @@ class Flock(HintsAtNames):
         Parameters
         ----------
         dt_s
-            As of `FlockParameters`. A ParameterError, which leaves the flock unchanged, refuses a
+            As for `FlockParameters`. A ParameterError, which leaves the flock unchanged, refuses a
             step out of range.
         """
         self._in_core.set_step(dt_s)

@@ -265,7 +265,7 @@ class LeaningLaw(LawPolicy):
         pool
             Name of the pool that it was trained in.
         judged, provenance
-            As of `LeaningLaw`.
+            As for `LeaningLaw`.
 
         Raises
         ------

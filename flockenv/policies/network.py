@@ -165,7 +165,7 @@ class NetworkPolicy(RowPolicy):
             Whether the last layer has two outputs, the mean and the spread of a distribution. The
             mean is the rudder. A last ``NormalParamExtractor`` of TorchRL says the same.
         provenance
-            As of `NetworkPolicy`.
+            As for `NetworkPolicy`.
 
         Raises
         ------

@@ -38,7 +38,7 @@ def provenance_of(
     command
         Makes the policy again.
     seed
-        Of the training.
+        Seed of the training.
     samples
         Decisions of leaders that the training saw.
     cpu_s

@@ -46,7 +46,7 @@ class WrappedPolicy(ModelPolicy):
         The environment that was wrapped for the training: a `LeaderVecEnv`, or
         ``flockenv/Leaders-v0``. The model is for flocks with its options.
     provenance
-        As of `ModelPolicy`.
+        As for `ModelPolicy`.
 
     Raises
     ------

@@ -41,7 +41,7 @@ class RunSpec:
     Attributes
     ----------
     parameters : FlockParameters
-        Of the flock.
+        Parameters of the flock.
     seed : int
         Seed of all random streams, 0 to 2^64 - 1.
     duration_s : float

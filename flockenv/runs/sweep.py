@@ -193,7 +193,7 @@ def run_sweep(
     Parameters
     ----------
     sweep
-        Of `read_sweep`.
+        The sweep, from `read_sweep`.
     folder
         Where.
     notify
@@ -249,7 +249,7 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
     Parameters
     ----------
     table
-        Of `run_sweep` or `load_sweep`. Runs that failed do not count.
+        The table of `run_sweep` or `load_sweep`. Runs that failed do not count.
 
     Returns
     -------

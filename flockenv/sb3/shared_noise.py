@@ -54,7 +54,7 @@ class HeldNoise:
     Parameters
     ----------
     flock_of_slot, hold_steps
-        As of `SharedNoisePolicy`.
+        As for `SharedNoisePolicy`.
     size
         Numbers of a row.
     """
@@ -159,7 +159,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Parameters
     ----------
     observation_space, action_space, lr_schedule, options
-        As of stable-baselines3's ``ActorCriticPolicy``.
+        As for stable-baselines3's ``ActorCriticPolicy``.
     flock_of_slot
         Flock of each slot, as `LeaderVecEnv.flock_of_slot`.
     hold_steps

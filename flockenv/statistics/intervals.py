@@ -166,7 +166,7 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     values
         Shape (rows, columns), at least two of each.
     seed
-        Of the draws.
+        Seed of the draws.
 
     Returns
     -------

@@ -17,12 +17,12 @@ def structure_series(
     Parameters
     ----------
     name
-        Of the table of quantities: ``"largest_cluster"``, ``"on_outer_wall"`` or
+        A name in the table of quantities: ``"largest_cluster"``, ``"on_outer_wall"`` or
         ``"polarization"``, which is 1 if all boats point the same way in the axes of the world, and
         some 0.886/√n if n headings are independent (Vicsek et al. 1995). Unlike Ψ_o, whose
         orientations are relative to the pool, it is small if boats go around the pool.
     parameters
-        Of the flock; hull and pool count.
+        Parameters of the flock; hull and pool matter.
     pose
         Shape (t, n, 3), as in a `Recording`.
 

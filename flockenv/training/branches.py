@@ -70,7 +70,7 @@ class BranchTraining:
     Parameters
     ----------
     parameters
-        Of the flocks, in the pool ``"wide"`` or ``"narrow"``.
+        Parameters of the flocks, in the pool ``"wide"`` or ``"narrow"``.
     seed
         Seed of the training, from 0 to 2³² - 1.
     options
@@ -250,7 +250,7 @@ def compare_with_laws(
     policy
         The trained leaders.
     parameters
-        Of the flocks.
+        Parameters of the flocks.
     flocks
         Number of flocks; the laws and the trained leaders get the same starts and noises.
     """

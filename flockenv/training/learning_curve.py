@@ -18,7 +18,7 @@ def draw_curve(curve: Any, laws: Mapping[str, float], path: Path) -> None:
     laws
         Mean signed order by the name of a law.
     path
-        Of a PNG file.
+        The PNG file to write.
     """
     figure: Any = require("matplotlib.figure", "plot").Figure((6.4, 3.6), layout="constrained")
     axes = figure.subplots()

@@ -35,7 +35,7 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     Parameters
     ----------
     folder
-        As of `episodes_of`.
+        As for `episodes_of`.
     decisions_hz
         Decisions per second, which turns lengths of episodes into hours.
     points
@@ -61,7 +61,7 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     Parameters
     ----------
     model
-        Of stable-baselines3.
+        Model of stable-baselines3.
     settings
         What it was trained with.
     episodes

@@ -108,14 +108,14 @@ def resume(
     flock_hours
         When to stop; by default as in the folder's settings.
     report
-        As of `train`.
+        As for `train`.
 
     Raises
     ------
     ParameterError
         If there is no checkpoint, or it is damaged or of other settings.
     InUseError, TrainingError
-        As `train`.
+        As for `train`.
     """
     folder = Path(folder)
     path, settings = folder / CHECKPOINT, stored_settings(folder, flock_hours)
