@@ -160,6 +160,28 @@ def speed() -> list[Number]:
     return found
 
 
+def energy() -> list[Number]:
+    """Numbers of what contacts seem to add to flocks without motors and rudders."""
+    page, table = "docs/model.md", "docs/throughput/soak_energy.csv"
+
+    def percent(rows: Any) -> float:
+        return 100 * rows["largest_gain"].iloc[0]
+
+    without = {"scheme": "leapfrog", "c0_per_s": 0.0}
+    words = {0.01: "{}, # and # %", 0.02: "#, {} and # %", 0.1: "#, # and {} %"}
+    return [
+        Number(page, f"gained at most {words[dt]} in one", table, without | {"dt_s": dt}, percent)
+        for dt in words
+    ]
+
+
+def test_drag_leaves_contacts_no_energy_to_add():
+    gains = pd.read_csv(REPOSITORY / "docs/throughput/soak_energy.csv")
+    with_drag = gains[(gains["scheme"] == "leapfrog") & (gains["c0_per_s"] > 0)]
+    assert len(with_drag) == 6
+    assert (with_drag["largest_gain"] == 0).all()
+
+
 def entries() -> list[Number]:
     """Numbers of what learns from nothing."""
     page, folder = "studies/levels/README.md", "studies/levels/results/"
@@ -520,6 +542,7 @@ NUMBERS = [
     *readme(),
     *speed(),
     *throughput(),
+    *energy(),
     *levels(),
     *gradients(),
     *entries(),
