@@ -87,6 +87,7 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     fixed, grids, seeds = values.get("fixed", {}), _grids(values), _seeds(values.get("seeds"))
     if not isinstance(fixed, dict):
         raise ParameterError(f"fixed = {short_repr(fixed)} is not accepted: a table [fixed]")
+    _check_pools([fixed.get("pool")], "[130, 70]")
     axes = tuple(grids[0])
     for name in axes:
         if name in fixed:
@@ -128,10 +129,22 @@ def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
                     f"{name} = {short_repr(axis)} is not accepted in a grid: a list of one or more "
                     "values (a field that does not vary belongs under [fixed])"
                 )
+        _check_pools(grid.get("pool", []), '[[130, 70], "wide"]')
         if grid.keys() != grids[0].keys():
             different = ", ".join(sorted(grid.keys() ^ grids[0].keys()))
             raise ParameterError(f"all grids must name the same fields; these differ: {different}")
     return grids
+
+
+def _check_pools(pools: list[object], example: str) -> None:
+    """Refuse radii that are written as Python or a command line has them."""
+    for pool in pools:
+        is_text = isinstance(pool, str) and any(map(str.isdigit, pool))
+        if is_text or isinstance(pool, int | float):
+            raise ParameterError(
+                f"pool = {short_repr(pool)} is not accepted: a name, or outer and inner radius in "
+                f"cm, as in pool = {example}"
+            )
 
 
 def _seeds(seeds: object) -> tuple[int, ...]:

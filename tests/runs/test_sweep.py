@@ -110,6 +110,18 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
         ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
         ("minutes = \n", "no TOML"),
         (
+            "minutes = 1\nseeds = 1\n[[grid]]\npool = [130, 70]",
+            r'pool = 130 is not accepted: .* as in pool = \[\[130, 70\], "wide"\]$',
+        ),
+        (
+            'minutes = 1\nseeds = 1\n[[grid]]\npool = ["(130, 70)"]',
+            r"pool = '\(130, 70\)' is not accepted: .* as in pool = \[\[130",
+        ),
+        (
+            'minutes = 1\nseeds = 1\n[fixed]\npool = "130,70"\n' + GRID,
+            r"pool = '130,70' is not accepted: .* as in pool = \[130, 70\]$",
+        ),
+        (
             'minutes = 1\nseeds = 1\npolicy = "learned"\n[fixed]\nn_leaders = 1\n'
             'pool = "narrow"\n' + GRID,
             "narrow",
