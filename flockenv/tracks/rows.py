@@ -106,9 +106,9 @@ def _headings(table: Table) -> tuple[Floats, Any]:
     strange = (np.abs(heading) > FULL_TURN[unit]) & layout.wrapped
     _check_turn(heading, strange, layout)
     sign = 1.0 if layout.turns == "ccw" else -1.0
-    turned = HEADING_ZERO[layout.heading_zero] + sign * heading * (TURN["rad"] / TURN[unit])
-    is_given = bool(columns) or layout.quaternion is not None
-    return np.where(strange, np.nan, turned) if is_given else heading, strange
+    if columns or layout.quaternion is not None:
+        heading = HEADING_ZERO[layout.heading_zero] + sign * heading * (TURN["rad"] / TURN[unit])
+    return heading, strange
 
 
 def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:

@@ -103,6 +103,11 @@ def test_decimal_commas_are_named(seen, tmp_path):
     )
     found = read_tracks(tmp_path / "quoted.csv", but(LAYOUT, decimal=","))
     assert found == read_tracks(table, LAYOUT)
+    # Beside a word for a lost boat, too, where pandas leaves texts.
+    lost = table.assign(x_px=table["x_px"].mask(table.index == 7))
+    lost.to_csv(tmp_path / "lost.csv", index=False, sep=";", decimal=",", na_rep="-")
+    found = read_tracks(tmp_path / "lost.csv", but(LAYOUT, separator=";", decimal=","))
+    assert found == read_tracks(lost, LAYOUT)
 
 
 @pytest.mark.parametrize(

@@ -194,6 +194,7 @@ def test_names_are_sorted_as_numbers():
         (line(), {"y_down": "false"}, "y_down = 'false' is not accepted: true or false"),
         (line(), {"leaders": "10"}, "leaders = '10' is not accepted: a list of names"),
         (line(), {"x": ("x", "y")}, "x = ('x', 'y') and y = 'y' are not as many columns"),
+        (line(), {"x": [], "y": []}, "x = () and y = () are not as many columns"),
         (line(), {"x": 3}, "x = 3 is not accepted: the name of a column"),
         (line(), {"hull": (5.0,)}, "hull = (5.0,) is not accepted: two numbers"),
         (line(), {"hull": (-5.0, 0.5)}, "boat_radius_cm = -5 is not accepted"),
