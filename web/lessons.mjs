@@ -16,7 +16,7 @@ export const LESSONS = [
     name: "steer",
     title: "Lead them yourself",
     link: "#lesson=steer&pool=narrow&n_boats=12&n_leaders=4&bw_s=0.2&seed=1&flocks=3&leaders=you&beside.leaders=paper's law at every substep&speed=8",
-    before: "Turn the ringed boats with the slider or arrow keys: the round starts. Goal: in five minutes more blue boats than the law, a fixed rule.",
+    before: "Steer the ringed boats, by slider or arrow keys, to start. Goal: in five minutes more clockwise (blue) boats than the law, a fixed rule.",
     after: "Leaders lead by being in the way. Score: 1 if all others circle with the arrow, −1 if all go against it.",
   },
   {
