@@ -82,15 +82,8 @@ def recording_of(
     motion = with_gaps(own, "velocity")
     check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
     poses, motion = poses[:, order], motion[:, order]
-    others: dict[str, Any] = {
-        "target": materialized(target),
-        "discs": discs,
-        "walls": walls,
-        "pool": pool,
-    }
-    parameters = FlockParameters(
-        **_hull(hull), n_boats=len(names), n_leaders=len(leaders), **others
-    )
+    fields = {**_hull(hull), "target": materialized(target), "discs": discs, "walls": walls}
+    parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)
     is_leader = np.arange(len(names)) < len(leaders)

@@ -74,10 +74,6 @@ class TrackReport:
         """Return lines about unusual values, which may be correct, and whether they apply."""
         outside = sum(self.left_out.get("in no water", {}).values())
         share = outside / max(1, outside + self.samples)
-        points = [
-            f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
-            for name, (x, y, count) in self.stuck.items()
-        ]
         return [
             (
                 self.lone == self.samples and self.frames > 1,
@@ -104,9 +100,9 @@ class TrackReport:
                 "pool fit?",
             ),
             (
-                bool(points),
-                f"the same point in many frames: {_first_five(points)}; if one stands for a lost "
-                "boat, name it in `lost`",
+                bool(self.stuck),
+                f"the same point in many frames: {_at_points(self.stuck)}; if one stands for a "
+                "lost boat, name it in `lost`",
             ),
             (
                 bool(self.held),
@@ -119,6 +115,12 @@ class TrackReport:
 def _by_boat(boats: Mapping[str, int]) -> str:
     named = sorted(((count, name) for name, count in boats.items() if name), reverse=True)
     return f": {_first_five([f'{name} {count}' for count, name in named])}" if named else ""
+
+
+def _at_points(stuck: Mapping[str, tuple[float, float, int]]) -> str:
+    return _first_five(
+        [f"{name} at ({x:.6g}, {y:.6g}) in {count} frames" for name, (x, y, count) in stuck.items()]
+    )
 
 
 def _first_five(words: list[str]) -> str:
