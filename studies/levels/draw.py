@@ -26,9 +26,9 @@ def trainings() -> pd.DataFrame:
     ends = table[table["entry"] == "reference"].pivot(
         index="level", columns="policy", values="signed_order"
     )
-    own = table[table["entry"] != "reference"].set_index("level")
-    none, law = ends[NO_STEERING], ends[REFERENCE]
-    return own.assign(score=(own["signed_order"] - none) / (law - none)).reset_index()
+    own = table[table["entry"] != "reference"].reset_index(drop=True)
+    none, law = (own["level"].map(ends[name]) for name in (NO_STEERING, REFERENCE))
+    return own.assign(score=(own["signed_order"] - none) / (law - none))
 
 
 def title(level: str, budget: object) -> str:
@@ -97,7 +97,7 @@ def matrix(figure: Figure) -> None:
                           ((above, below), improved)):  # fmt: skip
             axes.add_patch(_cell(at, is_told))
             axes.text(*at, words, ha="center", va="center", fontsize=9)
-    axes.set_xticks(range(len(names)), [name.replace(" ", "\n") for name in names])
+    axes.set_xticks(range(len(names)), names, rotation=30, ha="left", rotation_mode="anchor")
     axes.set_yticks(range(len(names)), names)
     axes.set(xlim=(-0.5, len(names) - 0.5), ylim=(len(names) - 0.5, -0.5), aspect="equal")
     axes.grid(visible=False)
@@ -133,7 +133,7 @@ def curves(figure: Figure) -> None:
 
 
 PLOTS = {
-    "scores": Plot([ENTRIES, ORDERS, LAWS], scores, (6.8, 4.6)),
+    "scores": Plot([ENTRIES, ORDERS, LAWS], scores, (6.8, 8.4)),
     "matrix": Plot([PAIRS], matrix, (6.8, 6.8)),
     "curves": Plot([CURVES, AREAS], curves, (6.8, 4.2)),
     "profile": Plot([ORDERS], profile, (6.8, 3.6)),

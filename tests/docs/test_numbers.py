@@ -187,6 +187,7 @@ def entries() -> list[Number]:
     page, folder = "studies/levels/README.md", "studies/levels/results/"
     pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
     few = {"level": "order-easy", "budget": 30}
+    longer = {"budget": 100, "entry": "paired branches"}
 
     def told_apart(rows: Any) -> float:
         return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
@@ -203,9 +204,26 @@ def entries() -> list[Number]:
         Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
         Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
         Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
-        Number(page, "branches have {} (# to #): one", table, {"budget": 100}, "score"),
-        Number(page, "branches have # ({} to #): one", table, {"budget": 100}, "score_low"),
-        Number(page, "branches have # (# to {}): one", table, {"budget": 100}, "score_high"),
+        Number(page, "branches have {} (# to #): one", table, longer, "score"),
+        Number(page, "branches have # ({} to #): one", table, longer, "score_low"),
+        Number(page, "branches have # (# to {}): one", table, longer, "score_high"),
+        *(
+            Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
+            for words, level, entry, column in (
+                ("score in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
+                ("and TRPO in `order-noisy`, {} (#", "order-noisy", "TRPO", "score"),
+                ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
+                ("out no steering, with {} (", "order-narrow", "TRPO", "score"),
+            )
+        ),
+        *(
+            Number(page, words, pairs, {"level": level}, told_apart, "d")
+            for words, level in (
+                ("each, {} of # pairs differ in `order-noisy`", "order-noisy"),
+                ("`order-noisy`, {} in `order-narrow`", "order-narrow"),
+                ("`order-narrow` and {} in `order-wide`", "order-wide"),
+            )
+        ),
     ]
 
 

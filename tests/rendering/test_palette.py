@@ -8,6 +8,8 @@ from flockenv.rendering.palette import OKABE_ITO, PALETTE
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("src", "flockenv", "web", "docs/scripts", "benches")
+# What measurements against other engines install there.
+INSTALLED = ROOT / "benches/peers/.venv"
 CODE = re.compile(r"(?:#|0x)([0-9a-f]{6})\b", re.IGNORECASE)
 
 
@@ -18,6 +20,7 @@ def test_no_other_file_types_a_color_of_the_palette():
         for folder in FOLDERS
         for names in ("*.rs", "*.py", "*.mjs", "*.css", "page.html")
         for file in (ROOT / folder).rglob(names)
+        if INSTALLED not in file.parents
         for code in CODE.findall(file.read_text(encoding="utf-8"))
         if f"#{code.lower()}" in declared
     }
