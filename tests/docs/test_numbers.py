@@ -148,6 +148,14 @@ def speed() -> list[Number]:
             "times_real_time",
             ".1f",
         ),
+        Number(
+            page,
+            "on one thread, in {} MB",
+            f"{SPEED}growth.csv",
+            {"n": 10_000},
+            lambda rows: rows["bytes"].item() / 1e6,
+            ".0f",
+        ),
     ]
     engines = {"rapier2d-f64, `parallel`": "rapier2d-f64", "Box2D": "Box2D (f32)"}
     scenes = (("jam", 27, ".1f"), ("cycle", 27, ".0f"), ("jam", 1000, ".1f"))
