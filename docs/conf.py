@@ -30,7 +30,7 @@ shutil.rmtree(_studies, ignore_errors=True)
 shutil.copytree(
     _studies.parents[1] / "studies",
     _studies,
-    ignore=shutil.ignore_patterns("*.py", "__pycache__"),
+    ignore=shutil.ignore_patterns("*.py", "__pycache__", ".*"),
 )
 _notebooks = Path(__file__).parent / "examples"
 shutil.rmtree(_notebooks, ignore_errors=True)
