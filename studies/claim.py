@@ -149,6 +149,14 @@ class Claim:
         )
 
 
+def bounds(claimed: str) -> tuple[float, float]:
+    """Return the range that a claim writes as a text."""
+    least, _, most = claimed.removeprefix(">= ").removeprefix("<= ").partition(" to ")
+    if most:
+        return float(least), float(most)
+    return (float(least), math.inf) if claimed.startswith(">=") else (-math.inf, float(least))
+
+
 class Claims(list[Claim]):
     """Claims of one section about one reading, which may be changed between them."""
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 import flockenv
-from studies.claim import Claims, judging, mean
+from studies.claim import Claims, Interval, judging, mean
 from studies.section4.section4 import READING
 from studies.study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
 
@@ -45,20 +45,24 @@ def measure(row: Row) -> Row:
 STUDY = Study("section4/alternating", design, measure)
 
 
+def followed(led: pd.DataFrame) -> Interval:
+    """Return the share of stretches whose second half goes the leaders' way."""
+    return mean((led[[f"stretch_{i}" for i in range(4)]] > 0.0).mean(axis=1))
+
+
 def judge(table: pd.DataFrame) -> Claims:
     """Judge what the paper says of figure 7."""
     claims = Claims("4.2", f"{READING}, 3 leaders")
     for bw_s in NOISES_S:
         at = table[np.isclose(table["bw_s"], bw_s)].set_index("seed")
         led, free = at[at["n_leaders"] == 3], at[at["n_leaders"] == 0]
-        towards = led[[f"stretch_{i}" for i in range(4)]]
         where = f"bw = {bw_s:g} s"
         claims.add(
             "The flock follows its leaders' direction in every 4-minute interval with high "
             "efficiency",
             f"share of stretches whose second half goes the leaders' way, {where}; "
             "read as at least 0.9",
-            mean((towards > 0.0).mean(axis=1)),
+            followed(led),
             least=0.9,
             ours=bw_s != NOISES_S[0],
         )
@@ -78,7 +82,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
     # Made again, so that all of the picture is of this code's version.
     runs = [run_of(row | {"n_leaders": 3}).analyzed(0.0) for row in led.to_dict("records")]
     runs.sort(key=lambda run: run.order.psi_o.mean())
-    followed = (led[[f"stretch_{i}" for i in range(4)]] > 0.0).to_numpy().mean()
+    share, *_ = followed(led)
     with picture(options, "fig07", height_cm=6.2) as figure:
         axes = figure.subplots()
         for place, used in enumerate(runs):
@@ -92,7 +96,7 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         axes.plot(minutes, [-1, -1, 1, 1, -1, -1, 1, 1], "--", color=COLORS[0], label="leaders")
         axes.set(xlabel="time (min)", ylabel="m of the normal boats", ylim=(-1.05, 1.05))
         about = f"bw = {NOISES_S[0]:g} s, 24 boats and 3 leaders, {len(runs)} runs, the median red"
-        paper = f"the paper's flock follows in 4 of 4 stretches, these in {100 * followed:.0f} %"
+        paper = f"the paper's flock follows in 4 of 4 stretches, these in {100 * share:.0f} %"
         axes.set_title(f"{about}\n{paper} of them")
         axes.legend(loc="upper left")
 

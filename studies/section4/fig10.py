@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.claim import DISORDER, Claims, bca, crossing, disorder, judging, mean
+from studies.claim import DISORDER, Claims, Interval, bca, crossing, disorder, judging, mean
 from studies.section4.section4 import (
     CW,
     FREE,
@@ -24,6 +24,17 @@ from studies.section4.section4 import (
 from studies.study import COLORS, MOSTLY, PAPERS_LINE, Options, curve, main, picture
 
 _BANDS = {"low": LOW_S, "medium": MEDIUM_S, "high": HIGH_S}
+
+
+def lost(runs: pd.DataFrame) -> Interval:
+    """Return the bw in s from which on mean Ψ_o of a setup's runs is that of disorder."""
+    return disorder(sorted(runs["bw_s"].unique()), [at(runs, "psi_o")])
+
+
+def gain(table: pd.DataFrame, least: float, most: float) -> Interval:
+    """Return mean Ψ_o with clockwise leaders minus without at noises of a range, by seed."""
+    led, free = (over(setup(table, name), "psi_o", least, most) for name in (CW, FREE))
+    return mean(led - free)
 
 
 def judge(table: pd.DataFrame) -> Claims:
@@ -57,11 +68,11 @@ def judge(table: pd.DataFrame) -> Claims:
             ),
             least=1.2,
         )
-        lost_s, noises = LOST_S[name], sorted(runs["bw_s"].unique())
+        lost_s = LOST_S[name]
         claims.add(
             f"Ψ_o becomes that of disorder around bw = {lost_s} s",
             f"bw (s) at which mean Ψ_o falls through {DISORDER:g}, {name}",
-            disorder(noises, [at(runs, "psi_o")]),
+            lost(runs),
             least=lost_s - 0.2,
             most=lost_s + 0.2,
             ours=True,
@@ -70,13 +81,13 @@ def judge(table: pd.DataFrame) -> Claims:
         claims.add(
             f"Leaders increase the order at {band} noise",
             f"mean Ψ_o with 3 clockwise leaders minus without, {words(ends)}",
-            mean(over(led, "psi_o", *ends) - over(free, "psi_o", *ends)),
+            gain(table, *ends),
             least=0.0,
         )
     claims.add(
         "Leaders greatly increase coherence at medium noise",
         "mean Ψ_o with 3 clockwise leaders minus without, bw 1.4 to 2.0 s; read as at least 0.2",
-        mean(over(led, "psi_o", 1.4, 2.0) - over(free, "psi_o", 1.4, 2.0)),
+        gain(table, 1.4, 2.0),
         least=0.2,
     )
     noises = sorted(free["bw_s"].unique())

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from studies.claim import Claims, bca, judging, mean
+from studies.claim import Claims, Interval, bca, judging, mean
 from studies.section4.fig08 import slope
 from studies.section4.section4 import READING
 from studies.study import (
@@ -36,17 +36,22 @@ def design() -> list[Row]:
 STUDY = Study("section4/leader_count", design, lambda row: order_row(simulated(row)))
 
 
+def per_leader(runs: pd.DataFrame) -> Interval:
+    """Return by how much mean Ψ_o grows with each leader."""
+    leaders = sorted(runs["n_leaders"].unique())
+    groups = [each[["psi_o"]] for _, each in runs.groupby("n_leaders")]
+    return bca(groups, lambda *drawn: slope(leaders, [g[..., 0].mean(-1) for g in drawn]))
+
+
 def judge(table: pd.DataFrame) -> Claims:
     """Judge what the paper says of figure 12."""
     claims = Claims("4.4", READING)
     for bw_s in NOISES_S:
         runs = table[np.isclose(table["bw_s"], bw_s)]
-        groups = [each[["psi_o"]] for _, each in runs.groupby("n_leaders")]
-        leaders = sorted(runs["n_leaders"].unique())
         claims.add(
             "Order increases with the number of leaders",
             f"slope of mean Ψ_o against 0 to 4 leaders, bw = {bw_s:g} s",
-            bca(groups, lambda *drawn, x=leaders: slope(x, [g[..., 0].mean(-1) for g in drawn])),
+            per_leader(runs),
             least=0.0,
             ours=bw_s != NOISES_S[0],
         )

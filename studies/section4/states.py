@@ -10,7 +10,7 @@ import pandas as pd
 
 import flockenv
 from flockenv.statistics.structure import structure_series
-from studies.claim import Claims, judging, mean
+from studies.claim import Claims, Interval, judging, mean
 from studies.section4.section4 import LOW_S, MEDIUM_S, READING, over, within, words
 from studies.study import (
     COLORS,
@@ -104,6 +104,12 @@ def onset(found: pd.DataFrame) -> Row:
         reached[name] = [found["time_s"].iloc[int((held >= x).argmax())] for x in (0.1, 0.5, 0.9)]
     o, v = reached["psi_o"], reached["psi_v"]
     return {"lead_s": v[1] - o[1], "rise_o_s": o[2] - o[0], "rise_v_s": v[2] - v[0]}
+
+
+def onsets(runs: pd.DataFrame) -> tuple[Interval, Interval]:
+    """Return how much earlier Ψ_o comes than Ψ_v, and by how much longer Ψ_v rises (s), by seed."""
+    found = runs.dropna(subset="lead_s").groupby("seed").mean(numeric_only=True)
+    return mean(found["lead_s"]), mean(found["rise_v_s"] - found["rise_o_s"])
 
 
 def design() -> list[Row]:
@@ -201,18 +207,17 @@ def judge(table: pd.DataFrame) -> Claims:
         (at19["turns"] > 0).sum(),
         len(at19),
     )
-    runs = within(table, 0.8, 1.4).dropna(subset="lead_s")
-    onset = runs.groupby("seed").mean(numeric_only=True)
+    leads, rises = onsets(within(table, 0.8, 1.4))
     claims.add(
         "Orientations signal the coming order earlier than velocities",
         "time by which Ψ_o is halfway to order before Ψ_v (s), bw 0.8 to 1.4 s",
-        mean(onset["lead_s"]),
+        leads,
         least=0.0,
     )
     claims.add(
         "Velocities change more abruptly than orientations",
         "rise of Ψ_v minus that of Ψ_o, from 10 to 90 % (s), bw 0.8 to 1.4 s",
-        mean(onset["rise_v_s"] - onset["rise_o_s"]),
+        rises,
         most=0.0,
     )
     return claims

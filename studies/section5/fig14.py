@@ -1,8 +1,9 @@
 """Figure 14: the density of φ_o against noise, n = 20 and 50, without and with leaders."""
 
 import numpy as np
+import pandas as pd
 
-from studies.claim import Claims, mean
+from studies.claim import Claims, Interval, mean
 from studies.section5.section5 import LOST_S, LOW_S, SERIES, Evidence, judging_presets, panel_title
 from studies.study import (
     PAPERS_LINE,
@@ -13,6 +14,19 @@ from studies.study import (
     main,
     picture,
 )
+
+
+def in_rarer_direction(runs: pd.DataFrame) -> tuple[int, int]:
+    """Return how many seeds have a run that rotates mostly in the rarer direction, of how many."""
+    seeds = [(runs[way] > 0.5).groupby(runs["seed"]).any().sum() for way in ("cw", "ccw")]
+    return min(seeds), runs["seed"].nunique()
+
+
+def clockwise(runs: pd.DataFrame) -> Interval:
+    """Return the share of clockwise frames among rotating ones, over seeds with some."""
+    ways = runs.groupby("seed")[["cw", "ccw"]].sum()
+    ways = ways[ways.sum(axis=1) > 0]
+    return mean(ways["cw"] / ways.sum(axis=1))
 
 
 def judge(e: Evidence) -> Claims:
@@ -28,12 +42,10 @@ def judge(e: Evidence) -> Claims:
             least=0.5,
             n="20",
         )
-        seeds = {way: (free[way] > 0.5).groupby(free["seed"]).any() for way in ("cw", "ccw")}
         claims.exists(
             "Without leaders order comes in both directions in simulation",
             "seeds with a run that rotates mostly in the rarer direction, k = 0",
-            min(each.sum() for each in seeds.values()),
-            free["seed"].nunique(),
+            *in_rarer_direction(free),
             n="20",
         )
         claims.add(
@@ -44,13 +56,12 @@ def judge(e: Evidence) -> Claims:
             n="20",
         )
     for n in (20, 50):
-        ways = e.of(n, n // 5).groupby("seed")[["cw", "ccw"]].sum()
-        ways = ways[ways.sum(axis=1) > 0]
-        if len(ways):
+        ways = clockwise(e.of(n, n // 5))
+        if ways.runs:
             claims.add(
                 "With leaders order has their direction only",
                 "share of clockwise frames among rotating ones, k = 0.2 n, all noises",
-                mean(ways["cw"] / ways.sum(axis=1)),
+                ways,
                 least=0.95,
                 n=str(n),
             )

@@ -1,10 +1,12 @@
 """Figure 15: Ψ_o against noise, n = 20 and 50, without and with leaders."""
 
+from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from studies.claim import Claims, bca, mean
+from studies.claim import Claims, Interval, bca, mean
 from studies.section5.section5 import HIGH_S, LOW_S, SERIES, Evidence, draw_means, judging_presets
 from studies.study import main
 
@@ -40,19 +42,21 @@ def judge(e: Evidence) -> Claims:
             "The transition from order to disorder is smooth",
             "largest fall of mean Ψ_o within 0.1 s over its whole fall, k = 0; "
             "read as at most half",
-            bca(
-                e.groups(20, 0, "psi_o"),
-                lambda *drawn: _steepest([group[..., 0].mean(-1) for group in drawn]),
-            ),
+            steepest(e.groups(20, 0, "psi_o")),
             most=0.5,
             n="20",
         )
     return claims
 
 
-def _steepest(means: list[np.ndarray]) -> np.ndarray:
-    psi_o = np.stack(np.broadcast_arrays(*means))
-    return np.asarray((psi_o[:-1] - psi_o[1:]).max(0) / (psi_o.max(0) - psi_o.min(0)))
+def steepest(groups: Sequence[Any]) -> Interval:
+    """Return the largest fall of mean Ψ_o from one noise to the next over its whole fall."""
+
+    def of(*drawn: Any) -> Any:
+        psi_o = np.stack(np.broadcast_arrays(*(group[..., 0].mean(-1) for group in drawn)))
+        return (psi_o[:-1] - psi_o[1:]).max(0) / (psi_o.max(0) - psi_o.min(0))
+
+    return bca(groups, of)
 
 
 script = judging_presets(

@@ -23,6 +23,15 @@ def densities(e: Evidence) -> pd.DataFrame:
     return r[(r["bw_s"] == 0.0) & (r["n_leaders"] == 0)]
 
 
+def in_rarer_state(runs: pd.DataFrame) -> tuple[float, int, int]:
+    """Return the n at which most runs are in the rarer state, how many are, and of how many."""
+    is_jam = (runs["jammed"] >= MOSTLY).groupby(runs["n_boats"]).sum()
+    is_rotation = (runs["rotates"] >= MOSTLY).groupby(runs["n_boats"]).sum()
+    rarer = np.minimum(is_jam, is_rotation)
+    n = rarer.idxmax()
+    return n, rarer.max(), (runs["n_boats"] == n).sum()
+
+
 def judge(e: Evidence) -> Claims:
     """Judge what the paper says of figure 17."""
     claims = Claims("5.2", e.name)
@@ -51,15 +60,13 @@ def judge(e: Evidence) -> Claims:
         most=0.2,
         n="20 to 50",
     )
-    is_jam = (runs["jammed"] >= MOSTLY).groupby(runs["n_boats"]).sum()
-    is_rotation = (runs["rotates"] >= MOSTLY).groupby(runs["n_boats"]).sum()
-    rarer = np.minimum(is_jam, is_rotation)
+    n, count, of = in_rarer_state(runs)
     claims.exists(
         "Jam and rotation both come from random starts at one n",
         "runs in the rarer of jam and rotation (70 % of a run) at the n where most are, bw = 0",
-        rarer.max(),
-        (runs["n_boats"] == rarer.idxmax()).sum(),
-        n=f"{rarer.idxmax():g}",
+        count,
+        of,
+        n=f"{n:g}",
     )
     return claims
 

@@ -9,6 +9,7 @@ from studies.claim import Claim, Claims, Interval, critical_bw, judging, mean, u
 from studies.study import COLORS, SEEDS, Options, Row, Study, curve, order_row, picture, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
+FEW_LEVELS_S = (0.0, 0.2, *LEVELS_S[4:9], 1.0, 1.2)
 LOW_S, HIGH_S = 0.2, 1.0  # The most that is low noise, and the least that is disorder.
 
 _LEAPFROG: Row = {"scheme": "leapfrog", "noise_scheme": "white", "overlap_tolerance_cm": 0.01}
@@ -65,7 +66,7 @@ def design() -> list[Row]:
     rows: list[Row] = []
     for name, reading in READINGS.items():
         dense = name in PRESETS
-        noises = LEVELS_S if dense else (0.0, 0.2, *LEVELS_S[4:9], 1.0, 1.2)
+        noises = LEVELS_S if dense else FEW_LEVELS_S
         points = [(n, k, b) for n, k in SERIES for b in noises]
         points += [(n, 0, 0.0) for n in (_DENSITIES if dense else _FEW_DENSITIES) if 20 < n < 50]
         rows += [
