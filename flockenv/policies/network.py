@@ -337,9 +337,10 @@ def _checked_layers(
         matrix, vector = (_singles(one, f"layer {index}") for one in (weight, bias))
         wanted = 1 if index == count - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
+            seen = f": one leader observes {size} numbers" if index == 0 else ""
             raise ParameterError(
                 f"layer {index} has weights {matrix.shape} and biases {vector.shape}, but needs "
-                f"({inputs}, {wanted}) and ({wanted},)"
+                f"({inputs}, {wanted}) and ({wanted},){seen}"
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
             raise ParameterError(f"layer {index} holds numbers that are not finite")

@@ -52,8 +52,9 @@ class WrappedPolicy(ModelPolicy):
     ------
     ParameterError
         For other environments than the model's own, for a model that was trained in `VecNormalize`
-        and loaded without it, for wrappers that change what actions are, and for those that
-        normalize by statistics that nobody learned.
+        and loaded without it, for wrappers that change what actions are or make observations of
+        another shape than the model takes, and for those that normalize by statistics that nobody
+        learned.
     TypeError
         If the wrapper is no function.
     """
@@ -91,6 +92,12 @@ class WrappedPolicy(ModelPolicy):
                 f"may change what leaders observe, and not their actions, {self._actions}"
             )
         self._check_normalizing(made)
+        takes = getattr(getattr(model, "observation_space", None), "shape", None)
+        if takes is not None and takes != made.observation_space.shape:
+            raise ParameterError(
+                f"a wrapper that makes observations of shape {made.observation_space.shape} is not "
+                f"accepted: the model takes {takes}"
+            )
 
     def _check_normalizing(self, made: Any) -> None:
         """Refuse wrappers that do not normalize as the model's training did."""

@@ -96,7 +96,7 @@ def test_a_torch_network_becomes_a_policy(activation, squashed, outputs, tmp_pat
         (lambda nn: [], {}, r"Sequential\(\)"),
         (lambda nn: [nn.Identity()], {}, "no linear layer"),
         (lambda nn: [nn.Linear(SIZE, 3)], {}, r"layer 0 has weights \(67, 3\)"),
-        (lambda nn: [nn.Linear(5, 1)], {}, r"layer 0 has weights \(5, 1\)"),
+        (lambda nn: [nn.Linear(5, 1)], {}, r"layer 0 has weights \(5, 1\).*leader observes 67"),
         (
             lambda nn: [nn.Linear(SIZE, 1), nn.Tanh()],
             {"squashed": True},
@@ -109,6 +109,15 @@ def test_other_torch_networks_are_refused(layers, options, message):
     module = nn.Sequential(*layers(nn))
     with pytest.raises(flockenv.ParameterError, match=message):
         NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS), **options)
+
+
+def test_weights_that_are_not_finite_are_named():
+    torch = pytest.importorskip("torch")
+    module = torch.nn.Sequential(torch.nn.Linear(SIZE, 4), torch.nn.ReLU(), torch.nn.Linear(4, 1))
+    with torch.no_grad():
+        module[0].weight[0, 0] = torch.nan
+    with pytest.raises(flockenv.ParameterError, match="layer 0 holds numbers that are not finite"):
+        NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS))
 
 
 NETWORKS = {

@@ -195,6 +195,13 @@ def test_episodes_that_start_apart_and_questions_to_the_environment_are_refused(
         asking.predict(np.zeros((1, env.observation_space.shape[0]), np.float32))
 
 
+def test_a_wrapper_that_remembers_less_than_the_model_saw_is_refused():
+    venv = LeaderVecEnv(2, **OPTIONS)
+    model = PPO("MlpPolicy", stacked(venv), device="cpu")
+    with pytest.raises(ParameterError, match="not accepted: the model takes"):
+        WrappedPolicy(model, lambda env: VecFrameStack(env, 7), venv)
+
+
 def test_a_model_in_a_wrapper_alone_is_told_what_takes_it():
     model = PPO("MlpPolicy", stacked(LeaderVecEnv(2, **OPTIONS)), device="cpu")
     with pytest.raises(ParameterError, match="WrappedPolicy takes it"):
