@@ -246,6 +246,9 @@ class Flock(HintsAtNames):
         same noise, so they differ only by the error of the step. A new flock with another dt_s
         meets other noise.
 
+        To measure the error of a shorter step, advance by half a second first: the longer step left
+        overlaps of up to tolerance_cm, and opening them in a short substep pushes boats apart.
+
         Parameters
         ----------
         dt_s

@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import gymnasium
+import numpy as np
 import pytest
 from sybil.document import Document
 from sybil.example import Example, NotEvaluated
@@ -105,6 +106,27 @@ def test_blocks_run(page, tmp_path, monkeypatch, run_shell, request, capsys):
     numbers = [number for line in said for number in re.findall(r"-?\d+\.\d+", line)]
     assert [number for number in numbers if number not in printed] == []
     assert page != "docs/start.md" or len(numbers) == 4
+
+
+def test_the_recipe_for_a_step_finds_errors_that_fall_with_it():
+    """Law: a shorter step errs less, in the page's flock and in one that presses at its walls.
+
+    Without the half second before, the overlaps of the coarser step count as errors of the finer.
+    """
+    page = (DOCS / "runs.md").read_text(encoding="utf-8")
+    cells = re.findall(r"```\{code-cell\} python\n(.*?)```", page, re.DOTALL)
+    (recipe,) = [cell for cell in cells if "advance_with_error" in cell]
+    (choice,) = [cell for cell in cells if "wanted_cm" in cell]
+    small = {"boat_radius_cm": 4.0, "boat_shape": 1.0, "pool": (150.0, 60.0)}
+    slow = {"speed_cm_s": 10.0, "reverse_speed_cm_s": 10.0}
+    crowd = flockenv.FlockParameters(n_boats=40, bw_s=0.42, **small, **slow)
+    for parameters in (flockenv.FlockParameters(n_boats=27, bw_s=0.2), crowd):
+        names = {"flockenv": flockenv, "np": np, "parameters": parameters}
+        exec(recipe + choice, names)  # noqa: S102 - the page is ours
+        errors_cm = names["errors_cm"]
+        steps = sorted(errors_cm, reverse=True)
+        assert sorted(errors_cm.values(), reverse=True) == [errors_cm[dt_s] for dt_s in steps]
+        assert errors_cm[steps[-1]] < errors_cm[steps[0]] / 10.0
 
 
 def test_the_home_page_opens_with_a_flock():
