@@ -1,5 +1,6 @@
 """`flockenv run`."""
 
+import re
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,6 +20,9 @@ from flockenv.policies.registry import NAMES, policy, quoted
 from flockenv.simulation import simulate
 
 _OUT = Path("results/run.npz")
+
+_OF_A_RUN = re.compile(rb"# flockenv \S+: seed \d+, policy ")
+"""The start of the parameters that a run writes beside its recording."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +68,7 @@ def run(options: RunOptions) -> None:
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
     out = options.out or _free(_OUT)
     beside = out.with_suffix(".toml")
+    _check_no_other_file(beside)
     prepare(out, beside, overwrites=options.force)
     duration_s = 60 * options.minutes
     with progress("simulating", duration_s, options.shows_nothing) as advance:
@@ -89,6 +94,15 @@ def run(options: RunOptions) -> None:
     echo(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(recording)}")
     echo(f"Written to {out} and {beside}")
     echo(f"See it: {shlex.join(['flockenv', 'replay', str(out)])}")
+
+
+def _check_no_other_file(beside: Path) -> None:
+    """Refuse to replace, even with --force, a TOML file that no run wrote: a sweep's, or yours."""
+    if beside.is_file() and not _OF_A_RUN.match(beside.read_bytes()):
+        raise ParameterError(
+            f"{beside} is there already, and no run wrote it: --out needs another name, since the "
+            "parameters are written beside the recording"
+        )
 
 
 def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:

@@ -77,10 +77,18 @@ def test_what_is_there_is_overwritten_only_if_that_is_asked_for(cli, tmp_path, m
     assert flockenv.Recording.load("results/run.npz").seed == 0
     cli.succeeds("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
     assert flockenv.Recording.load("results/run.npz").seed == 1
-    Path("mine.toml").write_text("n_boats = 3\n")
-    refused = cli("run", "--params", "mine.toml", "--out", "mine.npz", "-q")
-    assert "mine.toml is there already" in refused.stderr
-    assert not Path("mine.npz").exists()
+
+
+@pytest.mark.parametrize("force", [[], ["--force"]])
+def test_a_toml_file_that_no_run_wrote_is_never_overwritten(cli, tmp_path, monkeypatch, force):
+    monkeypatch.chdir(tmp_path)
+    for text in ("n_boats = 3\n", "# flockenv sweep mine.toml\nminutes = 1\n", ""):
+        Path("mine.toml").write_text(text)
+        refused = cli("run", *SMALL, "--out", "mine.npz", "-q", *force)
+        assert refused.returncode == 2
+        assert "mine.toml is there already, and no run wrote it" in refused.stderr
+        assert Path("mine.toml").read_text() == text
+        assert not Path("mine.npz").exists()
 
 
 def test_replay_writes_a_page_beside_the_recording(cli, run, tmp_path):
