@@ -81,6 +81,8 @@ def analyze(options: AnalyzeOptions) -> None:
         return
     boats = recording.parameters.n_boats
     echo(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
+    if not options.quiet and (recording.phase == "").all():
+        echo("The motors' phases are unknown: all samples after the first tenth count.")
     if written:
         echo(f"Written to {' and '.join(map(printable, written))}")
 

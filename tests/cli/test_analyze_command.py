@@ -44,6 +44,23 @@ def test_tracks_have_the_numbers_of_the_run_they_are_of(cli, run, tmp_path):
     assert summaries[0]["psi_o_mean"] == pytest.approx(recording.analyzed().order.psi_o.mean())
 
 
+def test_means_say_which_samples_count(cli, run, tracks, tmp_path):
+    """A table has no phases, so that its means are others than those of the run it is of."""
+    words = "phases are unknown: all samples after the first tenth count"
+    means = {}
+    for path in (run, tracks):
+        said = cli.succeeds("analyze", path).stdout
+        assert (words in said) == (path == tracks)
+        assert words not in cli.succeeds("analyze", path, "--quiet").stdout
+        means[path] = json.loads(cli("analyze", path, "--json").stdout)["psi_v_mean"]
+    recording = flockenv.Recording.load(run)
+    late = recording.time_s > 2.0
+    psi_v = recording.order.psi_v
+    assert means[run] == pytest.approx(psi_v[late & recording.in_analysis_window].mean())
+    assert means[tracks] == pytest.approx(psi_v[late].mean(), abs=0.02)
+    assert abs(means[tracks] - means[run]) > 0.04
+
+
 @pytest.fixture
 def tracks(cli, run, tmp_path):
     cli.succeeds("analyze", run, "--out", tmp_path / "tracks.csv")
