@@ -142,9 +142,12 @@ def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path
 
 def test_a_pool_that_nothing_was_made_for(cli, tmp_path: Path) -> None:
     arguments = ["--pool", "(90, 30)", "--set", "bw_s=0.3", "--out", str(tmp_path)]
-    done = cli.succeeds("compare", *SHORT, *UP_TO_ONE, *arguments, "--quiet")
+    own = ["--policy", "damped law"]
+    done = cli.succeeds("compare", *SHORT, *UP_TO_ONE, *arguments, *own, "--quiet")
     assert "Left out, learned: pool = (90.0, 30.0)" in done.stderr
+    assert "Left out, tuned law: pool = (90.0, 30.0)" in done.stderr
     assert REFERENCES[2] in done.stdout
+    assert "damped law" in done.stdout
     assert "tuned" not in done.stdout
 
 
