@@ -129,6 +129,18 @@ def test_the_recipe_for_a_step_finds_errors_that_fall_with_it():
         assert errors_cm[steps[-1]] < errors_cm[steps[0]] / 10.0
 
 
+def test_the_call_for_states_names_states():
+    """Law: the entry of the states shows a call that works: one of them for each time."""
+    page = (DOCS / "questions.md").read_text(encoding="utf-8")
+    (entry,) = re.findall(r"^- \*\*(jamming, .*)$", page, re.MULTILINE)
+    (call,) = re.findall(r"`(run\..*?)`", entry)
+    run = flockenv.simulate(flockenv.FlockParameters(n_boats=8, pool="narrow"), 7, 20.0)
+    states = eval(call, {"run": run})  # noqa: S307 - the page is ours
+    assert len(states) == len(run)
+    known = {*entry.partition("**")[0].split(", "), "between"}
+    assert {state.split()[0] for state in states} <= known
+
+
 def test_the_home_page_opens_with_a_flock():
     home = (DOCS / "index.md").read_text()
     assert home.index('<a href="flock.html">') < home.index("```{toctree}")
