@@ -305,16 +305,16 @@ def readme() -> list[Number]:
         *(
             Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", ".2g")
             for words, row in (
-                ("off by {} cm with the default scheme", OURS),
-                ("by {} cm with the first-order `moreau`", MOREAU),
-                ("by {} cm in rapier", RAPIER),
+                ("ends {} cm from its exact place with the default scheme", OURS),
+                ("{} cm with the first-order scheme `moreau`", MOREAU),
+                ("and {} cm in rapier", RAPIER),
             )
         ),
         *(
             Number(page, words, f"{SPEED}impact.csv", {"scheme": scheme}, "dt = 0.01 s", ".2g")
             for words, scheme in (
-                ("the default is off by {} cm", "leapfrog / linear"),
-                ("`moreau` by {} cm ([speed", "moreau / linear"),
+                ("ends {} cm away with the default scheme", "leapfrog / linear"),
+                ("and {} cm with `moreau` ([speed", "moreau / linear"),
             )
         ),
         *readme_of_studies(page),
@@ -347,7 +347,7 @@ def readme_of_studies(page: str) -> list[Number]:
         *(
             Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
             for words, quantity in (
-                ("the uniform one at {} s without leaders", f"{DENSITY}, no leaders"),
+                ("happens at {} s without leaders", f"{DENSITY}, no leaders"),
                 ("without leaders and at {} s with three", f"{DENSITY}, 3 leaders, CW"),
                 ("raise the order Ψ_o by {}, where", COHERENCE),
             )
@@ -364,8 +364,8 @@ def leaders(page: str) -> list[Number]:
     return [
         Number(page, "{} trainings gain", TRAININGS, column="seeds", form="d"),
         Number(page, "trainings gain {} on the tuned law", TRAININGS, column="gain"),
-        Number(page, "on average ({} to #; the interval", TRAININGS, column="gain_low"),
-        Number(page, "on average (# to {}; the interval", TRAININGS, column="gain_high"),
+        Number(page, "on average ({} to #, 95 % interval)", TRAININGS, column="gain_low"),
+        Number(page, "on average (# to {}, 95 % interval)", TRAININGS, column="gain_high"),
         Number(page, words, DIFFERENCES, CLOSE, "mean"),
         *(leaders_in_brief(page) if page == "README.md" else leaders_at_length(page)),
     ]
