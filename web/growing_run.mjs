@@ -66,7 +66,8 @@ export class GrowingRun extends Run {
     raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, described.leaders), capacity);
     raw.series = new GrowingColumn(series.length, capacity);
     super(described, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
-    Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0, sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
+    Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0 });
+    this.restartMeans();
   }
 
   get hasForces() {
@@ -77,7 +78,7 @@ export class GrowingRun extends Run {
     return this.time.at(-1);
   }
 
-  /** Mean of `psi_o` or `signed_order` in the analysis window since the run, or its last change, started. */
+  /** Mean of `psi_o`, `rotation` or `signed_order` in the analysis window since the run, or its last change, started. */
   mean(key) {
     return this.sums[key] / this.counted;
   }
@@ -90,7 +91,7 @@ export class GrowingRun extends Run {
 
   /** Restarts the means. */
   restartMeans() {
-    Object.assign(this, { sums: { psi_o: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
+    Object.assign(this, { sums: { psi_o: 0, rotation: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
   /** Appends what the simulator took; `onCycle` gets the mean order of each analysis window that ends. */
@@ -127,8 +128,9 @@ export class GrowingRun extends Run {
 
   #score(sample, onCycle) {
     if (this.inWindow(sample)) {
-      this.sums.psi_o += this.value("psi_o", sample);
-      this.sums.signed_order += this.value("signed_order", sample);
+      for (const key of Object.keys(this.sums)) {
+        this.sums[key] += this.value(key, sample);
+      }
       this.counted += 1;
       this.cycleOrder[0] += this.value("psi_o", sample);
       this.cycleOrder[1] += 1;

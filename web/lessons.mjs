@@ -1,4 +1,5 @@
-// The page's start and its lessons: each has a link, and sentences above and below the picture, which may have links.
+// The page's start and its lessons: each has a link, sentences above and below the picture, which may have links, and the quantity
+// that its point is seen in, if that is not the order.
 
 import { element } from "../flockenv/replay/shared/words.mjs";
 
@@ -7,6 +8,13 @@ export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=6&start=180&
 const OPENING_WORDS = {
   before: "These boats only bump into each other, and yet they circle together. How long they back up in each cycle decides it: try the slider.",
   after: "Blue boats head clockwise, orange ones counter-clockwise, gray ones neither.",
+};
+
+/** The name of no lesson: a recording's words. */
+export const RECORDING = "a recording";
+const RECORDING_WORDS = {
+  before: "This is a recording, from a file. The slider goes to any of its times, and “again” returns to the flock where it was.",
+  after: OPENING_WORDS.after,
 };
 
 const NOISE = "#lesson=noise&preset=experiment&n_boats=27&seed=16&start=180&speed=8";
@@ -23,6 +31,7 @@ export const LESSONS = [
     name: "noise",
     title: "Backing frees a jam",
     link: `${NOISE}&bw_s=0`,
+    headline: "rotation",
     before: `Boats that never back up jam at the wall. Let them back up for {[0 s](${NOISE}&bw_s=0), [0.8 s](${NOISE}&bw_s=0.8) or [2.8 s](${NOISE}&bw_s=2.8)}.`,
     after: "Backing frees boats that crowd the wall; too much ends the order. Sparse flocks need only random turning.",
   },
@@ -31,14 +40,14 @@ export const LESSONS = [
     title: "One leader or four",
     link: "#lesson=leaders&n_boats=27&n_leaders=1&bw_s=0.3&seed=14&beside.n_leaders=4&speed=16",
     before: "Without leaders, chance decides the direction. A few leaders decide it instead.",
-    after: "The signed order, 1 if all follow, is 0.13 with one leader and 0.38 with four (256 flocks, 0.31 s).",
+    after: "In 256 flocks backing 0.31 s, one leader reaches 0.13, four 0.38. One flock varies, and takes minutes.",
   },
   {
     name: "learned",
     title: "Learned or law",
     link: "#lesson=learned&n_boats=27&n_leaders=4&bw_s=0.3&seed=14&beside.leaders=learned&speed=16",
     before: "Four leaders by the paper's law, and beside them four that learned by trial and error where to head.",
-    after: "In signed order, over 256 flocks at 0.31 s, the learned leaders reach 0.60, the law 0.38.",
+    after: "In 256 flocks backing 0.31 s, learned leaders reach 0.60, the law 0.38. One flock varies, and takes minutes.",
   },
   {
     name: "train",
@@ -58,8 +67,9 @@ export const LESSONS = [
     name: "opposed",
     title: "Opposed leaders",
     link: `${OPPOSED}&target=cw,cw,ccw,ccw`,
+    headline: "rotation",
     before: `Leaders may disagree: try {[two against two](${OPPOSED}&target=cw,cw,ccw,ccw) and [three against one](${OPPOSED}&target=cw,cw,cw,ccw)}.`,
-    after: "Two against two, chance decides; three against one, most flocks follow the three.",
+    after: "Rotation says who won. Two against two, chance decides; three against one, most flocks follow the three.",
   },
 ];
 
@@ -73,9 +83,9 @@ export function lessonLinks() {
   });
 }
 
-/** The words of a lesson by its name, or those of the opening. */
+/** The words of a lesson by its name, those of a recording, or those of the opening. */
 export function wordsOf(name) {
-  return LESSONS.find((each) => each.name === name) ?? OPENING_WORDS;
+  return name === RECORDING ? RECORDING_WORDS : LESSONS.find((each) => each.name === name) ?? OPENING_WORDS;
 }
 
 /** Words with `[words](#link)` as links; those between braces stay on one line, so that no finger meets two of them. */

@@ -12,6 +12,12 @@ import { OrderMap } from "./order_map.mjs";
 import { readLink } from "./request.mjs";
 
 const CHARTS = ["psi_o", "rotation", "signed_order"];
+/** What large values under a picture mean. */
+const MEANINGS = {
+  psi_o: "1: all boats keep one angle to the wall, circling or jammed",
+  rotation: "1: all circle clockwise; −1: counter-clockwise; 0: a jam",
+  signed_order: "1: all others circle with the leaders; −1: against them",
+};
 /** Seconds of the charts before and after the present. */
 const REACH = 60;
 /** How long trails are, in s, and in all boats together: they take most of the time in which many boats are drawn. */
@@ -166,12 +172,14 @@ export class View {
       const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
       return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
     }
-    const mean = (run) => (run.target === null ? fixed(run.mean("psi_o"), 2) : signed(run.mean("signed_order")));
-    const words = (run) => `mean ${this.#quantity(run.target === null ? "psi_o" : "signed_order").words} so far `;
+    const key = (run) => wordsOf(byId("story").dataset.lesson).headline ?? (run.target === null ? "psi_o" : "signed_order");
+    const mean = (run) => fixed(run.isRecorded ? run.meanUpTo(key(run), run.sampleAt(time)) : run.mean(key(run)), 2, key(run) !== "psi_o");
+    const words = (run) => `mean ${this.#quantity(key(run)).words} so far `;
+    const meaning = element("small", "faint", MEANINGS[key(seen[index])]);
     if (!document.body.classList.contains("pair")) {
-      return [line(words(seen[index]), mean(seen[index]))];
+      return [line(words(seen[index]), mean(seen[index])), meaning];
     }
-    return [line(words(seen[index]), mean(seen[index]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each"))];
+    return [line(words(seen[index]), mean(seen[index]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each")), meaning];
   }
 
   /** Says what the flocks do to those who do not see it: in the pictures' names, and in a sentence that is read now and then. */

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { GrowingRun } from "../../web/growing_run.mjs";
 
-const SERIES = ["psi_o", "signed_order"];
+const SERIES = ["psi_o", "signed_order", "rotation"];
 
 /** Samples of two boats, of which the first leads: at these times, with this order in the analysis window or out of it. */
 function samples(times, orders, inWindow) {
@@ -15,7 +15,7 @@ function samples(times, orders, inWindow) {
     pose: Float64Array.from(times.flatMap((time) => [time, 2 * time, 0, 30, 0, Math.PI / 2])),
     velocity: Float64Array.from(times.flatMap(() => [3, 4, 0.5, 0, 0, 0])),
     rudder: Float64Array.from(times, (time) => time / 10),
-    series: Float64Array.from(orders.flatMap((order) => [order, order / 2])),
+    series: Float64Array.from(orders.flatMap((order) => [order, order / 2, -order])),
     contacts: Float64Array.of(0, 1, 2.5, 1, 0, 15),
   };
 }
@@ -58,6 +58,7 @@ test("the score is the mean in the analysis window, and starts again with a chan
   const [run, cycles] = [grown(), []];
   run.append(samples([0, 1, 2, 3], [1, 0.2, 0.4, 1], [false, true, true, false]), (order) => cycles.push(order));
   assert.ok(Math.abs(run.mean("signed_order") - 0.15) < 1e-12);
+  assert.ok(Math.abs(run.mean("rotation") + 0.3) < 1e-12);
   assert.equal(cycles.length, 1);
   assert.ok(Math.abs(cycles[0] - 0.3) < 1e-12);
   run.describe({ bw_s: 1 });
