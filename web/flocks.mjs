@@ -71,6 +71,8 @@ export class Flocks {
   /** The flocks that a map of order shows together. */
   signature = "";
   isRecorded = false;
+  /** The flocks that wait behind a recording; null for none. */
+  #behind = null;
   /** The policy that the visitor trained, as a file's text; null for none. */
   trained = null;
 
@@ -132,6 +134,7 @@ export class Flocks {
     this.values = described[0].parameters;
     this.signature = JSON.stringify(Object.entries(this.values).filter(([name]) => !NOT_ON_MAP.has(name)));
     this.isRecorded = false;
+    this.#behind = null;
     if (isSame) {
       this.runs.forEach((run, index) => { run.describe(described[index]); });
     } else {
@@ -148,16 +151,16 @@ export class Flocks {
   async advance(question, onCycle) {
     const { runs } = this;
     const said = await this.simulator.ask("advance", question);
-    // The flocks may have become others meanwhile.
-    if (runs === this.runs) {
-      this.append(said.taken, onCycle);
+    // The flocks may have become others meanwhile, or wait behind a recording.
+    if (runs === this.runs || runs === this.#behind?.runs) {
+      this.append(said.taken, onCycle, runs);
     }
     return said;
   }
 
-  append(taken, onCycle = () => {}) {
+  append(taken, onCycle = () => {}, runs = this.runs) {
     taken.forEach((each, index) => {
-      this.runs[index].append(each, index === 0 && this.runs[0].end > SETTLING ? (order) => onCycle(this.runs[0].bw_s, order) : undefined);
+      runs[index].append(each, index === 0 && runs[0].end > SETTLING ? (order) => onCycle(runs[0].bw_s, order) : undefined);
     });
   }
 
@@ -185,11 +188,19 @@ export class Flocks {
     this.runs.forEach((run) => { run.restartMeans(); });
   }
 
-  /** Shows a recording's run in place of them. */
+  /** Shows a recording's run in front of them: they wait. */
   show(run) {
-    this.runs = [run];
-    this.values = run.parameters;
-    this.isRecorded = true;
+    if (!this.isRecorded) {
+      const { runs, values } = this;
+      this.#behind = { runs, values };
+    }
+    Object.assign(this, { runs: [run], values: run.parameters, isRecorded: true });
+  }
+
+  /** Shows the flocks again that a recording stood in front of. */
+  comeBack() {
+    Object.assign(this, this.#behind, { isRecorded: false });
+    this.#behind = null;
   }
 
   #describe(answer, wanted, index, seed = "0") {

@@ -1,13 +1,19 @@
 // Actions of the page's buttons, keys, files and links.
 
+import { colorKey } from "../flockenv/replay/shared/panel.mjs";
 import { colors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
 import { linkOf } from "./follow.mjs";
+import { lessonLinks } from "./lessons.mjs";
+import { SPEEDS } from "./request.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
 import { Training } from "./training.mjs";
 
 /** Connects a page to the visitor's buttons, keys, files and links. */
 export function listen(page) {
+  byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
+  byId("color-key").append(...colorKey());
+  byId("lessons").append(...lessonLinks());
   buttons(page);
   keys(page);
   files(page);
@@ -134,12 +140,12 @@ async function open(page, file) {
       describe: (answer, named) => flocks.described(answer, named),
       derive: async (arrays, described) => (await simulator.ask("derive", derivedOf(arrays, described, flocks.series))).series,
     });
-    flocks.show(run);
-    page.playback.restart();
-    // Its picture comes first: those of other flocks have no run any more.
-    page.showRuns();
-    page.playback.seek(run.time[0]);
-    page.say(`${file.name} plays; “again” returns to the flock.`);
+    // A flock that still runs ahead, or changes, comes first.
+    while (page.changing && !page.broken) {
+      await new Promise((resolve) => { setTimeout(resolve, 50); });
+    }
+    page.playback.begin(run);
+    page.say(`${file.name} waits for “play”. “Again” returns to the flock where it was.`);
   } catch (error) {
     page.say(`${file.name.slice(0, 60)} ${error.message}.`);
   }

@@ -1,15 +1,14 @@
 // The page: what a visitor may do, and the flocks that it does it to.
 
 import { LinkWriter } from "../flockenv/replay/shared/link.mjs";
-import { colorKey } from "../flockenv/replay/shared/panel.mjs";
 import { byId } from "../flockenv/replay/shared/words.mjs";
 import { Controls } from "./controls.mjs";
 import { changed, Flocks } from "./flocks.mjs";
 import { follow, linkOf } from "./follow.mjs";
 import { Helm } from "./helm.mjs";
-import { lessonLinks } from "./lessons.mjs";
+import { RECORDING } from "./lessons.mjs";
 import { Playback } from "./playback.mjs";
-import { readLink, SPEEDS } from "./request.mjs";
+import { readLink } from "./request.mjs";
 import { showTexts } from "./share.mjs";
 import { quantitiesOf, View } from "./view.mjs";
 
@@ -27,7 +26,7 @@ export class LivePage {
   followed = 0;
   /** Whether the page paused, for a link that asks for a still picture or a round of the game, and not the visitor. */
   isHeld = false;
-  link = new LinkWriter(() => (this.flocks.isRecorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
+  link = new LinkWriter(() => (this.recorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
 
   constructor(simulator, about, described) {
     this.simulator = simulator;
@@ -42,9 +41,6 @@ export class LivePage {
     this.hand = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());
     const meanings = Object.fromEntries(described.fields.map(({ name, meaning }) => [name, meaning]));
     this.controls = new Controls(meanings, this.flocks.laws, (name, value) => this.set(name, value));
-    byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
-    byId("color-key").append(...colorKey());
-    byId("lessons").append(...lessonLinks());
   }
 
   get runs() {
@@ -114,8 +110,12 @@ export class LivePage {
     await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open"));
   }
 
-  /** Starts again, with a new thread if the old one stopped; after a round of a game, with the next round's flocks. */
+  /** Returns from a recording; or starts again, with a new thread if the old one stopped; after a round, with the next round's flocks. */
   async again() {
+    if (this.recorded && !this.broken) {
+      this.playback.comeBack();
+      return;
+    }
     if (this.broken) {
       this.broken = false;
       await this.attempt(() => this.simulator.start());
@@ -174,6 +174,7 @@ export class LivePage {
 
   /** Shows the runs that there are now. */
   showRuns() {
+    this.view.tell(this.recorded ? RECORDING : this.other.lesson ?? "");
     this.view.rebuild((boat) => this.pin(boat), () => this.show());
     const { pinned } = this.view;
     this.pin(pinned !== null && pinned < this.runs[0].boats ? pinned : null);
@@ -209,7 +210,7 @@ export class LivePage {
     this.view.observed = null;
     byId("boat").value = boat ?? "";
     this.remember("boat", boat === null ? null : String(boat));
-    if (boat !== null && !this.playing && !this.flocks.isRecorded) {
+    if (boat !== null && !this.playing && !this.recorded) {
       this.#look(boat);
     }
   }

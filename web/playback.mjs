@@ -20,6 +20,8 @@ export class Playback {
   #page;
   #rate = { since: 0, passed: 0, words: "" };
   #isOver = false;
+  /** Where the flocks were that wait behind a recording; null for none. */
+  #left = null;
 
   /** `page`: what is played; it shows sentences. */
   constructor(page) {
@@ -32,10 +34,40 @@ export class Playback {
     const { flocks, hand, view } = this.#page;
     this.time = flocks.runs[0].end;
     this.#isOver = false;
+    this.#left = null;
     if (flocks.areYours) {
       hand.center();
       this.game.play(flocks.shown.flock);
       view.rounds = this.game.words;
+    }
+  }
+
+  /** Shows a recording's run at its start; the flocks wait where they are. */
+  begin(run) {
+    const { flocks, isHeld, view: { pinned } } = this.#page;
+    this.#left ??= { time: this.time, isHeld, pinned, isOver: this.#isOver, plays: this.transport.playing };
+    this.#isOver = false;
+    this.transport.pause();
+    flocks.show(run);
+    // Its picture comes first: those of other flocks have no run any more.
+    this.#page.showRuns();
+    this.seek(run.time[0]);
+  }
+
+  /** Goes on with the flocks that waited. */
+  comeBack() {
+    const { time, isHeld, pinned, isOver, plays } = this.#left;
+    this.#left = null;
+    this.transport.pause();
+    this.#page.flocks.comeBack();
+    Object.assign(this, { time });
+    this.#isOver = isOver;
+    this.#page.isHeld = isHeld;
+    this.#page.view.pinned = pinned;
+    this.#page.showRuns();
+    this.#page.say("");
+    if (plays) {
+      this.transport.play();
     }
   }
 

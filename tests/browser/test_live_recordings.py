@@ -90,7 +90,9 @@ def test_a_file_is_dropped_onto_a_lesson_and_its_flocks_come_back(
     content = (tmp_path / "dropped.npz").read_bytes()
     live.script(DROP, "dropped.npz", base64.b64encode(content).decode())
     live.until("return document.getElementById('status').textContent.startsWith('dropped.npz')")
-    assert live.status() == "dropped.npz plays; “again” returns to the flock."
+    waits = "dropped.npz waits for “play”. “Again” returns to the flock where it was."
+    assert live.status() == waits
+    assert live.text("#story").startswith("This is a recording, from a file.")
     assert len(live.driver.find_elements("css selector", ".run canvas")) == 1
     assert np.array_equal(live.rows("pose").reshape(-1, 5, 3), recording.pose)
     live.click("#play")
@@ -99,6 +101,46 @@ def test_a_file_is_dropped_onto_a_lesson_and_its_flocks_come_back(
     live.until("return !page.recorded")
     assert live.script("return page.runs.length") == flocks
     assert len(live.driver.find_elements("css selector", ".run canvas")) == seen
+    assert live.complaints() == []
+
+
+@pytest.mark.parametrize("lesson", [None, "steer"])
+def test_a_flock_goes_on_where_it_was_after_a_recording(live, tmp_path, recording, lesson):
+    """The same flock, bit for bit, as without the recording: nothing of it is lost."""
+    if lesson:
+        live.script("document.querySelector(`a[data-lesson='${arguments[0]}']`).click()", lesson)
+        live.until("return page.other.lesson === arguments[0] && !page.changing", lesson)
+        live.script("document.activeElement.blur()")
+        live.press("ARROW_RIGHT")
+    else:
+        live.click("#play")
+    live.until("return page.time > 20")
+    content = base64.b64encode((tmp_path / "dropped.npz").read_bytes()).decode()
+    live.script(DROP, "dropped.npz", content)
+    live.until("return page.recorded")
+    live.script("document.getElementById('take').open = true")
+    assert not live.find("[data-copies='address']").is_displayed()
+    # The mean is that until the time of the picture.
+    for time_s in (1.0, 3.0):
+        live.script("page.seek(arguments[0])", time_s)
+        counted = recording.in_analysis_window & (recording.time_s <= time_s + 1e-9)
+        mean = recording.order.signed_order("cw")[counted].mean() if counted.any() else np.nan
+        shown = live.text(".so-far b").replace("−", "-")
+        assert shown == ("–" if np.isnan(mean) else f"{mean:+.2f}")
+    heading = live.script("return page.hand.value")
+    live.click("#again")
+    live.until("return !page.recorded")
+    assert live.script("return page.time") > 20
+    assert live.script("return [page.playing, page.hand.value]") == [True, heading]
+    live.until("return page.time > 26")
+    live.click("#play")
+    live.wait()
+    assert np.allclose(np.diff(live.rows("time_s")[:, 0]), 0.1)
+    if not lesson:
+        pose = live.rows("pose")
+        parameters = flockenv.FlockParameters(n_boats=12, n_leaders=2, bw_s=0.3)
+        native = flockenv.simulate(parameters, 7, live.script("return page.runs[0].end"))
+        assert np.array_equal(native.pose.reshape(len(native), -1), pose)
     assert live.complaints() == []
 
 

@@ -51,6 +51,23 @@ const taken = { time_s: [0, 1], phase: [0, 0], in_analysis_window: [1, 1], pose:
 const answer = (target = "cw") => ({ parameters: { n_boats: 2, n_leaders: 1, bw_s: 0.3, target, discs: [], walls: [] }, lengths: {} });
 const flocksOf = (ask) => new Flocks({ ask }, { kinds, laws: [{ name: "a law at every substep" }], series: ["psi_o", "signed_order"], phases: ["fw"], version: "1" });
 
+test("flocks wait behind a recording with what they were asked before it, and come back", async () => {
+  let answered;
+  const flocks = flocksOf((kind) => (kind === "advance" ? new Promise((resolve) => { answered = resolve; }) :
+    Promise.resolve({ continues: false, values: [answer()], taken: [taken] })));
+  await flocks.become({ flock: { n_boats: "2" }, beside: null, copies: 1 }, "open");
+  const { runs, values } = flocks;
+  const asked = flocks.advance({});
+  const recorded = [{ parameters: { n_boats: "5" } }, { parameters: { n_boats: "6" } }];
+  recorded.forEach((run) => { flocks.show(run); });
+  assert.deepEqual([flocks.runs, flocks.values, flocks.isRecorded], [[recorded[1]], { n_boats: "6" }, true]);
+  answered({ taken: [{ ...taken, time_s: [2, 3] }] });
+  await asked;
+  flocks.comeBack();
+  assert.deepEqual([flocks.runs === runs, flocks.values === values, flocks.isRecorded], [true, true, false]);
+  assert.equal(flocks.runs[0].end, 3);
+});
+
 test("what the simulator refuses is not what is asked for next", async () => {
   const flocks = flocksOf(async (kind) => {
     if (kind === "change") {

@@ -174,3 +174,33 @@ test("a round that is over holds the page until the next lesson plays", async ()
   playback.hold(false);
   assert.equal(playback.transport.playing, true);
 });
+
+test("a round that waits behind a recording goes on where it was", async () => {
+  for (const plays of [true, false]) {
+    const { playback, page, noted, tick } = played({ end: 57, lesson: "steer" });
+    let centered = 0;
+    page.hand.center = () => { centered += 1; };
+    page.showRuns = () => undefined;
+    const { runs } = page;
+    Object.assign(page.flocks, {
+      show: (run) => { page.runs = [run]; Object.assign(page.flocks, { runs: page.runs, isRecorded: true, areYours: false }); },
+      comeBack: () => { page.runs = runs; Object.assign(page.flocks, { runs, isRecorded: false, areYours: true }); },
+    });
+    playback.restart();
+    page.view.pinned = 3;
+    if (plays) {
+      playback.toggle();
+    }
+    playback.time = 56.5;
+    for (const time of [0, 1]) {
+      playback.begin({ time: [time], end: 4 });
+      assert.deepEqual([playback.time, playback.transport.playing], [time, false]);
+    }
+    page.view.pinned = null;
+    playback.toggle();
+    await tick(16);
+    playback.comeBack();
+    assert.deepEqual([playback.time, playback.transport.playing, centered, page.view.pinned], [56.5, plays, 1, 3]);
+    assert.deepEqual([noted.again, noted.said], [0, [""]]);
+  }
+});
