@@ -40,6 +40,7 @@ _SHARED = (
 _OWN = (
     "core.mjs",
     "npz.mjs",
+    "lessons.mjs",
     "request.mjs",
     "texts.mjs",
     "laws.mjs",
@@ -48,7 +49,6 @@ _OWN = (
     "growing_run.mjs",
     "recording.mjs",
     "share.mjs",
-    "lessons.mjs",
     "controls.mjs",
     "simulator.mjs",
     "flocks.mjs",
@@ -58,6 +58,7 @@ _OWN = (
     "training.mjs",
     "game.mjs",
     "doing.mjs",
+    "quantities.mjs",
     "view.mjs",
     "playback.mjs",
     "live.mjs",

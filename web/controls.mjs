@@ -36,6 +36,9 @@ export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }
 
+/** The nearest value that a slider of this step has. */
+const onGrid = (value, step) => step * Math.round(value / step);
+
 export class Controls {
   inputs = new Map();
 
@@ -62,9 +65,11 @@ export class Controls {
     value.ariaLive = "off";
     Object.assign(input, { type: "range", min: low, max: high, step, id: name, title: this.meanings[name] ?? "" });
     input.setAttribute("aria-label", words.replace(/ \(.*/, ""));
-    input.addEventListener("input", () => this.change(name, plain(Number(input.value)).replace("−", "-")));
+    input.addEventListener("input", () => this.change(name, plain(onGrid(Number(input.value), step)).replace("−", "-")));
     label.append(text, value, input);
     this.inputs.set(name, (shown) => {
+      // A slider rounds a value between two of its own, and a screen reader would say that one.
+      input.step = Math.abs(onGrid(Number(shown), step) - Number(shown)) > 1e-9 ? "any" : step;
       input.value = shown;
       value.textContent = plain(Number(shown));
       input.setAttribute("aria-valuetext", unit ? `${value.textContent} ${unit}` : value.textContent);

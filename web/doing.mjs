@@ -6,6 +6,27 @@ import { tintOf } from "../flockenv/replay/shared/scene.mjs";
 const SHARES = [[1, "all"], [0.9, "nearly all"], [0.6, "most"]];
 const DIRECTIONS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
 
+/** How many boats of a run head in which direction. */
+function countsOf(run, sample, palette) {
+  const counts = { clockwise: 0, "counter-clockwise": 0, radial: 0 };
+  for (const pose of run.posesAt(run.time[sample])) {
+    counts[tintOf(pose, Number(palette["circles-from"]))] += 1;
+  }
+  return counts;
+}
+
+/** Says how many boats of each of several flocks head clockwise. */
+export function clockwise(runs, time, palette) {
+  const counts = runs.map((run) => countsOf(run, run.sampleAt(time), palette).clockwise);
+  return `Clockwise: ${counts.join(", ")} of ${runs[0].boats} boats.`;
+}
+
+/** Says which boat is chosen, whether it leads, and where it heads. */
+export function chosenBoat(run, time, boat, palette) {
+  const direction = DIRECTIONS[tintOf(run.posesAt(time)[boat], Number(palette["circles-from"]))];
+  return `Boat ${boat}${boat < run.leaders ? ", a leader" : ""}: ${direction}.`;
+}
+
 /** Says of a run, at a sample, how many boats head in which direction. */
 export function doing(run, sample, palette) {
   const { outer_radius_cm: outer, inner_radius_cm: inner } = run.lengths;
@@ -13,12 +34,12 @@ export function doing(run, sample, palette) {
   if (outer === null && inner === 0) {
     return `${boats}, in open water.`;
   }
-  const counts = { clockwise: 0, "counter-clockwise": 0, radial: 0 };
-  for (const pose of run.posesAt(run.time[sample])) {
-    counts[tintOf(pose, Number(palette["circles-from"]))] += 1;
-  }
+  const counts = countsOf(run, sample, palette);
   const [direction, most] = Object.entries(counts).sort(([, one], [, other]) => other - one)[0];
   const word = SHARES.find(([least]) => most >= least * run.boats)?.[1];
   const mixed = `${counts.clockwise} clockwise, ${counts["counter-clockwise"]} counter-clockwise`;
   return `${boats}; ${word ? `${word} ${DIRECTIONS[direction]}` : mixed}.`;
 }
+
+/** The scores of a round without those of earlier ones. */
+export const scoreWords = (score, rounds) => `${Array.from(score.children, ({ textContent }) => textContent.replace(`. ${rounds}`, "")).filter(Boolean).join(", ")}.`;

@@ -30,9 +30,11 @@ export async function follow(flocks, linked, isWanted) {
 }
 
 async function opened(flocks, wanted, linked) {
+  const refused = new Set();
   for (let tries = 0; tries < 40; tries += 1) {
     try {
       await flocks.become(wanted, "open");
+      linked.ignored.push(...Array.from(refused, (name) => `${name} = ${flocks.values[name] ?? "its usual value"} takes its place.`));
       return;
     } catch (error) {
       if (!error.refused) {
@@ -45,6 +47,7 @@ async function opened(flocks, wanted, linked) {
       }
       for (const fields of held) {
         delete fields[error.field];
+        refused.add(error.field);
       }
     }
   }

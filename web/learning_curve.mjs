@@ -54,8 +54,6 @@ export class LearningCurve {
     context.lineWidth = 2;
     if (!Number.isNaN(law)) {
       drawPoints(context, palette["paper-law"], [[0, law], [end, law]], x, y);
-      context.textAlign = "right";
-      context.fillText(`the paper's law ${fixed(law, 2, true)}`, width - EDGE_OF_CURVE.right - 4, y(law) - 6);
     }
     drawPoints(context, palette.learned, points, x, y);
     for (const [hours, order] of points) {
@@ -64,6 +62,21 @@ export class LearningCurve {
       context.fillStyle = palette.learned;
       context.fill();
     }
+    this.#name(context, palette, EDGE_OF_CURVE.left + 4, y(law) - 6);
+  }
+
+  /** Names the line of the law at its start, where no leader has learned to lead better yet; over whatever is there. */
+  #name(context, palette, x, y) {
+    if (Number.isNaN(this.law)) {
+      return;
+    }
+    const words = `the paper's law ${fixed(this.law, 2, true)}`;
+    context.textAlign = "left";
+    context.lineWidth = 3;
+    context.strokeStyle = palette.water;
+    context.strokeText(words, x, y);
+    context.fillStyle = palette["paper-law"];
+    context.fillText(words, x, y);
   }
 
   #scales(context, palette, x, y, [width, height]) {

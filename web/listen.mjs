@@ -2,18 +2,21 @@
 
 import { colorKey } from "../flockenv/replay/shared/panel.mjs";
 import { colors } from "../flockenv/replay/shared/scene.mjs";
-import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
 import { linkOf } from "./follow.mjs";
 import { lessonLinks } from "./lessons.mjs";
 import { SPEEDS } from "./request.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
 import { Training } from "./training.mjs";
 
+/** For how long, in ms, a button says that it copied. */
+const COPIED = 2000;
+
 /** Connects a page to the visitor's buttons, keys, files and links. */
 export function listen(page) {
   byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
   byId("color-key").append(...colorKey());
-  byId("lessons").append(...lessonLinks());
+  byId("lessons").append(element("span", "faint", "Lessons:"), ...lessonLinks());
   buttons(page);
   keys(page);
   files(page);
@@ -50,7 +53,10 @@ function buttons(page) {
     byId(name).addEventListener("toggle", () => page.show());
   }
   for (const button of document.querySelectorAll("[data-copies]")) {
-    button.addEventListener("click", () => copy(page, button));
+    const said = element("span", "unseen");
+    said.setAttribute("role", "status");
+    button.after(said);
+    button.addEventListener("click", () => copy(page, button, said));
   }
 }
 
@@ -58,6 +64,7 @@ function trainings(page) {
   const training = new Training(page);
   byId("train").addEventListener("click", () => training.toggle());
   byId("save-policy").addEventListener("click", () => training.save());
+  byId("save-before").addEventListener("click", () => training.save(training.before));
   return training;
 }
 
@@ -104,15 +111,25 @@ function files(page) {
   });
 }
 
-async function copy(page, button) {
+/** Copies, and says so in the button, which keeps its place and width; `said` says it to those who do not see it. */
+async function copy(page, button, said) {
   const { copies } = button.dataset;
-  const link = copies === "address" && !page.recorded ? linkOf(page.flocks, page.other, page.time) : location.hash;
-  const text = copies === "address" ? new URL(link, location.href).href : byId(copies).value;
+  const text = copies === "address" ? new URL(linkOf(page.flocks, page.other, page.time), location.href).href : byId(copies).value;
+  said.textContent = "";
   try {
     await navigator.clipboard.writeText(text);
-    page.say("Copied.");
   } catch {
-    page.say(`The browser does not let this page copy; here it is: ${text}`);
+    said.className = "";
+    said.textContent = ` The browser does not let this page copy; here it is: ${text}`;
+    return;
+  }
+  said.className = "unseen";
+  said.textContent = "Copied.";
+  if (!button.style.minWidth) {
+    const words = button.textContent;
+    button.style.minWidth = `${button.getBoundingClientRect().width}px`;
+    button.textContent = "copied";
+    setTimeout(() => { Object.assign(button, { textContent: words }).style.minWidth = ""; }, COPIED);
   }
 }
 

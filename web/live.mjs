@@ -8,9 +8,10 @@ import { follow, linkOf } from "./follow.mjs";
 import { Helm } from "./helm.mjs";
 import { RECORDING } from "./lessons.mjs";
 import { Playback } from "./playback.mjs";
+import { quantitiesOf } from "./quantities.mjs";
 import { readLink } from "./request.mjs";
 import { showTexts } from "./share.mjs";
-import { quantitiesOf, View } from "./view.mjs";
+import { View } from "./view.mjs";
 
 /** After how long, in ms, the page says that a flock runs ahead. */
 const LONG = 500;
@@ -80,8 +81,7 @@ export class LivePage {
     if (isWanted() && !this.broken) {
       this.changing = false;
       this.playback.hold(linked.other.paused === "1");
-      this.#shows("open", false);
-      this.say(linked.ignored.join(" "));
+      this.#shows("open", false, linked.ignored.join(" "));
       await this.#change();
     }
   }
@@ -89,11 +89,7 @@ export class LivePage {
   /** The parts of a link besides the flocks. */
   #showOther({ start: _, now: __, flocks: ___, paused: ____, ...other }) {
     this.other = { speed: "8", ...other };
-    byId("speed").value = this.other.speed;
-    byId("forces").checked = this.other.forces === "1";
-    byId("colors").value = this.other.colors ?? "direction";
-    this.view.pinned = this.other.boat === undefined ? null : Number(this.other.boat);
-    this.view.tell(this.other.lesson ?? "");
+    this.view.choose(this.other);
   }
 
   /** Changes one parameter, from where the flock is if that is possible. */
@@ -162,13 +158,13 @@ export class LivePage {
   }
 
   /** Shows the flocks after an answer of this kind, and says whether they continue. */
-  #shows(kind, isSame) {
+  #shows(kind, isSame, words = "") {
     if (!isSame) {
       this.playback.restart();
     }
     this.showRuns();
     const continued = isSame ? "The flock continues from where it is." : "The flock starts again: it cannot continue with this change.";
-    this.say(kind === "change" ? continued : "");
+    this.say(kind === "change" ? continued : words);
     this.link.write();
   }
 
@@ -180,10 +176,12 @@ export class LivePage {
     this.pin(pinned !== null && pinned < this.runs[0].boats ? pinned : null);
     this.controls.show(this.flocks.controlled);
     showTexts(this.flocks, this.time);
+    this.training.show();
   }
 
+  /** Says this, and that a training waits that was left. */
   say(words) {
-    byId("status").textContent = words;
+    byId("status").textContent = `${words} ${this.training.leave()}`.trim();
   }
 
   #stop(error) {
@@ -208,6 +206,7 @@ export class LivePage {
   pin(boat) {
     this.view.pinned = boat;
     this.view.observed = null;
+    this.view.hurry();
     byId("boat").value = boat ?? "";
     this.remember("boat", boat === null ? null : String(boat));
     if (boat !== null && !this.playing && !this.recorded) {

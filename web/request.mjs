@@ -1,6 +1,7 @@
 // The page's link as a request: parameters by name, a seed, the leaders' steering, and a second flock beside the first.
 
 import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
+import { LESSONS } from "./lessons.mjs";
 
 /** Largest time of a link, in s. */
 export const LATEST = 7200;
@@ -15,7 +16,7 @@ export const OTHER = {
   now: [`a number of seconds up to ${LATEST}`, isTime],
   paused: ["0 or 1", (text) => /^[01]$/.test(text)],
   flocks: ["1, 2 or 3", (text) => /^[123]$/.test(text)],
-  lesson: ["a word", (text) => /^[a-z-]{1,20}$/.test(text)],
+  lesson: [`one of ${LESSONS.map(({ name }) => name).join(", ")}`, (text) => LESSONS.some(({ name }) => name === text)],
 };
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
 /** Largest values of fields on this page, which may be larger elsewhere. */

@@ -17,8 +17,9 @@ const [JUDGED_SECONDS, JUDGMENTS] = [120, 12];
 const SAY_EVERY = 5000;
 
 export class Training {
-  /** The training's progress; null before the first. */
+  /** The training's progress; null before the first. The newest policy of the training before, until there is another. */
   progress = null;
+  before = null;
   seed = 0;
   isRunning = false;
   settings = { ...SETTINGS };
@@ -43,21 +44,30 @@ export class Training {
   /** Starts a training of the flock that is shown, stops the one that runs, or goes on with it. */
   async toggle() {
     this.isRunning = !this.isRunning;
-    this.#show();
+    this.show();
     if (!this.isRunning || this.#isAtWork) {
       return;
     }
     this.#isAtWork = true;
     try {
       await this.#goOn();
-      this.#say(`${this.progress.has_ended ? "The training is over." : "Stopped."} ${this.#words}`);
+      this.#say(this.progress.has_ended ? `The training is over. ${this.#words} These are the last leaders, not the best.` : `Stopped. ${this.#words}`);
     } catch (error) {
       this.progress = null;
       this.#say(`No training: ${error.message}.`);
     }
     this.isRunning = this.#isAtWork = false;
-    this.#show();
+    this.show();
     showTexts(this.#page.flocks, this.#page.time);
+  }
+
+  /** Stops if the flock that is shown is not one that is trained; says so. */
+  leave() {
+    if (!this.isRunning || this.#page.flocks.areTrained) {
+      return "";
+    }
+    this.isRunning = false;
+    return "The training waits in its lesson.";
   }
 
   async #goOn() {
@@ -84,6 +94,7 @@ export class Training {
   async #start() {
     const { flocks, about } = this.#page;
     this.seed = this.progress?.has_ended && !this.#isOther ? this.seed + 1 : 0;
+    this.before = this.progress?.policy ?? this.before;
     this.#trained = this.#flock;
     const flock = requestOf(this.#trained, flocks.kinds);
     const provenance = {
@@ -107,10 +118,9 @@ export class Training {
     if (training.hours >= this.curve.next(JUDGMENTS)) {
       this.curve.add(training.hours, await this.#judge({ leaders: TRAINED, trained: training.policy }));
     }
-    if (performance.now() - this.#told > SAY_EVERY) {
-      this.#say(`${fixed(training.hours, 0)} of ${fixed(training.end, 0)} flock-hours. ${this.#words}`);
-    }
-    this.#show();
+    const isDue = performance.now() - this.#told > SAY_EVERY;
+    this.#say(`${fixed(training.hours, 0)} of ${fixed(training.end, 0)} flock-hours. ${this.#words}`, isDue);
+    this.show();
   }
 
   /** Mean signed order over the flocks that judge, which have the training's physics. */
@@ -131,11 +141,21 @@ export class Training {
   }
 
   /** Draws the curve, and names what the button does next. */
-  #show() {
-    const waits = this.progress && !this.progress.has_ended ? "go on" : "train";
-    byId("train").textContent = this.isRunning ? "stop" : waits;
+  show() {
+    byId("train").textContent = this.isRunning ? "stop" : this.#next;
     byId("save-policy").disabled = !this.progress;
+    byId("save-before").hidden = !this.before;
     this.draw();
+  }
+
+  get #next() {
+    if (!this.progress) {
+      return "train";
+    }
+    if (this.#isOther) {
+      return "train anew, this flock";
+    }
+    return this.progress.has_ended ? "train anew, other seed" : "go on";
   }
 
   draw() {
@@ -143,14 +163,18 @@ export class Training {
     byId("curve").setAttribute("aria-label", this.progress ? `Learning curve. ${this.#words}` : "Learning curve: nothing has been learned yet");
   }
 
-  /** Saves the newest policy through the browser. */
-  save() {
-    download(new TextEncoder().encode(this.progress.policy), "policy.json");
+  /** Saves a policy through the browser. */
+  save(policy = this.progress.policy) {
+    download(new TextEncoder().encode(policy), "policy.json");
     this.#page.say("policy.json holds your leaders: flockenv run --policy policy.json leads a flock with them.");
   }
 
-  #say(words) {
-    this.#told = performance.now();
+  /** Says how it goes beside the curve, and where it is due to those who do not see it. */
+  #say(words, isDue = true) {
     byId("trained").textContent = words;
+    if (isDue) {
+      this.#told = performance.now();
+      byId("trained-said").textContent = words;
+    }
   }
 }

@@ -4,20 +4,15 @@ import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
 import { colors, giveColors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
-import { doing } from "./doing.mjs";
+import { chosenBoat, clockwise, doing, scoreWords } from "./doing.mjs";
 import { ROUND_SECONDS, scoreOf } from "./game.mjs";
 import { drawLapFrame } from "./lap_frame.mjs";
 import { storyOf, wordsOf } from "./lessons.mjs";
 import { OrderMap } from "./order_map.mjs";
+import { MEANINGS } from "./quantities.mjs";
 import { readLink } from "./request.mjs";
 
 const CHARTS = ["psi_o", "rotation", "signed_order"];
-/** What large values under a picture mean. */
-const MEANINGS = {
-  psi_o: "1: all boats keep one angle to the wall, circling or jammed",
-  rotation: "1: all circle clockwise; −1: counter-clockwise; 0: a jam",
-  signed_order: "1: all others circle with the leaders; −1: against them",
-};
 /** Seconds of the charts before and after the present. */
 const REACH = 60;
 /** How long trails are, in s, and in all boats together: they take most of the time in which many boats are drawn. */
@@ -28,13 +23,6 @@ const WORDS_EVERY = 250;
 const TELL_EVERY = 5000;
 /** Force, in cm/s², that a bar half as long as a hull is wide stands for. */
 const FORCE = 20;
-
-/** The quantities that the simulator describes, as charts and tables have them. */
-export function quantitiesOf({ quantities }) {
-  return quantities.filter(({ kind }) => kind !== "structure").map(({ name, label, symbol, ...rest }) => ({
-    ...rest, key: name, decimals: 2, words: label.replace(/^[^,]*/, (word) => `${word} ${symbol}`.trim()).replace("_o", "ₒ"),
-  }));
-}
 
 export class View {
   panels = [];
@@ -64,6 +52,15 @@ export class View {
     this.map = new OrderMap(byId("map"), orders);
   }
 
+  /** Shows what a link says besides flocks. */
+  choose({ speed, forces, colors: shown = "direction", boat, lesson = "" }) {
+    byId("speed").value = speed;
+    byId("forces").checked = forces === "1";
+    byId("colors").value = shown;
+    this.pinned = boat === undefined ? null : Number(boat);
+    this.tell(lesson);
+  }
+
   /** The sentences of a lesson, before and after the picture. */
   tell(name) {
     const { before, after } = wordsOf(name);
@@ -72,6 +69,8 @@ export class View {
       byId("story").replaceChildren(...storyOf(before));
       byId("after").replaceChildren(...storyOf(after));
       byId("observes").open = name === "forces";
+      // Until the lesson's flock is there, nothing is said of the one before.
+      byId("doing").textContent = "";
     }
     const lessons = byId("lessons");
     for (const link of lessons.querySelectorAll("a")) {
@@ -95,6 +94,7 @@ export class View {
     document.body.classList.toggle("recorded", isRecorded);
     giveColors(runs);
     this.panels = seen.map((run, index) => new Panel(run, index, isPair));
+    this.hurry();
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; redraw(); }, (boat) => pin(boat === this.pinned ? null : boat));
     }
@@ -113,6 +113,11 @@ export class View {
       const { flock } = readLink(link.hash, Object.keys(this.#flocks.kinds));
       link.setAttribute("aria-current", String(Object.entries(flock).every(([name, value]) => shown.flock[name] === value)));
     }
+  }
+
+  /** Lets words be written, and said, with the next picture. */
+  hurry() {
+    this.#worded = this.#told = -Infinity;
   }
 
   /** Draws the flocks at a time, and now and then writes what else is said of them. */
@@ -174,7 +179,7 @@ export class View {
     }
     const key = (run) => wordsOf(byId("story").dataset.lesson).headline ?? (run.target === null ? "psi_o" : "signed_order");
     const mean = (run) => fixed(run.isRecorded ? run.meanUpTo(key(run), run.sampleAt(time)) : run.mean(key(run)), 2, key(run) !== "psi_o");
-    const words = (run) => `mean ${this.#quantity(key(run)).words} so far `;
+    const words = (run) => `mean ${this.#quantity(key(run)).words.split(",")[0]} so far `;
     const meaning = element("small", "faint", MEANINGS[key(seen[index])]);
     if (!document.body.classList.contains("pair")) {
       return [line(words(seen[index]), mean(seen[index])), meaning];
@@ -184,15 +189,16 @@ export class View {
 
   /** Says what the flocks do to those who do not see it: in the pictures' names, and in a sentence that is read now and then. */
   #tellWhatIsDone(time, isPlaying) {
-    const told = this.panels.map(({ canvas, run }, index) => {
+    const { areYours } = this.#flocks;
+    const told = this.panels.map(({ canvas, run }) => {
       const words = doing(run, run.sampleAt(time), this.palette);
       canvas.setAttribute("aria-label", words);
-      // The flocks of the game have one name.
-      const isNamed = this.panels.every((each) => each.run === run || each.run.name !== run.name);
-      return this.panels.length > 1 ? `${run.name}${isNamed ? "" : `, flock ${index + 1}`}: ${words}` : words;
-    }).join(" ");
-    const score = (each) => `${Array.from(each.children, ({ textContent }) => textContent).filter(Boolean).join(", ")}.`;
-    const said = [told, ...(this.#flocks.areYours ? this.#scores.map(score) : [])].join(" ");
+      return this.panels.length > 1 ? `${run.name}: ${words}` : words;
+    });
+    const chosen = this.pinned === null ? [] : [chosenBoat(this.panels[0].run, time, this.pinned, this.palette)];
+    // No more than is spoken before the next sentence.
+    const game = () => [clockwise(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((each) => scoreWords(each, this.rounds))];
+    const said = [...chosen, ...(areYours ? game() : told)].join(" ");
     const isDue = !isPlaying || performance.now() - this.#told > TELL_EVERY;
     if (isDue && said !== byId("doing").textContent) {
       this.#told = performance.now();
@@ -221,6 +227,7 @@ export class View {
       return;
     }
     const table = element("table");
+    table.setAttribute("aria-label", "Observation");
     this.#entries.forEach(({ block, place: count, name, meaning }, index) => {
       const row = element("tr");
       row.append(element("th", "", block === "neighbors" ? `neighbor ${count + 1}: ${name}` : name),

@@ -122,6 +122,8 @@ def test_a_link_shows_the_same_flock_again(open_live):
         ("#n_boats=1000000", "n_boats is 2 to 300 on this page"),
         ("#n_boats=NaN&bw_s=Infinity", "bw_s = inf is not accepted"),
         ("#bw_s=NaN", "bw_s = NaN is not accepted"),
+        ("#bw_s=banana", "bw_s = 0.3 takes its place."),
+        ("#lesson=nothing", "lesson is one of steer, noise"),
         ("#n_leaders=5&n_boats=3", "n_leaders = 5 is not accepted: 0 to n_boats = 3"),
         ("#pool=<img src=x onerror=alert(1)>", "pool = "),
         ("#leaders=<script>window.stolen=1</script>", "leaders = <script>window.stolen=1</script>"),

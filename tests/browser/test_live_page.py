@@ -173,7 +173,7 @@ def test_a_second_flock_runs_beside(live):
     for run, mean in enumerate(
         live.script("return page.runs.map((each) => each.mean('signed_order'))")
     ):
-        words, _, number = live.text(".so-far", run).rpartition(" ")
+        words, _, number = live.text(".so-far .own", run).rpartition(" ")
         assert words == "mean signed order so far"
         assert float(number.replace("−", "-")) == pytest.approx(mean, abs=0.006)
     live.choose("#beside", "")
@@ -271,10 +271,25 @@ def test_texts_of_the_flock_are_shown_and_copied(live, chromium):
     commands = live.find("#command").get_attribute("value").split("\n")
     assert commands == [command, command.replace("--seed", '--policy "learned" --seed')]
     assert 'policy="learned"' in live.find("#python").get_attribute("value")
+    live.script("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    box = "return arguments[0].getBoundingClientRect().toJSON()"
     for button in live.driver.find_elements("css selector", "[data-copies]"):
-        live.script("document.getElementById('status').textContent = ''")
+        live.script("arguments[0].scrollIntoView({block: 'center'})", button)
+        words, place = button.text, live.script(box, button)
         button.click()
-        live.until("return /Copied|here it is/.test(document.getElementById('status').textContent)")
+        live.until("return arguments[0].textContent === 'copied'", button)
+        # It is said where somebody looks and to who listens, and nothing moves: twice is no harm.
+        assert live.script("return arguments[0].nextSibling.textContent", button) == "Copied."
+        assert live.script(box, button) == place
+        button.click()
+        live.until("return arguments[0].textContent === arguments[1]", button, words)
+        assert live.script(box, button) == place
+        assert live.status() == ""
+        assert live.script("return window.copied")
+    live.script("navigator.clipboard.writeText = async () => { throw new Error('no'); }")
+    button.click()
+    live.until("return arguments[0].nextSibling.textContent.includes('here it is')", button)
+    assert live.script("return arguments[0].nextSibling.checkVisibility()", button)
 
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP])
@@ -324,6 +339,12 @@ def test_everything_is_reached_by_the_keyboard_and_has_a_name(live):
         and not node.get("name", {}).get("value")
     ]
     assert unnamed == []
+    live.choose("#boat", "1")
+    live.until("return document.querySelectorAll('#observation td').length > 0")
+    named = {(role, name) for role, name, _ in tree_of(live) if role in ("table", "region")}
+    assert ("region", "What this leader observes") in named
+    tables = [name for role, name in named if role == "table"]
+    assert sorted(tables) == ["Observation", "Parameters", "Since the start"]
     buttons = [name for role, name, _ in tree_of(live) if role == "button"]
     assert sorted({*buttons}) == sorted(buttons)
 
@@ -415,6 +436,46 @@ def test_a_screen_reader_hears_names_values_and_what_the_flock_does(open_live):
         "return !arguments[0].includes(document.getElementById('doing').textContent)", [*said]
     )
     assert live.text("#doing").startswith("27 boats; ")
+    # A boat that is chosen while it is paused is named at once.
+    live.script("document.activeElement.blur()")
+    live.press("]")
+    assert live.text("#doing").startswith("Boat 0: ")
+
+
+def test_what_is_said_is_that_of_the_lesson_and_short(open_live):
+    live = open_live().go("#n_boats=12&n_leaders=2&bw_s=0.3&seed=7", plays=True)
+    live.until("return page.time > 1")
+    assert live.find("#after").get_attribute("aria-live") == "polite"
+    source = """
+        const heard = [];
+        const doing = document.getElementById("doing");
+        const note = () => heard.push([page.changing, doing.textContent, performance.now()]);
+        new MutationObserver(note).observe(doing, {childList: true});
+        window.heard = heard;
+        window.arrived = page.follow(document.querySelector(arguments[0]).hash)
+            .then(() => performance.now());"""
+    live.script(source, "a[data-lesson='leaders']")
+    live.until("return window.heard.length > 1")
+    first, second, *_ = live.script("return heard")
+    assert first[1] == ""
+    assert second[1].startswith("1 leader: 27 boats")
+    assert live.driver.execute_async_script("arrived.then(arguments[0])") > second[2] - 500
+    live.script("page.follow(document.querySelector(\"a[data-lesson='steer']\").hash)")
+    live.until("return page.other.lesson === 'steer' && !page.changing")
+    live.until("return document.getElementById('doing').textContent.startsWith('Clockwise: ')")
+    assert len(live.text("#doing")) < 90
+
+
+def test_a_slider_that_cannot_show_a_value_is_not_read_as_another_one(open_live):
+    live = open_live().go("#preset=experiment&n_boats=12&seed=1")
+    c4 = float(live.parameters()["c4"])
+    live.unfold("#c4")
+    assert float(live.find("#c4").get_property("value")) == pytest.approx(c4, abs=1e-6)
+    live.script("document.getElementById('c4').focus()")
+    live.press("ARROW_RIGHT")
+    live.wait()
+    moved = float(live.parameters()["c4"])
+    assert moved == pytest.approx(round(moved, 2))
 
 
 FINGERS = """

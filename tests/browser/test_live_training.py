@@ -53,7 +53,9 @@ def test_a_training_ends_in_a_curve_and_in_a_policy_that_leads_the_flock(open_li
     live.click("#train")
     until_over(live)
     assert live.text("#trained").startswith("The training is over. Signed order in 2 other flocks:")
-    assert live.text("#train") == "train"
+    assert "These are the last leaders, not the best." in live.text("#trained")
+    assert live.text("#train") == "train anew, other seed"
+    assert not live.find("#save-before").is_displayed()
     points, law = live.script("return [page.training.curve.points, page.training.curve.law]")
     assert points[0][0] == 0.0
     assert points[-1][0] == live.script("return page.training.progress.end")
@@ -97,6 +99,9 @@ def test_it_stops_and_goes_on_to_the_same_policy(open_live):
     assert again["weights"] == policy["weights"]
     live.click("#train")
     live.until("return page.training.seed === 1")
+    # Nothing is lost meanwhile.
+    assert live.find("#save-before").is_displayed()
+    assert json.loads(live.script("return page.training.before"))["weights"] == policy["weights"]
     until_over(live)
     other = json.loads(live.script("return page.training.progress.policy"))
     assert other["weights"] != policy["weights"]
@@ -118,6 +123,35 @@ def test_the_flock_moves_on_while_leaders_learn(open_live):
     assert live.script("return page.training.isRunning")
     live.click("#train")
     live.until("return !page.training.isRunning")
+    assert live.complaints() == []
+
+
+def test_a_training_waits_while_its_lesson_is_left(open_live):
+    live = opened(open_live(), flock_hours=1e4, pairs=32, step=0.03)
+    live.click("#train")
+    live.until("return page.training.progress?.hours > 0")
+    words = "return document.getElementById('trained').textContent"
+    said = live.script(f"""
+        const point = page.training.curve.points.at(-1)[1];
+        return [point, ({words.replace("return ", "")})]""")
+    # What is said is what the curve shows.
+    assert f"your leaders {said[0]:+.2f}".replace("−", "-") in said[1].replace("−", "-")
+    live.script("document.querySelector(\"a[data-lesson='opposed']\").click()")
+    live.until("return page.other.lesson === 'opposed' && !page.changing")
+    assert live.status() == "The training waits in its lesson."
+    live.until("return document.getElementById('trained').textContent.startsWith('Stopped.')")
+    hours = live.script("return page.training.progress.hours")
+    live.script("page.follow(arguments[0])", FLOCK)
+    live.until("return page.flocks.areTrained && !page.changing")
+    assert live.text("#train") == "go on"
+    live.click("#train")
+    live.until("return page.training.progress.hours > arguments[0]", hours)
+    live.click("#train")
+    live.until("return page.training.isRunning === false")
+    # Another flock is another training.
+    live.script("page.set('bw_s', '0.4')")
+    live.wait()
+    assert live.text("#train") == "train anew, this flock"
     assert live.complaints() == []
 
 

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { doing } from "../../web/doing.mjs";
+import { chosenBoat, clockwise, doing, scoreWords } from "../../web/doing.mjs";
 
 /** A run whose boats stand in the east and head up (counter-clockwise), down (clockwise) or outward. */
 function runOf({ up = 0, down = 0, outward = 0, leaders = 0, inner = 50, outer = 90 }) {
@@ -24,4 +24,17 @@ test("what most boats do is named, and what none does is counted", () => {
   ]) {
     assert.equal(doing(runOf(boats), 0, { "circles-from": "0.5" }), words);
   }
+});
+
+test("several flocks are told in one short sentence, and the chosen boat by its role and direction", () => {
+  const palette = { "circles-from": "0.5" };
+  const runs = [{ down: 8, up: 4 }, { down: 5, outward: 7 }, { up: 12 }].map((boats) => runOf({ ...boats, leaders: 4 })).map((run) => ({ ...run, sampleAt: () => 0 }));
+  assert.equal(clockwise(runs, 0, palette), "Clockwise: 8, 5, 0 of 12 boats.");
+  assert.equal(chosenBoat(runs[1], 0, 11, palette), "Boat 11: against a wall.");
+  assert.equal(chosenBoat(runs[0], 0, 0, palette), "Boat 0, a leader: counter-clockwise.");
+});
+
+test("a score that is heard is that of this round", () => {
+  const score = { children: [{ textContent: "you +0.25" }, { textContent: "" }, { textContent: "57 of 300 s. 1 round: you +0.10, the law +0.20; 0 won" }] };
+  assert.equal(scoreWords(score, "1 round: you +0.10, the law +0.20; 0 won"), "you +0.25, 57 of 300 s.");
 });

@@ -269,6 +269,7 @@ export function boatNumbers(run, boat, sample) {
 /** A table of the parameters; those that differ between runs stand out. */
 export function parameterTable(runs) {
   const table = element("table");
+  table.setAttribute("aria-label", "Parameters");
   const rows = [["", (run) => run.name], ["seed", (run) => run.seed], ["version", (run) => run.version],
     ...Object.keys(runs[0].parameters).map((key) => [key, (run) => run.parameters[key]])];
   for (const [name, value] of rows) {
