@@ -13,7 +13,8 @@ from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
-from flockenv.tracks.motion import Motion, in_water, unwrapped
+from flockenv.tracks.headings import unwrapped
+from flockenv.tracks.motion import Motion, in_water
 
 Floats = NDArray[np.float64]
 

@@ -8,16 +8,12 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
-from flockenv.tracks.formats import plain
+from flockenv.tracks.formats import PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.table import Floats, Table
 
 if TYPE_CHECKING:
     import pandas as pd
-
-PER_S = {"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e3, "us": 1e6, "µs": 1e6}
-PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
-"""Units of time by their names in headers, per second."""
 
 _DAY_S = 86_400.0
 _STOPWATCH = re.compile(r"^\s*(\d+:\d+\.\d*)\s*$")
@@ -87,22 +83,16 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     per_s = PER_S.get(unit_of(layout.frame))
     # Steps of 12 may be seconds if the name says so, and 0, 1, 2 are frames whatever it says.
     says_s = per_s == 1.0 and steps.min() > 1.0
-    if layout.fps is None and (per_s not in (None, 1.0) or (is_whole and not says_s)):
-        counts = "holds whole numbers (fps = 1 if it counts s)"
-        if per_s not in (None, 1.0):
-            counts = f"counts {unit_of(layout.frame)} (fps = {per_s:.6g})"
-        raise ParameterError(f"fps is missing: column {layout.frame!r} {counts}")
+    missing = f"fps is missing: column {layout.frame!r}"
+    if layout.fps is None and per_s not in (None, 1.0):
+        raise ParameterError(f"{missing} counts {unit_of(layout.frame)} (fps = {per_s:.6g})")
+    if layout.fps is None and is_whole and not says_s:
+        raise ParameterError(f"{missing} holds whole numbers (fps = 1 if it counts s)")
     if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
             f"{np.median(steps):.4g}, which are no frames: leave fps out if it holds times in s"
         )
-
-
-def unit_of(name: str) -> str:
-    """Return the unit in the name of a column of times, perhaps its last word: time_min."""
-    words, unit = plain(name)
-    return unit or words.rpartition("_")[2]
 
 
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:

@@ -7,12 +7,9 @@ import numpy as np
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
-from flockenv.tracks.formats import key_points
+from flockenv.tracks.formats import CM, key_points
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.table import Table, listed
-
-CM = {"cm": 1.0, "mm": 0.1, "m": 100.0}
-"""Units of length by their names, in cm."""
 
 
 def is_dataset(source: Any) -> bool:

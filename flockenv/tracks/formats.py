@@ -1,4 +1,4 @@
-"""Tables of other programs: a row of facts for each, and words that many use for columns.
+"""Tables of other programs: a row of facts for each, words for columns, marks of lost animals.
 
 In a pattern ``{id}`` stands for the name of a boat, ``{n}`` for its number, ``{part}`` for a key
 point and ``*`` for anything. The column of y is that of x with one letter exchanged.
@@ -20,10 +20,12 @@ class Format(NamedTuple):
     fields: Mapping[str, Any] = MappingProxyType({})
     #: How lines of a header in levels begin, in small letters: the first, and those of names.
     levels: tuple[str, ...] = ()
+    #: Names of columns that are written without a header; the last four may be missing.
+    header: tuple[str, ...] = ()
 
 
-MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
-_BOX = {"box": MOT[4:6], "heading": None, "y_down": True}
+_MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
+_BOX = {"box": _MOT[4:6], "heading": "", "y_down": True}
 _MOTIVE = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
 _ABOVE = {"quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True}
 _BODIES_IN_LEVELS = ("type", "name", "", "frame")
@@ -31,7 +33,7 @@ _PARTS_IN_LEVELS = ("scorer", "individuals", "bodyparts", "coords")
 _PLACE = {"x": "{id}.Position_X", "y": "{id}.Position_Z"}
 
 FORMATS = (
-    Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"}, _BOX),
+    Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"}, _BOX, (), _MOT),
     Format("OptiTrack Motive", {"frame": "Time (Seconds)", **_PLACE}, _ABOVE, _BODIES_IN_LEVELS),
     Format(
         "DeepLabCut, several animals",
@@ -53,6 +55,18 @@ FORMATS = (
     Format("key points", {"x": "{part}.x"}),
 )
 """A row for each program, the more special ones first."""
+
+NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
+"""Cells that stand for no number, in small letters."""
+
+NOBODY = (
+    *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
+    *("unidentified", "untracked", "unlabeled", "?", "undefined", "lost"),
+)
+"""Names of detections that are no boat, in small letters."""
+
+LOST = ([0.0, 0.0], [-1.0, -1.0])
+"""Points that many programs write for a lost animal."""
 
 _BODIES = ("body", "boat", "robot", "animal", "fish", "individual", "particle", "agent")
 _THINGS = (*_BODIES, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
@@ -84,6 +98,13 @@ _PARTS = {
     "tail": ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
     "middle": ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
 }
+CM = {"cm": 1.0, "mm": 0.1, "m": 100.0}
+"""Units of length by their names, in cm."""
+
+PER_S = {"s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e3, "us": 1e6, "µs": 1e6}
+PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
+"""Units of time by their names in headers, per second."""
+
 _LONGEST = 200
 """Letters of a name of a column; to compare longer ones takes long, and they tell nothing."""
 
@@ -106,6 +127,18 @@ def plain(name: str) -> tuple[str, str]:
     unit = next(filter(None, found.groups()), "") if found else ""
     base = re.sub(r"([a-z])([A-Z])", r"\1_\2", _UNIT.sub("", name)).lower()
     return re.sub(r"[^a-z0-9]+", "_", base).strip("_"), unit.strip().lower()
+
+
+def unit_of(name: str) -> str:
+    """Return the unit in the name of a column of times, perhaps its last word: time_min."""
+    words, unit = plain(name)
+    return unit or words.rpartition("_")[2]
+
+
+def header_of(count: int) -> list[str]:
+    """Return the columns of a program that writes so many without a header, none for others."""
+    headers = (program.header for program in FORMATS if count <= len(program.header) <= count + 4)
+    return [*next(headers, ())[:count]]
 
 
 def _matches(pattern: str, names: Iterable[str]) -> list[re.Match[str]]:
@@ -209,11 +242,10 @@ def recognized(names: list[str]) -> dict[str, Any]:
         by_plain.setdefault(plain(name)[0], name)
     found = {field: _first(words, by_plain) for field, words in WORDS.items()}
     form: dict[str, Any] = {field: by_plain[match[0]] for field, match in found.items() if match}
-    y = _as_y(form["x"], present) if "x" in form else None
-    if y is None:
-        form.pop("x", None)
-    else:
+    if y := _as_y(form.get("x", ""), present):
         form["y"] = y
+    else:
+        form.pop("x", None)
     for program in FORMATS:
         known = _fields_of(program, names, present)
         # Any pair of columns may be a key point's.
@@ -224,9 +256,7 @@ def recognized(names: list[str]) -> dict[str, Any]:
             break
     if "heading" not in form and "quaternion" not in form and (four := quaternion(names)):
         form["quaternion"] = four
-    if "quaternion" in form:
-        form["heading"] = ""
-    return {name: "" if value is None else value for name, value in form.items()}
+    return form | ({"heading": ""} if "quaternion" in form else {})
 
 
 def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:

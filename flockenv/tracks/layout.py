@@ -13,6 +13,7 @@ from typing import Any, Literal, get_args, get_origin
 from flockenv._io.toml import read_toml_file
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.parameters import FlockParameters
+from flockenv.tracks.formats import NOBODY
 
 _Columns = str | tuple[str, ...]
 _Four = tuple[str, str, str, str]
@@ -171,10 +172,7 @@ class TrackLayout:
     max_speed_cm_s: float = 200.0
     confidence: _Columns | None = None
     least_confidence: float | None = None
-    unassigned: tuple[str, ...] = (
-        *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
-        *("unidentified", "untracked", "unlabeled", "?", "undefined", "lost"),
-    )
+    unassigned: tuple[str, ...] = NOBODY
     lost: tuple[tuple[float, float], ...] = ()
     missing: tuple[str, ...] = ()
     separator: Literal[",", ";", "\t", " ", "|", None] = None

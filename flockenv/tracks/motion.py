@@ -1,6 +1,7 @@
-"""Motion of tracked boats: velocities, gaps, and whether motion fits the headings."""
+"""Motion of tracked boats: velocities, gaps and speeds."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
@@ -8,17 +9,9 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
-from flockenv.tracks.layout import TrackLayout
 
 Floats = NDArray[np.float64]
 
-HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
-"""Zero of headings, in rad counter-clockwise from x."""
-
-TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
-"""A full turn in the units of headings."""
-
-_AXIS_JUMP = 0.8
 _MOST_BROKEN = 0.5
 
 
@@ -52,12 +45,18 @@ class Motion:
 
     def gaps(self) -> Floats:
         """Return the length of each gap in s: between two poses of a boat that are no neighbors."""
-        found = [np.zeros(0)]
-        for stamps, present in zip(self.stamps.T, self.present.T, strict=True):
-            frames = np.flatnonzero(present)
-            steps = np.diff(stamps[frames])
-            found.append(steps[(np.diff(frames) > 1) | (steps > self.longest_s)])
-        return np.concatenate(found)
+        ends = [
+            self.stamps[[before[-1], after[0]], boat]
+            for boat in range(self.stamps.shape[1])
+            for before, after in pairwise(self.parts(boat))
+        ]
+        return np.diff(np.reshape(ends, (-1, 2)))[:, 0]
+
+    def parts(self, boat: int) -> list[NDArray[np.intp]]:
+        """Return the frames of a boat's poses, from gap to gap."""
+        frames = np.flatnonzero(self.present[:, boat])
+        is_gap = np.diff(self.stamps[frames, boat]) > self.longest_s
+        return np.split(frames, np.flatnonzero((np.diff(frames) > 1) | is_gap) + 1)
 
     def empty_frames(self, time_s: Floats) -> int:
         """Return the number of empty frames, of those that a regular clock has."""
@@ -74,77 +73,21 @@ class Motion:
         """Return the speeds of boats along their headings."""
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
 
-    def check(self, heading: Floats, layout: TrackLayout) -> None:
-        """Refuse tracks in which most steps are too fast, and axes given as directions."""
-        steps = (
-            self.present[1:] & self.present[:-1] & (np.diff(self.stamps, axis=0) <= self.longest_s)
-        )
-        if self.broken > _MOST_BROKEN * steps.sum():
+    @property
+    def steps(self) -> NDArray[np.bool_]:
+        """Whether a boat has a pose at a time and at the next one, shape (t - 1, n)."""
+        is_short = np.diff(self.stamps, axis=0) <= self.longest_s
+        return np.asarray(self.present[1:] & self.present[:-1] & is_short)
+
+    def check_speeds(self, fastest_cm_s: float) -> None:
+        """Refuse tracks in which most steps are too fast."""
+        count = self.steps.sum()
+        if self.broken > _MOST_BROKEN * count:
             raise ParameterError(
-                f"{self.broken} of {steps.sum()} steps are faster than max_speed_cm_s = "
-                f"{layout.max_speed_cm_s:g}: do cm_per_unit, fps and times fit this table, and "
-                "is it one film?"
+                f"{self.broken} of {count} steps are faster than max_speed_cm_s = "
+                f"{fastest_cm_s:g}: do cm_per_unit, fps and times fit this table, and is it one "
+                "film?"
             )
-        if len(layout.columns["heading"]) != 1:
-            return
-        self._check_unit(heading, layout)
-        jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & steps
-        if layout.axis or jumps.sum() < 3 or not _is_half(heading):
-            return
-        if self.cosine(bows_of(heading, self)) > self.cosine(heading):
-            raise ParameterError(
-                "headings lie within half a turn and jump from one end of it to the other: set "
-                "axis = true if they are axes without a bow, as of ellipses"
-            )
-
-    def _check_unit(self, heading: Floats, layout: TrackLayout) -> None:
-        """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
-        turned = heading - HEADING_ZERO[layout.heading_zero]
-        for unit, turn in TURN.items():
-            # A full turn of the smaller unit, and headings over more than half of one.
-            share = turn / TURN[layout.heading_unit]
-            least = TURN["rad"] * share
-            if share >= 1.0 or np.nanmax(np.abs(turned)) > 1.003 * least:
-                continue
-            other = heading + turned * (1.0 / share - 1.0)
-            is_wide = np.ptp(turned[self.present]) > 0.5 * least
-            if is_wide and self.cosine(other) > self.cosine(heading):
-                raise ParameterError(
-                    f"headings never exceed a full turn in {unit}, and fit the motion better than "
-                    f"in {layout.heading_unit}: is heading_unit = {unit!r}?"
-                )
-
-
-def _is_half(heading: Floats) -> bool:
-    """Whether headings, up to whole turns, lie within half a turn as axes are given."""
-    wrapped = np.mod(heading[~np.isnan(heading)], np.pi * 2)
-    return any(
-        (np.mod(wrapped - start, 2 * np.pi) <= np.pi + 1e-6).all()
-        for start in np.pi * np.array([0.0, 0.5, 1.0, 1.5])
-    )
-
-
-def bows_of(axis: Floats, motion: Motion) -> Floats:
-    """Return axes as headings: continuous, and mostly along the boat's motion."""
-    heading = axis.copy()
-    for boat in range(axis.shape[1]):
-        frames = np.flatnonzero(motion.present[:, boat])
-        steps = np.diff(motion.stamps[frames, boat])
-        cuts = np.flatnonzero((np.diff(frames) > 1) | (steps > motion.longest_s)) + 1
-        for part in np.split(frames, cuts):
-            heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
-            if np.nansum(motion.ahead(heading)[part, boat]) < 0.0:
-                heading[part, boat] += np.pi
-    return heading
-
-
-def unwrapped(heading: Floats) -> Floats:
-    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
-    continuous = heading.copy()
-    for boat in continuous.T:
-        present = ~np.isnan(boat)
-        boat[present] = np.unwrap(boat[present])
-    return continuous
 
 
 def in_water(pool: Any, indices: Floats, margin_cm: float) -> NDArray[np.bool_]:

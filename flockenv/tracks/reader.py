@@ -14,10 +14,11 @@ from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import frames_of
 from flockenv.tracks.dataset import is_dataset, table_of
+from flockenv.tracks.headings import bows_of, check_by_motion, direction, unwrapped
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
-from flockenv.tracks.motion import Motion, bows_of, unwrapped
+from flockenv.tracks.motion import Motion
 from flockenv.tracks.report import TrackReport
-from flockenv.tracks.rows import direction, names_nobody, rows_of
+from flockenv.tracks.rows import rows_of
 from flockenv.tracks.table import Floats, Table, check_ending, plain_table, read_table
 
 if TYPE_CHECKING:
@@ -77,18 +78,17 @@ def read_tracks(
 
 
 def _recording(table: Table, report: Callable[[TrackReport], object]) -> Recording:
-    unnamed = names_nobody(table)
-    layout = replace(table.layout, id=None) if unnamed else table.layout
-    rows = rows_of(Table(table.rows, layout) if unnamed else table)
+    layout, rows = table.layout, rows_of(table)
     twice = rows["id"].notna() & rows.duplicated(["id", "time", "x", "y", "heading"])
     rows["why"] = rows["why"].mask(twice & (rows["why"] == ""), _TWICE)
     unsorted = int((rows[rows["why"] != _TWICE].groupby("id")["time"].diff() < 0.0).sum())
     rows = rows.sort_values("time", kind="stable")
     rows["frame"] = frames_of(rows)
-    names, time_s, stamps, pose = _poses(rows, layout)
+    names, time_s, stamps, pose = _poses(rows, table)
     motion = _turned_into_motion(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
+    unnamed = layout.id is not None and not table.is_named and not layout.is_wide
     found = _report(rows, time_s, pose, motion, layout)
     report(replace(found, unsorted=unsorted, unnamed=unnamed))
     return recording
@@ -104,7 +104,8 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
         pose[..., 2] = bows_of(pose[..., 2], motion)
     pose[..., 2] = unwrapped(pose[..., 2])
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    motion.check(pose[..., 2], layout)
+    motion.check_speeds(layout.max_speed_cm_s)
+    check_by_motion(pose[..., 2], motion, layout)
     return motion
 
 
@@ -140,23 +141,24 @@ def _median(values: Floats) -> float:
     return float(np.median(found)) if len(found) else float("nan")
 
 
-def _poses(every: "pd.DataFrame", layout: TrackLayout) -> tuple[list[str], Floats, Floats, Floats]:
+def _poses(every: "pd.DataFrame", table: Table) -> tuple[list[str], Floats, Floats, Floats]:
     """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
     rows = every[every["why"] == ""]
     if rows.empty:
         counts = [f"{count} {why}" for why, count in every["why"].value_counts().items()]
-        found = f"{', '.join(counts)}" if counts else "there are no rows"
+        found = ", ".join(counts) or "there are no rows"
         raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
     again = rows.duplicated(["id", "time"])
     if again.any():
         row = rows[again].iloc[0]
-        if layout.id is None and not layout.is_wide:
+        if not table.is_named and not table.layout.is_wide:
             raise ParameterError("id is missing: several rows have one time, so boats have names")
         same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
+        frame = row["time"] * (table.layout.fps or 1)
         raise ParameterError(
-            f"{row['id']!r} is there {len(same)} times in frame {row['time'] * (layout.fps or 1):g}"
-            f", at different places, the second time in {rows.index.name} {row.name}: were there "
-            "two films, or was the clock set back? Give each film a table of its own"
+            f"{row['id']!r} is there {len(same)} times in frame {frame:g}, at different places, "
+            f"the second time in {rows.index.name} {row.name}: were there two films, or "
+            "was the clock set back? Give each film a table of its own"
         )
     _check_names(rows)
     # By their length, then alphabet, so that 2 comes before 10.
@@ -208,8 +210,7 @@ def _held(rows: "pd.DataFrame") -> dict[str, int]:
     """Return boats that move with one heading in many samples, and with any other in few."""
     # A boat seen at a single point keeps its heading, too.
     used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
-    counts = used.value_counts(["id", "heading"]).groupby("id")
-    table = counts.nth([0, 1]).groupby("id").agg(["max", "min", "size"])
-    table = table[(table["max"] >= _STUCK) & (table["size"] > 1)]
-    table = table[table["max"] >= 10 * table["min"]]
-    return {str(name): int(count) for name, count in table["max"].items()}
+    counts: Any = used.value_counts(["id", "heading"]).groupby("id")
+    most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))
+    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index))]
+    return {str(name): int(count) for name, count in held.items()}

@@ -1,6 +1,6 @@
 """Report of tracks: the used and the omitted parts."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -52,75 +52,65 @@ class TrackReport:
         return {name: None if value != value else value for name, value in asdict(self).items()}
 
     def __str__(self) -> str:
-        rows = sum(sum(boats.values()) for boats in self.left_out.values())
-        reasons = [
-            f"{sum(boats.values())} {reason}{_by_boat(boats)}"
-            for reason, boats in self.left_out.items()
-        ]
+        counts = {why: sum(boats.values()) for why, boats in self.left_out.items()}
+        reasons = [f"{count} {why}{_by_boat(self.left_out[why])}" for why, count in counts.items()]
         longest = f", the longest {self.longest_gap_s:.4g} s" if self.gaps else ""
         lines = [
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; "
             f"missing: {self.missing} of {self.samples + self.missing} boat-frames",
             f"{self.duration_s:.6g} s, a frame every {self.step_s:.4g} s; median speed "
             f"{self.median_speed_cm_s:.3g} cm/s",
-            f"left out: {rows} rows" + (f" ({', '.join(reasons)})" if rows else ""),
+            f"left out: {sum(counts.values())} rows"
+            + (f" ({', '.join(reasons)})" if counts else ""),
             f"gaps: {self.gaps}{longest}; steps too fast for a velocity: {self.broken}; "
             f"samples without a velocity: {self.lone}",
             f"mean cosine between heading and motion: {self.cosine:.2f}",
         ]
-        return "\n  ".join([*lines, *(words for holds, words in self._doubts() if holds)])
+        return "\n  ".join([*lines, *self._doubts(counts.get("in no water", 0))])
 
-    def _doubts(self) -> list[tuple[bool, str]]:
-        """Return lines about unusual values, which may be correct, and whether they apply."""
-        outside = sum(self.left_out.get("in no water", {}).values())
-        share = outside / max(1, outside + self.samples)
-        return [
-            (
-                self.lone == self.samples and self.frames > 1,
-                "no boat is there in two frames one after another: are the names right?",
-            ),
-            (
-                self.cosine < _WEAK,
+    def _doubts(self, outside: int) -> Iterator[str]:
+        """Yield a line about each unusual value, which may be correct."""
+        if self.lone == self.samples and self.frames > 1:
+            yield "no boat is there in two frames one after another: are the names right?"
+        if self.cosine < _WEAK:
+            yield (
                 "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero "
-                "and the order of x and y right, and are headings no axes?",
-            ),
-            (
-                self.unsorted > 0,
+                "and the order of x and y right, and are headings no axes?"
+            )
+        if self.unsorted:
+            yield (
                 f"rows are not in the order of time ({self.unsorted} steps back), and were "
-                "sorted: is it one film?",
-            ),
-            (self.unnamed, "the column of names is empty: all rows are of one boat"),
-            (
-                self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S,
-                "that is slow for boats: are times in s? `fps` says how many units a s has",
-            ),
-            (
-                share > _MANY_OUTSIDE,
+                "sorted: is it one film?"
+            )
+        if self.unnamed:
+            yield "the column of names is empty: all rows are of one boat"
+        if self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S:
+            yield "that is slow for boats: are times in s? `fps` says how many units a s has"
+        share = outside / max(1, outside + self.samples)
+        if share > _MANY_OUTSIDE:
+            yield (
                 f"{share:.0%} of the detections lie beside the pool: do cm_per_unit, center and "
-                "pool fit?",
-            ),
-            (
-                bool(self.stuck),
-                f"the same point in many frames: {_at_points(self.stuck)}; if one stands for a "
-                "lost boat, name it in `lost`",
-            ),
-            (
-                bool(self.held),
-                f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
-                "heading, name it in `missing`",
-            ),
+                "pool fit?"
+            )
+        points = [
+            f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
+            for name, (x, y, count) in self.stuck.items()
         ]
+        if points:
+            yield (
+                f"the same point in many frames: {_first_five(points)}; if one stands for a lost "
+                "boat, name it in `lost`"
+            )
+        if self.held:
+            yield (
+                f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
+                "heading, name it in `missing`"
+            )
 
 
 def _by_boat(boats: Mapping[str, int]) -> str:
     named = sorted(((count, name) for name, count in boats.items() if name), reverse=True)
     return f": {_first_five([f'{name} {count}' for count, name in named])}" if named else ""
-
-
-def _at_points(stuck: Mapping[str, tuple[float, float, int]]) -> str:
-    return _first_five(
-        [f"{name} at ({x:.6g}, {y:.6g}) in {count} frames" for name, (x, y, count) in stuck.items()]
-    )
 
 
 def _first_five(words: list[str]) -> str:

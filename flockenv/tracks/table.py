@@ -7,6 +7,7 @@ import io
 import itertools
 import os
 import re
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ from flockenv._io.array_file import most_held
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, short_repr
-from flockenv.tracks.formats import FORMATS
+from flockenv.tracks.formats import FORMATS, NO_NUMBER
 from flockenv.tracks.layout import TrackLayout
 
 if TYPE_CHECKING:
@@ -29,9 +30,6 @@ Floats = NDArray[np.float64]
 _TEXTS, _PARQUET = (".csv", ".tsv", ".txt"), (".parquet", ".pq")
 SUFFIXES = (*_TEXTS, *(f"{text}.gz" for text in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
-
-NONE = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
-"""Cells that stand for no number, in small letters."""
 
 
 class Table:
@@ -63,6 +61,14 @@ class Table:
             raise ParameterError(f"no columns look like {looks}; there are {listed(self.names)}")
         return names
 
+    @cached_property
+    def is_named(self) -> bool:
+        """Whether a column names the boats. One in which no row has a name is of one boat."""
+        if self.layout.id is None or self.layout.is_wide:
+            return False
+        ids = self.column(self.layout.id)
+        return not (ids.isna() | ids.astype(str).str.strip().str.lower().isin(NO_NUMBER)).all()
+
     @property
     def index(self) -> "pd.Index[Any]":
         """The line or row of each of the boats' rows."""
@@ -90,35 +96,39 @@ class Table:
 
     def numbers(self, name: str) -> Floats:
         """Return a column as numbers, NaN for missing and infinite ones."""
-        pandas, found = require("pandas", "plot"), self.column(name)
-        types = pandas.api.types
-        if types.is_bool_dtype(found) or types.is_complex_dtype(found):
-            raise ParameterError(f"column {name!r} holds other things than numbers")
-        if not types.is_numeric_dtype(found):
-            found = _parsed(pandas, found, name, self.layout)
+        to_numeric, found = require("pandas", "plot").to_numeric, self.column(name)
+        if found.dtype.kind not in "iuf":
+            texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
+            decimals = texts.str.replace(self.layout.decimal, ".")
+            found = to_numeric(decimals, errors="coerce")
+            self._check_words(name, texts[found.isna()])
         values = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-        none = pandas.to_numeric(list(self.layout.missing), errors="coerce")
+        none = to_numeric(list(self.layout.missing), errors="coerce")
         values[np.isinf(values) | np.isin(values, none)] = np.nan
         return values
 
+    def points(self, x: Iterable[str], y: Iterable[str]) -> tuple[Floats, Floats, Any]:
+        """Return the means of columns of x and of y, and whether a point marks a lost boat."""
+        points = np.array([[self.numbers(name) for name in names] for names in (x, y)])
+        is_lost = np.zeros(points.shape[-1], bool)
+        for mark in self.layout.lost:
+            is_lost |= ((points[0] == mark[0]) & (points[1] == mark[1])).any(axis=0)
+        return *points.mean(axis=1), is_lost
 
-def _parsed(pandas: Any, found: Any, name: str, layout: TrackLayout) -> Any:
-    """Return texts as numbers, NaN for those that stand for none."""
-    texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
-    values = pandas.to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
-    none = NONE | {word.strip().lower() for word in layout.missing}
-    strange = texts[values.isna() & ~texts.str.lower().isin(none)]
-    if len(strange):
-        decimal = "," if layout.decimal == "." else "."
-        hint = f"; is decimal = {decimal!r}?" if has_decimal(strange.iloc[0], decimal) else ""
-        raise ParameterError(
-            f"column {name!r} holds other things than numbers: {short_repr(strange.iloc[0])} in "
-            f"{found.index.name} {strange.index[0]}{hint}"
-        )
-    return values
+    def _check_words(self, name: str, texts: "pd.Series[Any]") -> None:
+        """Refuse texts that are no numbers and do not stand for a missing one."""
+        none = NO_NUMBER | {word.strip().lower() for word in self.layout.missing}
+        strange = texts[~texts.str.lower().isin(none)]
+        if len(strange):
+            decimal = "," if self.layout.decimal == "." else "."
+            hint = f"; is decimal = {decimal!r}?" if _has_decimal(strange.iloc[0], decimal) else ""
+            raise ParameterError(
+                f"column {name!r} holds other things than numbers: {short_repr(strange.iloc[0])} "
+                f"in {texts.index.name} {strange.index[0]}{hint}"
+            )
 
 
-def has_decimal(cell: str, mark: str) -> bool:
+def _has_decimal(cell: str, mark: str) -> bool:
     """Return whether a cell is a number with a decimal mark."""
     whole, _, part = cell.lstrip("+-").partition(mark)
     return whole.isdigit() and part.isdigit()
@@ -146,20 +156,19 @@ def read_table(path: Path, layout: TrackLayout) -> Table:
     pandas = require("pandas", "plot")
     check_ending(path)
     try:
-        if not is_text(path):
+        if not _is_text(path):
             return plain_table(_read_parquet(pandas, path), layout)
-        separator = layout.separator or usual_separator(path)
-        return _read_text(pandas, text_of(path), layout, separator)
+        separator = layout.separator or _usual_separator(path)
+        return _read_text(pandas, _text_of(path), layout, separator)
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"it cannot be read as a table: {error}") from error
 
 
-def is_text(path: Path) -> bool:
-    """Return whether a file is a text, by its ending."""
+def _is_text(path: Path) -> bool:
     return ending(path) not in _PARQUET
 
 
-def usual_separator(path: Path) -> str:
+def _usual_separator(path: Path) -> str:
     """Return the separator of a text file that its ending says."""
     return "\t" if ending(path).startswith(".tsv") else ","
 
@@ -174,7 +183,7 @@ def _read_parquet(pandas: Any, path: Path) -> Any:
         return pandas.read_parquet(file)
 
 
-def text_of(path: Path) -> str:
+def _text_of(path: Path) -> str:
     """Return a file as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
     with open_plain(path) as file:
         most = most_held(os.fstat(file.fileno()).st_size)
@@ -192,17 +201,35 @@ def text_of(path: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
-    """Return the cells of the first lines after those that are skipped."""
-    lines = itertools.islice(io.StringIO(text), skip, skip + count)
-    if separator == " ":
-        return [line.split() for line in lines]
-    rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
-    return [[cell.strip() for cell in row] for row in rows]
+def spelling_of(path: Path) -> dict[str, Any]:
+    """Return separator, decimal and skip of the text file of a table, if they are not usual."""
+    if not _is_text(path):
+        return {}
+    lines = _text_of(path).splitlines()[:100] or [""]
+    mark = _separator_of(lines)
+    rows = [line.split(None if mark == " " else mark) for line in lines]
+    widths = [*map(len, rows)]
+    # The header is the first line with as many cells as the following ones, or begins in levels.
+    in_levels = (line for line in range(4) if _levels(rows[line : line + 10])[0])
+    skip = next(in_levels, widths.index(max(widths)))
+    form: dict[str, Any] = {"skip": skip} if skip else {}
+    if mark != _usual_separator(path):
+        form["separator"] = mark
+    if mark != "," and any(_has_decimal(cell.strip(), ",") for row in rows[1:] for cell in row):
+        form["decimal"] = ","
+    return form
+
+
+def _separator_of(lines: list[str]) -> str:
+    """Return the mark that stands most often in a line."""
+    counts = {mark: max(line.count(mark) for line in lines) for mark in ";\t|,"}
+    if max(counts.values()) < 2:  # Names may hold blanks, too.
+        counts[" "] = max(len(line.split()) - 1 for line in lines)
+    return max(counts, key=lambda mark: counts[mark])
 
 
 def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:
-    rows = cells_of(text, separator, layout.skip, 10)
+    rows = _cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
     first = layout.skip + height + 1
     for line, row in enumerate(rows[height:], first):
@@ -223,33 +250,53 @@ def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> T
         index_col=False,
         dtype=dict.fromkeys(np.flatnonzero(is_id), str),
         keep_default_na=False,
+        na_values=[""],
         skipinitialspace=True,
         skip_blank_lines=False,
         low_memory=False,
     )
     lines = pandas.RangeIndex(first, first + len(table), name="line")
-    table = table.set_axis(names, axis=1).set_axis(lines)
-    blank = (table.isna() | (table == "")).all(axis=1)
+    table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
+    if layout.header:
+        return Table(table, layout)
     # Some write units, or longer names, into the lines under the header.
-    under = [n for n, row in table.head(4).iterrows() if not any(map(is_value, row))]
-    return Table(table[~blank & ~table.index.isin([] if layout.header else under)], layout)
+    under = [line for line, row in table.head(4).iterrows() if not any(map(is_value, row))]
+    return Table(table.drop(index=under), layout)
+
+
+def _cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
+    """Return the cells of the first lines after those that are skipped."""
+    lines = itertools.islice(io.StringIO(text), skip, skip + count)
+    if separator == " ":
+        return [line.split() for line in lines]
+    rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+    return [[cell.strip() for cell in row] for row in rows]
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
     """Return the names of columns, and how many lines they take: some write them in levels."""
     if not rows or not any(rows[0]):
         raise ParameterError("there is no header in its first line")
-    # The columns of times are unnamed but for what the lines themselves are called.
-    own = 1 if rows[0][0] else 2
+    lines, own = _levels(rows)
+    if not lines:
+        # A separator at the end of the line leaves an empty name.
+        return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
+    levels = zip(*(rows[line][own:] for line in lines), strict=False)
+    return ["frame", *rows[lines[-1]][1:own], *map(_joined, levels)], lines[-1] + 1
+
+
+def _levels(rows: list[list[str]]) -> tuple[list[int], int]:
+    """Return the lines that hold the levels of a header, none for others, and its own columns.
+
+    Its own columns are those of times, unnamed but for what the lines themselves are called.
+    """
+    own = 1 if any(rows[:1] and rows[0][:1]) else 2
     starts = [next(filter(None, row[:own]), "").lower() for row in rows]
     for levels in (program.levels for program in FORMATS if program.levels):
-        if starts[0] == levels[0] and levels[-1] in starts:
-            height = starts.index(levels[-1]) + 1
-            used = [rows[line][own:] for line in range(1, height) if starts[line] in levels]
-            names = ["frame", *rows[height - 1][1:own]]
-            return [*names, *map(_joined, zip(*used, strict=False))], height
-    # A separator at the end of the line leaves an empty name.
-    return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
+        if starts[:1] == [levels[0]] and levels[-1] in starts:
+            under = range(1, starts.index(levels[-1]) + 1)
+            return [line for line in under if starts[line] in levels], own
+    return [], own
 
 
 def _joined(levels: Any) -> str:
@@ -307,5 +354,7 @@ def _other_mark(names: list[str]) -> str:
         return ": `header` names the columns of a file whose first line does not"
     if names[0][:1] in ("#", "%", "/") and len(names) == 1:
         return ": `skip` leaves out lines before the header, such as remarks"
-    marks = [mark for mark in (";", "\t", "|", " ", ",") if len(names) == 1 and mark in names[0]]
-    return f": the header looks like one with separator = {marks[0]!r}" if marks else ""
+    mark = _separator_of(names)
+    if len(names) > 1 or mark not in names[0]:
+        return ""
+    return f": the header looks like one with separator = {mark!r}"

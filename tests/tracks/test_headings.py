@@ -109,6 +109,18 @@ def test_headings_of_another_unit_are_refused(seen, change, fields, words):
     assert ("'deg'" in str(raised.value)) == ("'deg'" in words)
 
 
+@pytest.mark.parametrize("backward", [False, True])
+def test_a_unit_larger_than_the_right_one_is_not_advised(backward):
+    """Headings that go on for rounds are below a turn in rad; in turns they are whole turns."""
+    k = np.arange(400)
+    angle = 0.07 * k
+    turns = (angle / (2 * np.pi) + 0.25 + 0.5 * backward) % 1.0
+    table = pd.DataFrame({"frame": k, "id": "a", "x": 60 * np.cos(angle), "y": 60 * np.sin(angle)})
+    layout = TrackLayout(pool=(100.0, 0.0), fps=10.0, heading_unit="turn")
+    _, report = read_and_counted(table.assign(heading=turns), layout)
+    assert report.cosine == pytest.approx(-1.0 if backward else 1.0, abs=1e-4)
+
+
 def test_boats_that_head_one_way_in_degrees_are_read():
     k = np.arange(60)
     table = pd.DataFrame({"frame": k, "id": "a", "x": k - 30.0, "y": 0.0, "heading": k % 6 - 2.5})
