@@ -98,7 +98,7 @@ function* entries(view) {
     end -= 1;
   }
   if (end < 0 || view.getUint32(end, true) !== 0x06054b50) {
-    throw new Error("it has no end");
+    throw new Error("its end is missing");
   }
   const [count, size, first] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true)];
   let offset = first;

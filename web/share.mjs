@@ -65,7 +65,7 @@ export async function runOfFile(file, about, { check, describe, derive }) {
   const because = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
   const bytes = await file.arrayBuffer();
   const isZip = new TextDecoder("latin1").decode(bytes.slice(0, 4)) === "PK\x03\x04";
-  const arrays = await readNpz(bytes).catch(isZip ? because("is an .npz file that was cut or damaged") :
+  const arrays = await readNpz(bytes).catch(isZip ? because("is no whole, unharmed .npz file") :
     () => { throw new Error("is no .npz file, in which recordings are saved"); });
   const checked = await checkedArrays(arrays, about, async (toml) => check({ parameters: valuesOfToml(toml) }))
     .catch(because("is no recording of flockenv"));

@@ -178,7 +178,10 @@ def test_what_is_no_recording_is_refused_in_words(live, tmp_path):
         live.until(
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )
-        why = {"half.npz": "is an .npz file that was cut", "other.npz": "is no recording"}
+        why = {
+            "half.npz": "is no whole, unharmed .npz file: its end is missing.",
+            "other.npz": "is no recording",
+        }
         assert live.status().startswith(f"{name} {why.get(name, 'is no .npz file')}")
         assert not live.script("return page.recorded")
     live.run_to(2.0)

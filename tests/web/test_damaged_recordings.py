@@ -56,7 +56,12 @@ def test_flipped_bytes(recording, said_of, tmp_path, compressed):
     for path, is_refused, each in zip(paths, refused, said[1:], strict=True):
         if is_refused:
             assert each["refusal"] is not None, path.name
-            assert each["refusal"].startswith((f"{path} is no whole", f"{path} is no recording"))
+            faults = (
+                "whole, unharmed .npz file: ",
+                ".npz file, in which",
+                "recording of flockenv: ",
+            )
+            assert each["refusal"].startswith(tuple(f"{path} is no {fault}" for fault in faults))
 
 
 def changes(recording: flockenv.Recording) -> dict[str, dict]:
