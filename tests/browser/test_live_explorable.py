@@ -75,6 +75,22 @@ def test_a_phone_on_its_side_shows_whole_pools_with_mean_and_controls(open_live,
     assert live.find(".run canvas").size["width"] >= 150
 
 
+@pytest.mark.parametrize("touches", [False, True])
+def test_keys_and_dropped_files_are_named_where_there_are_some(open_live, chromium, touches):
+    asked = {"enabled": touches, "maxTouchPoints": 1}
+    chromium.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", asked)
+    try:
+        live = open_live(PHONE).go()
+        live.script("document.querySelector(\"a[data-lesson='steer']\").click()")
+        live.until("return page.other.lesson === 'steer'")
+        assert ("arrow keys" in live.text("#story")) != touches
+        live.script("document.getElementById('take').open = true")
+        assert ("Or drop one onto the page" in live.text("#load")) != touches
+    finally:
+        off = {"enabled": False}
+        chromium.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", off)
+
+
 def test_two_flocks_take_the_whole_width(open_live):
     live = open_live(LOW).go("#n_boats=27&n_leaders=1&beside.n_leaders=4&seed=7")
     first, second = boxes(live, ".run[data-run='0']", ".run[data-run='1']")
