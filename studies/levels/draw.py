@@ -1,4 +1,4 @@
-"""Draw the scores of entries, their pairs, their curves, and how many trainings reach a score."""
+"""Draw the scores of entries, also in unlike flocks, their pairs, curves and profile."""
 
 from pathlib import Path
 
@@ -7,21 +7,26 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from docs.scripts.plots import Interval, Plot, draw_intervals, name_heights
+from docs.scripts.plots import Interval, Plot, bar_lengths, draw_intervals, name_heights
 from flockenv.comparison.levels import NO_STEERING, REFERENCE
-from studies.plots import OWN, drawing
-from studies.study import main
+from studies.plots import OWN, drawing, interval
+from studies.study import existing, main
 
 RESULTS = Path(__file__).parent / "results"
 PAIRS, CURVES, AREAS = (RESULTS / f"{name}.csv" for name in ("pairs", "curves", "areas"))
+UNLIKE = RESULTS / "unlike.csv"
 ENTRIES, ORDERS, LAWS = RESULTS / "entries.csv", RESULTS / "orders.csv.gz", RESULTS / "laws.csv"
 KEY = ["level", "budget", "entry"]
 SHADES = ("-", "--", ":", "-.")
 
 
-def trainings() -> pd.DataFrame:
+def trainings(results: Path = RESULTS) -> pd.DataFrame:
     """Return the score of each training."""
-    orders = pd.read_csv(ORDERS).groupby([*KEY, "policy"], sort=False)["signed_order"].mean()
+    orders = (
+        pd.read_csv(existing(results / "orders.csv"))
+        .groupby([*KEY, "policy"], sort=False)["signed_order"]
+        .mean()
+    )
     table = orders.reset_index()
     ends = table[table["entry"] == "reference"].pivot(
         index="level", columns="policy", values="signed_order"
@@ -132,8 +137,33 @@ def curves(figure: Figure) -> None:
     figure.supylabel("score, 1: the damped law")
 
 
+ENDS = ("", "_low", "_high")
+MARKS = ("o", "s", "^", "D", "v", "P", "X", "p")
+
+
+def unlike(figure: Figure) -> None:
+    """Draw scores in unlike flocks against those in a level's own, for the first budget."""
+    rows = pd.read_csv(ENTRIES).merge(pd.read_csv(UNLIKE), on=[*KEY, "trainings"])
+    rows = rows[rows["budget"] == rows["budget"].min()]
+    marks = dict(zip(rows["entry"].unique(), MARKS, strict=False))
+    found = list(rows.groupby("level", sort=False))
+    panels = figure.subplots(1, len(found), squeeze=False).flat
+    for axes, (level, own) in zip(panels, found, strict=True):
+        axes.axline((0.0, 0.0), slope=1.0, color="0.4", lw=1)
+        for row in own.to_dict("records"):
+            x, y = (interval(row, *(name + end for end in ENDS)) for name in ("score", "unlike"))
+            bars = (bar_lengths(*([end] for end in each)) for each in (y, x))
+            style = {"fmt": marks[row["entry"]], "ms": 9, "lw": 1, "color": OWN, "mec": "w"}
+            axes.errorbar(x[0], y[0], *bars, label=row["entry"], **style)
+        axes.set_title(level, loc="left")
+    figure.supxlabel("score in the level's own flocks")
+    figure.supylabel("score in unlike flocks")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+
+
 PLOTS = {
     "scores": Plot([ENTRIES, ORDERS, LAWS], scores, (6.8, 8.4)),
+    "unlike": Plot([ENTRIES, UNLIKE], unlike, (6.8, 5.4)),
     "matrix": Plot([PAIRS], matrix, (6.8, 6.8)),
     "curves": Plot([CURVES, AREAS], curves, (6.8, 4.2)),
     "profile": Plot([ORDERS], profile, (6.8, 3.6)),

@@ -32,7 +32,7 @@ from flockenv.comparison.levels import LEVELS
 from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.statistics import bootstrap_interval, two_way_interval
 from studies.levels import level_curves
-from studies.study import StudyError, existing, run, write, write_table
+from studies.study import StudyError, existing, resumed, run, write, write_table
 from studies.suite.compare_grid import holm
 
 HERE = Path(__file__).parent
@@ -139,24 +139,39 @@ def told_apart(compared: pd.DataFrame) -> list[str]:
 # --- the table ------------------------------------------------------------------------------------
 
 
-def lines(rows: pd.DataFrame) -> Iterator[str]:
-    """Yield the lines of the table."""
-    header = "level | flock-hours | entry | class | sees | score | trainings | processor s | files"
+def lines(rows: pd.DataFrame, unlike: pd.DataFrame) -> Iterator[str]:
+    """Yield the lines of the table, with the scores in unlike flocks of the same trainings."""
+    header = "level | flock-hours | entry | class | sees | score | unlike flocks | trainings"
+    header += " | processor s | files"
     yield f"| {header} |"
     yield f"|{' --- |' * (header.count('|') + 1)}"
-    for row in rows.to_dict("records"):
+    for row in _with_unlike(rows, unlike).to_dict("records"):
         seconds = "unknown" if np.isnan(row["cpu_s"]) else f"{row['cpu_s']:.0f}"
-        score = f"{row['score']:.3f} ({row['score_low']:.3f} to {row['score_high']:.3f})"
         link = row["link"] if row["link"].startswith("http") else f"../{row['link']}"
-        cells = [row["level"], row["budget"], row["entry"], row["class"], row["sees"], score]
-        yield f"| {' | '.join(map(str, cells))} | {row['trainings']} | {seconds} | [link]({link}) |"
+        cells = [row["level"], row["budget"], row["entry"], row["class"], row["sees"]]
+        cells += [_cell(row, "score"), _cell(row, "unlike"), row["trainings"], seconds]
+        yield f"| {' | '.join(map(str, cells))} | [link]({link}) |"
 
 
-def page(rows: pd.DataFrame, text: str) -> str:
+def _with_unlike(rows: pd.DataFrame, unlike: pd.DataFrame) -> pd.DataFrame:
+    """Return rows with the scores in unlike flocks; NaN if they are of fewer trainings."""
+    if unlike.empty:
+        return rows.assign(unlike=np.nan)
+    same = [*KEY, "trainings"]
+    return rows.astype({"budget": str}).merge(unlike.astype({"budget": str}), "left", same)
+
+
+def _cell(row: dict[str, Any], name: str) -> str:
+    if np.isnan(row[name]):
+        return "unknown"
+    return f"{row[name]:.3f} ({row[f'{name}_low']:.3f} to {row[f'{name}_high']:.3f})"
+
+
+def page(rows: pd.DataFrame, text: str, unlike: pd.DataFrame) -> str:
     """Return the text of the page with the table of these rows."""
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
-    return f"{before}{BEGIN}{chr(10).join(lines(rows))}{END}{after}"
+    return f"{before}{BEGIN}{chr(10).join(lines(rows, unlike))}{END}{after}"
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -182,7 +197,8 @@ def main(arguments: list[str] | None = None) -> None:
     compared = pairs(rows, orders)
     write_table(options.out / "pairs.csv", compared, "%.4g")
     stored = pd.read_csv(existing(options.out / "entries.csv"))
-    write(options.page, page(stored, options.page.read_text("utf-8")).encode())
+    unlike = resumed(options.out / "unlike.csv")
+    write(options.page, page(stored, options.page.read_text("utf-8"), unlike).encode())
     print(compared.round(3).to_string(index=False))
     for key, own in compared.groupby(KEY[:2], sort=False) if len(compared) else ():
         print(f"{', '.join(key)}: each two differ of {', '.join(told_apart(own)) or 'none'}")

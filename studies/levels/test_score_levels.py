@@ -124,10 +124,24 @@ def test_committed_entries_are_scored_again_to_the_digit(script) -> None:
                 ]
 
 
+def test_the_table_has_scores_in_unlike_flocks_of_the_same_trainings_alone(script) -> None:
+    rows = pd.read_csv(script.RESULTS / "entries.csv")[:2]
+    name, score = rows["entry"][0], {"unlike": 0.5, "unlike_low": 0.25, "unlike_high": 0.75}
+    found = rows[["level", "budget", "entry", "trainings"]].assign(flocks=24, **score)
+    shown = [line.split(" | ")[6] for line in script.lines(rows, found)]
+    assert shown[0] == "unlike flocks"
+    assert shown[2:] == ["0.500 (0.250 to 0.750)"] * 2
+    found["trainings"] -= found["entry"] == name
+    shown = [line.split(" | ")[6] for line in script.lines(rows, found)]
+    assert shown[2:] == ["unknown", "0.500 (0.250 to 0.750)"]
+    assert [*script.lines(rows, pd.DataFrame())][2].split(" | ")[6] == "unknown"
+
+
 def test_the_page_has_the_committed_rows(script) -> None:
     rows = pd.read_csv(script.RESULTS / "entries.csv")
     text = script.PAGE.read_text("utf-8")
-    assert script.page(rows, text) == text
+    unlike = pd.read_csv(script.RESULTS / "unlike.csv")
+    assert script.page(rows, text, unlike) == text
     given = {(entry.name, entry.budget) for entry in script.entries(script.ENTRIES)}
     assert given == {*zip(rows["entry"], rows["budget"].astype(str), strict=True)}
 

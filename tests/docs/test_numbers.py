@@ -196,6 +196,10 @@ def entries() -> list[Number]:
     pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
     few = {"level": "order-easy", "budget": 30}
     longer = {"budget": 100, "entry": "paired branches"}
+    easy, best = {"level": "order-easy"}, {"level": "order-easy", "entry": "TRPO"}
+    unlike, ranks = f"{folder}unlike.csv", f"{folder}unlike_ranks.csv"
+    alternates = easy | {"what": "target"}
+    law = f"{folder}unlike_conditions.csv"
 
     def told_apart(rows: Any) -> float:
         return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
@@ -223,6 +227,17 @@ def entries() -> list[Number]:
                 ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
                 ("out no steering, with {} (", "order-narrow", "TRPO", "score"),
             )
+        ),
+        Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
+        Number(page, "algorithms is # ({} to #)", ranks, easy, "low"),
+        Number(page, "algorithms is # (# to {})", ranks, easy, "high"),
+        Number(page, "mean over {} conditions, each", unlike, best, "conditions", "d"),
+        Number(page, "falls from {} to # (# to #)", table, best, "score"),
+        Number(page, "falls from # to {} (# to #)", unlike, best, "unlike"),
+        Number(page, "falls from # to # ({} to #)", unlike, best, "unlike_low"),
+        Number(page, "falls from # to # (# to {})", unlike, best, "unlike_high"),
+        Number(
+            page, "steering, by {} (# to #)", law, alternates, lambda rows: -rows["gain"].item()
         ),
         *(
             Number(page, words, pairs, {"level": level}, told_apart, "d")
