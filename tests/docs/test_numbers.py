@@ -568,14 +568,14 @@ def lessons() -> list[Number]:
     return [
         Number(
             page,
-            "the learned leaders reach {}, the law",
+            "learned leaders reach {}, the law",
             means,
             CLOSE | {"leaders": 4},
             "signed_order",
         ),
-        Number(page, "the learned leaders reach #, the law {}.", means, law, "signed_order"),
-        Number(page, "is {} with one leader and", means, PAPERS | {"leaders": 1}, "signed_order"),
-        Number(page, "with one leader and {} with four", means, law, "signed_order"),
+        Number(page, "learned leaders reach #, the law {}.", means, law, "signed_order"),
+        Number(page, "one leader reaches {}, four", means, PAPERS | {"leaders": 1}, "signed_order"),
+        Number(page, "one leader reaches #, four {}.", means, law, "signed_order"),
     ]
 
 
