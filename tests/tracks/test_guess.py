@@ -6,6 +6,7 @@ import flockenv
 from flockenv.tracks import guess_layout, read_layout, read_tracks
 
 from .conftest import CENTER, FIELDS, but, check, guessed_of, read_and_counted
+from .program_tables import motive
 
 LAB = ("Frame", "RobotID", "X [px]", "Y [px]", "Theta [deg]")
 
@@ -107,3 +108,12 @@ def test_lost_points_are_no_part_of_a_guessed_pool(seen, tmp_path):
     guessed = guessed_of(tmp_path / "lab.csv")
     assert guessed.center == pytest.approx(CENTER, abs=40)
     assert guessed.lost == ((-1.0, -1.0),)
+
+
+def test_a_header_in_levels_begins_below_a_longer_line(tmp_path):
+    """With one rigid body, the line about the take has more cells than the table."""
+    take, *lines = motive().splitlines()
+    lines = [",".join(line.split(",")[:10]) for line in lines]
+    (tmp_path / "take.csv").write_text("\n".join([take, *lines]))
+    guessed = guessed_of(tmp_path / "take.csv")
+    assert (guessed.skip, guessed.x) == (2, "{id}.Position_X")

@@ -94,6 +94,25 @@ def test_a_heading_that_is_held_is_said_and_can_be_left_out(seen, number):
         assert set(report.left_out) == {"without a heading"}
 
 
+@pytest.mark.parametrize("count", [19, 20])
+def test_a_heading_is_held_from_twenty_samples_on(count):
+    k = np.arange(count + 10)
+    heading = np.where(k < count, -2.0, 0.1 * (k - count))
+    table = pd.DataFrame({"frame": k, "id": "a", "x": 50 + 0.5 * k, "y": 0.0, "heading": heading})
+    _, report = read_and_counted(table, TrackLayout(pool=(100.0, 0.0), fps=10.0))
+    assert report.held == ({"a": 20} if count == 20 else {})
+
+
+def test_a_boat_missing_for_a_short_step_has_a_gap():
+    """On a clock of long and short steps, two of which are no longer than a step may be."""
+    time = np.cumsum(np.tile([0.1, 0.02], 20))
+    parts = [pd.DataFrame({"t": time, "id": n, "x": 50 + time, "y": 9.0 * n}) for n in range(2)]
+    table = pd.concat(parts, ignore_index=True).assign(heading=0.0)
+    layout = TrackLayout(pool=(100.0, 0.0), frame="t")
+    assert read_and_counted(table, layout)[1].gaps == 0
+    assert read_and_counted(table.drop(index=50), layout)[1].gaps == 1
+
+
 @pytest.mark.parametrize("source", [{"x": [1.0]}, np.zeros(3), 3, None])
 def test_what_is_no_table_or_layout_is_named(seen, source):
     with pytest.raises(TypeError, match="tracks must be a file, a DataFrame"):
