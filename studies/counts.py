@@ -3,7 +3,7 @@
 A statement of the paper is counted once, however many presets, numbers of leaders or levels it is
 judged by: it holds or fails if all of these agree, it depends if some hold and others fail, and it
 is open otherwise. Statements of our own, at noises, densities or by quantities of which the paper
-says nothing, are not counted.
+says nothing, are not counted. A line that was judged again by more runs counts as these judge it.
 """
 
 from pathlib import Path
@@ -43,11 +43,22 @@ def counted(claims: pd.DataFrame) -> list[int]:
     return [found.count(each) for each in ANSWERS]
 
 
+def judged(folder: Path) -> pd.DataFrame:
+    """Return the claims of a study, those of its lines that more runs judged again as they do."""
+    again = folder.parent / "decided" / "claims.csv"
+    tables = [pd.read_csv(path) for path in (again, folder / "claims.csv") if path.exists()]
+    return pd.concat(tables).drop_duplicates(_LINE)
+
+
+_LINE = ["figure", "claim", "reading", "quantity"]
+"""What tells the lines of two files apart."""
+
+
 def table() -> str:
     """Return the table of all figures in Markdown."""
     rows = {}
     for name, (number, picture) in FIGURES.items():
-        claims = pd.read_csv(HERE / picture.partition("/")[0] / "claims.csv")
+        claims = judged(HERE / picture.partition("/")[0])
         rows[f"[{number}]({picture}.png)"] = counted(claims[claims["figure"] == name])
     rows["all"] = [sum(each) for each in zip(*rows.values(), strict=True)]
     lines = [[name, *map(str, counts)] for name, counts in rows.items()]

@@ -278,6 +278,20 @@ def test_a_statement_counts_once() -> None:
     }
 
 
+def test_a_line_that_more_runs_judged_counts_as_they_judge_it(tmp_path: Path) -> None:
+    """One of two open lines was judged again; another study's line stays away from the count."""
+    names = ["figure", "of", "claim", "reading", "quantity", "verdict"]
+    first = [["fig10", "paper", claim, "", "", "open"] for claim in ("a", "b")]
+    again = [["fig10", "paper", "b", "", "", "holds"], ["fig07", "paper", "c", "", "", "fails"]]
+    for folder, lines in (("section4", first), ("decided", again)):
+        (tmp_path / folder).mkdir()
+        pd.DataFrame(lines, columns=names).to_csv(tmp_path / folder / "claims.csv", index=False)
+    found = counts.judged(tmp_path / "section4")
+    assert counts.counted(found[found["figure"] == "fig10"]) == [1, 0, 0, 1]
+    (tmp_path / "decided" / "claims.csv").unlink()
+    assert counts.counted(counts.judged(tmp_path / "section4")) == [0, 0, 0, 2]
+
+
 def test_a_fall_is_where_a_line_crosses_the_level() -> None:
     """Of two draws: one rises again before it falls, and one never is above the level."""
     y = np.array([[0.9, 0.2], [0.1, 0.1], [0.5, 0.1], [0.1, 0.0]])

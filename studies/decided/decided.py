@@ -13,7 +13,8 @@ from functools import partial
 import matplotlib as mpl
 import pandas as pd
 
-from studies.claim import Claim, Interval, bounds, mean, proportion, write_claims
+from studies.claim import OPEN, Claim, Interval, bounds, mean, proportion, write_claims
+from studies.counts import FIGURES
 from studies.headlines import headlines
 from studies.section4 import fig07, fig10, fig12, section4, states
 from studies.section5 import fig14, fig15, fig17, section5
@@ -91,7 +92,7 @@ class Statement:
     def line(self) -> pd.Series:
         """Return the committed line that left the statement open."""
         folder = self.runs.study.name.partition("/")[0]
-        table = pd.read_csv(HERE / folder / "claims.csv", keep_default_na=False)
+        table = pd.read_csv(HERE / folder / "claims.csv", dtype=str, keep_default_na=False)
         same = table["quantity"].str.contains(self.quantity, regex=False)
         for name in ("figure", "claim", "reading"):
             same &= table[name] == getattr(self, name)
@@ -337,7 +338,7 @@ def draw(options: Options, judged: dict[Statement, Claim]) -> None:
         names = [_name(each) for each in judged]
         axes.set_yticks(range(len(names)), names, fontsize=7)
         axes.set(xlim=(-1.05 * reach, 1.05 * reach), ylim=(len(judged) - 0.5, -0.5))
-        axes.set_xlabel("distance to the bound, over the half of the first interval; gray: holds")
+        axes.set_xlabel("distance to the bound in halves\nof the first interval; gray: holds")
         handles = [
             mpl.lines.Line2D([], [], color=color, marker="o", label=label)
             for color, label in zip(COLORS, ("first runs", "new runs"), strict=False)
@@ -346,9 +347,38 @@ def draw(options: Options, judged: dict[Statement, Claim]) -> None:
 
 
 def _name(statement: Statement) -> str:
-    own = statement.figure == "readings"
-    where = f"{statement.reading.partition(', n = ')[0]}" if own else statement.figure
-    return "\n".join(textwrap.wrap(f"{statement.claim} ({where})", 62))
+    return "\n".join(textwrap.wrap(f"{statement.claim} ({_where(statement)})", 62))
+
+
+def _where(statement: Statement) -> str:
+    number, _ = FIGURES.get(statement.figure, ("", ""))
+    if not number:
+        return statement.reading
+    setup = f", {statement.quantity}" if statement.quantity in section4.SETUPS else ""
+    return f"figure{'s' if ' ' in number else ''} {number}{setup}"
+
+
+def table() -> str:
+    """Return the committed judgments in Markdown, by the first runs and by the new ones."""
+    claims = pd.read_csv(HERE / "decided" / "claims.csv", dtype=str, keep_default_na=False)
+    rows = [["statement", "where", "first runs", "new runs", "answer"], ["---"] * 5]
+    for each in STATEMENTS:
+        first = each.line()
+        found = claims[(claims[list(_LINE)] == first[list(_LINE)]).all(axis=1)]
+        for _, new in found.iterrows():
+            shown = [_value(line) for line in (first, new)]
+            more = f" ({new['runs_that_would_decide']} runs would decide)"
+            answer = new["verdict"] + (more if new["verdict"] == OPEN else "")
+            rows.append([each.claim, _where(each), *shown, answer])
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+_LINE = ("figure", "claim", "reading", "quantity")
+
+
+def _value(line: pd.Series) -> str:
+    ends = f"{line['measured']} ({line['low']} to {line['high']})".replace("-", "−")
+    return f"{ends}, n = {line['n_runs']}"
 
 
 def script(options: Options) -> None:
@@ -359,6 +389,8 @@ def script(options: Options) -> None:
         write_claims(options, figure, [c for each, c in judged.items() if each.figure == figure])
     if judged:
         draw(options, judged)
+    if options.out == HERE and judged:
+        print(table(), end="")
 
 
 if __name__ == "__main__":

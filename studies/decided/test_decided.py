@@ -23,9 +23,8 @@ def first_runs(made: study.Study) -> pd.DataFrame:
 
 def test_every_open_line_that_500_runs_decide_gets_them() -> None:
     asked = [tuple(each.line()) for each in decided.STATEMENTS]
-    tables = [
-        pd.read_csv(study.HERE / name / "claims.csv", keep_default_na=False) for name in FOLDERS
-    ]
+    files = [study.HERE / name / "claims.csv" for name in FOLDERS]
+    tables = [pd.read_csv(path, dtype=str, keep_default_na=False) for path in files]
     lines = pd.concat(tables)
     few = pd.to_numeric(lines["runs_that_would_decide"], errors="coerce") <= decided.MOST_RUNS
     assert sorted(asked) == sorted(lines[few].itertuples(index=False, name=None))
@@ -40,7 +39,7 @@ def test_first_runs_judge_a_statement_as_its_line_does(statement: decided.Statem
     cells = cells.astype(dict.fromkeys(cells.select_dtypes(bool), str))  # As a file has them.
     found = statement.judged(runs.found(table.merge(cells, on=list(cells))))
     assert (found.verdict, found.claimed) == (line["verdict"], line["claimed"])
-    assert found.found.runs == line["n_runs"]
+    assert str(found.found.runs) == line["n_runs"]
     ends = [float(line[name]) for name in ("measured", "low", "high")]
     np.testing.assert_allclose(found.found, ends, rtol=0.02, atol=1e-3)
 
@@ -68,6 +67,15 @@ def test_a_statement_with_a_run_missing_is_not_judged() -> None:
     assert list(decided.judge(tables | {name: table})) == [statement]
     assert not decided.judge(tables | {name: table[1:]})
     assert decided.judge(tables | {name: table})[statement].verdict == "holds"
+
+
+def test_the_page_has_the_table_and_counts_its_lines() -> None:
+    page = (study.HERE / "decided" / "README.md").read_text("utf-8")
+    claims = pd.read_csv(study.HERE / "decided" / "claims.csv")
+    left = (claims["verdict"] == "open").sum()
+    assert decided.table() in page
+    assert f"{len(claims) - left} of {len(decided.STATEMENTS)}" in page
+    assert decided.table().count("\n") == 2 + len(claims)
 
 
 def test_bounds_are_those_of_the_text() -> None:

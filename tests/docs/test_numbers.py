@@ -497,7 +497,7 @@ def headlines() -> list[Number]:
 
 def studies() -> list[Number]:
     """Numbers of the studies' first paragraphs."""
-    return [*section_4(), *current(), *transition(), *density()]
+    return [*section_4(), *current(), *transition(), *density(), *decided()]
 
 
 LOST_BELOW = "bw (s) at which mean Ψ_o falls through 0.3, "
@@ -516,6 +516,40 @@ def section_4() -> list[Number]:
                 f"{LOST_BELOW}with 3 clockwise leaders minus without",
             ),
         )
+    ]
+
+
+def decided() -> list[Number]:
+    """What pages quote of the runs that were added."""
+    page, file = "studies/section4/README.md", "studies/decided/claims.csv"
+    medium = {"claim": "Leaders increase the order at medium noise"}
+    rise = {"claim": "Velocities change more abruptly than orientations"}
+    turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
+    slope = {"figure": "fig12"}
+    return [
+        Number(page, "at 1.4 s by {} (# to #; [# more", file, slope, form=".3f"),
+        Number(page, "at 1.4 s by # ({} to #; [# more", file, slope, "low", ".3f"),
+        Number(page, "at 1.4 s by # (# to {}; [# more", file, slope, "high", ".3f"),
+        Number(page, "at low, {} (# to #) at medium", file, medium, form="+.2f"),
+        Number(page, "at low, # ({} to #) at medium", file, medium, "low"),
+        Number(page, "at low, # (# to {}) at medium", file, medium, "high"),
+        Number(
+            page,
+            "rise shorter by {} s (#",
+            file,
+            rise,
+            lambda rows: -rows["measured"].item(),
+            ".1f",
+        ),
+        Number(page, "0 of {} [more runs]", file, turns, "n_runs", "d"),
+        Number(
+            "studies/section5/README.md",
+            "of {} [more runs](../decided/README.md) in the rarer",
+            file,
+            {"figure": "fig17"},
+            "n_runs",
+            "d",
+        ),
     ]
 
 
