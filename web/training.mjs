@@ -95,6 +95,7 @@ export class Training {
     const { flocks, about } = this.#page;
     this.seed = this.progress?.has_ended && !this.#isOther ? this.seed + 1 : 0;
     this.before = this.progress?.policy ?? this.before;
+    this.show();
     this.#trained = this.#flock;
     const flock = requestOf(this.#trained, flocks.kinds);
     const provenance = {

@@ -100,7 +100,7 @@ def test_it_stops_and_goes_on_to_the_same_policy(open_live):
     live.click("#train")
     live.until("return page.training.seed === 1")
     # Nothing is lost meanwhile.
-    assert live.find("#save-before").is_displayed()
+    live.until("return document.getElementById('save-before').checkVisibility()")
     assert json.loads(live.script("return page.training.before"))["weights"] == policy["weights"]
     until_over(live)
     other = json.loads(live.script("return page.training.progress.policy"))
