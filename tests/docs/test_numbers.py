@@ -567,19 +567,40 @@ def current() -> list[Number]:
 def transition() -> list[Number]:
     page, area = "studies/transition/README.md", "area of the loop in c4 in |m|, 80 min per noise"
     cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
+    rings, claims = "studies/transition/condensation.csv", "studies/transition/claims.csv"
+    dense = {"c4": 0.1, "coverage": 0.6, "start": "one-jam"}
+    ring = "leapfrog, white c4 = 0.1, dt = 0.1 s, bw = 0, ring of 83 cm, n = "
+    outside = "coverage outside of jams, {} boats, coverage 0.6"
     return [
-        Number(
-            page,
-            words,
-            "studies/transition/claims.csv",
-            {"quantity": area, "reading": cell + n},
-            form=".3f",
-        )
-        for words, n in (
-            ("its area in |m| is {} (", "100"),
-            ("with 100 boats, {} (", "200"),
-            ("with 200 and {} (", "400"),
-        )
+        *(
+            Number(page, words, rings, dense | {"n_boats": n}, "outside", form=".2f")
+            for words, n in (
+                ("the coverage outside is {}, # and #", 100),
+                ("the coverage outside is #, {} and #", 200),
+                ("the coverage outside is #, # and {}", 400),
+            )
+        ),
+        *(
+            Number(
+                page,
+                words,
+                claims,
+                {"quantity": outside.format(sizes), "reading": ring + n},
+                form=".2f",
+            )
+            for words, sizes, n in (
+                ("200 have {} (# to #) more than 100", "200 minus 100", "100"),
+                ("400 have {} (# to #) more than 200", "400 minus 200", "200"),
+            )
+        ),
+        *(
+            Number(page, words, claims, {"quantity": area, "reading": cell + n}, form=".3f")
+            for words, n in (
+                ("its area in |m| is {} (", "100"),
+                ("with 100 boats, {} (", "200"),
+                ("with 200 and {} (", "400"),
+            )
+        ),
     ]
 
 
