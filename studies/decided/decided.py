@@ -319,7 +319,7 @@ def draw(options: Options, judged: dict[Statement, Claim]) -> None:
 
     The bound is the one nearer to the first value, and the longer half of the first interval is 1.
     """
-    with picture(options, "decided", height_cm=1.5 + 0.9 * len(judged)) as figure:
+    with picture(options, "decided", height_cm=1.5 + 1.1 * len(judged)) as figure:
         axes = figure.subplots()
         axes.axvspan(0.0, 100.0, color="0.93", zorder=0)
         axes.axvline(0.0, color="0.6", linewidth=0.6, zorder=0)
@@ -336,7 +336,7 @@ def draw(options: Options, judged: dict[Statement, Claim]) -> None:
                 axes.plot([value], [place + shift], "o", color=color)
                 reach = max(reach, *(abs(each) for each in (value, *interval)))
         names = [_name(each) for each in judged]
-        axes.set_yticks(range(len(names)), names, fontsize=7)
+        axes.set_yticks(range(len(names)), names, fontsize=8.5)
         axes.set(xlim=(-1.05 * reach, 1.05 * reach), ylim=(len(judged) - 0.5, -0.5))
         axes.set_xlabel("distance to the bound in halves\nof the first interval; gray: holds")
         handles = [

@@ -13,7 +13,7 @@ from studies.plots import OWN, drawing, interval
 from studies.study import existing, main
 
 RESULTS = Path(__file__).parent / "results"
-PAIRS, CURVES, AREAS = (RESULTS / f"{name}.csv" for name in ("pairs", "curves", "areas"))
+PAIRS, CURVES, AREAS = (RESULTS / name for name in ("pairs.csv", "curves.csv.gz", "areas.csv"))
 UNLIKE = RESULTS / "unlike.csv"
 ENTRIES, ORDERS, LAWS = RESULTS / "entries.csv", RESULTS / "orders.csv.gz", RESULTS / "laws.csv"
 KEY = ["level", "budget", "entry"]

@@ -222,10 +222,11 @@ def entries() -> list[Number]:
         *(
             Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
             for words, level, entry, column in (
-                ("score in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
-                ("and TRPO in `order-noisy`, {} (#", "order-noisy", "TRPO", "score"),
+                ("branches in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
+                ("score in `order-noisy`, {} (# to", "order-noisy", "TRPO", "score"),
                 ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
-                ("out no steering, with {} (", "order-narrow", "TRPO", "score"),
+                ("law gains: MAPPO has {} (", "order-narrow", "MAPPO", "score"),
+                ("to #), and TRPO {} (# to", "order-narrow", "TRPO", "score"),
             )
         ),
         Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
@@ -242,8 +243,8 @@ def entries() -> list[Number]:
         *(
             Number(page, words, pairs, {"level": level}, told_apart, "d")
             for words, level in (
-                ("each, {} of # pairs differ in `order-noisy`", "order-noisy"),
-                ("`order-noisy`, {} in `order-narrow`", "order-narrow"),
+                ("{} of # pairs differ in `order-noisy`", "order-noisy"),
+                ("trainings each), {} in `order-narrow`", "order-narrow"),
                 ("`order-narrow` and {} in `order-wide`", "order-wide"),
             )
         ),
