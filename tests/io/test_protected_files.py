@@ -159,7 +159,8 @@ def test_commands_name_a_protected_file_before_any_work(
     monkeypatch.chdir(tmp_path)
     RUN.save("made.npz")
     Path("spec.toml").write_text("minutes = 0.1\nseeds = 1\n[[grid]]\nn_boats = [3]\n")
-    Path(name).write_text("somebody's")
+    # Parameters that no run wrote are refused for that alone.
+    Path(name).write_text("# flockenv 0.1: seed 1, policy somebody's")
     Path(name).chmod(0o444)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*")}
     done = cli(*arguments)
