@@ -3,7 +3,7 @@
 A statement of the paper is counted once, however many presets, numbers of leaders or levels it is
 judged by: it holds or fails if all of these agree, it depends if some hold and others fail, and it
 is open otherwise. Statements of our own, at noises, densities or by quantities of which the paper
-says nothing, are not counted. A line that was judged again by more runs counts as these judge it.
+says nothing, are not counted. If more runs judged a line again, their verdict counts.
 """
 
 from pathlib import Path
@@ -44,7 +44,7 @@ def counted(claims: pd.DataFrame) -> list[int]:
 
 
 def judged(folder: Path) -> pd.DataFrame:
-    """Return the claims of a study, those of its lines that more runs judged again as they do."""
+    """Return the claims of a study; more runs replace the verdict of the lines that they judged."""
     again = folder.parent / "decided" / "claims.csv"
     tables = [pd.read_csv(path) for path in (again, folder / "claims.csv") if path.exists()]
     return pd.concat(tables).drop_duplicates(_LINE)

@@ -286,9 +286,10 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
 
 
 def _levels(rows: list[list[str]]) -> tuple[list[int], int]:
-    """Return the lines that hold the levels of a header, none for others, and its own columns.
+    """Return the lines that hold the levels of a header, and how many columns stand before boats.
 
-    Its own columns are those of times, unnamed but for what the lines themselves are called.
+    There are no lines if the header has no levels. The columns before the boats hold times; in a
+    header they hold the names of its levels.
     """
     own = 1 if any(rows[:1] and rows[0][:1]) else 2
     starts = [next(filter(None, row[:own]), "").lower() for row in rows]
