@@ -154,3 +154,18 @@ def test_a_link_that_cannot_be_followed_is_named_and_not_executed(open_live, fra
     live.click("#play")
     live.until("return page.runs[0].end > 1 || page.broken")
     assert live.complaints() == []
+
+
+@pytest.mark.parametrize(
+    ("fragment", "words"),
+    [
+        ("#lesson=noise&n_boats=5&bw_s=0", "mean rotation m so far "),
+        ("#lesson=opposed&n_boats=5&n_leaders=2&target=cw,ccw", "mean rotation m so far "),
+        ("#lesson=leaders&n_boats=5&n_leaders=1", "mean signed order so far "),
+        ("#n_boats=5", "mean order Ψₒ so far "),
+    ],
+)
+def test_a_lesson_shows_the_quantity_of_its_point(open_live, fragment, words):
+    live = open_live().go(fragment)
+    live.run_to(2.0)
+    assert live.text(".so-far").startswith(words)
