@@ -149,14 +149,6 @@ class Claim:
         )
 
 
-def bounds(claimed: str) -> tuple[float, float]:
-    """Return the range that a claim writes as a text."""
-    least, _, most = claimed.removeprefix(">= ").removeprefix("<= ").partition(" to ")
-    if most:
-        return float(least), float(most)
-    return (float(least), math.inf) if claimed.startswith(">=") else (-math.inf, float(least))
-
-
 class Claims(list[Claim]):
     """Claims of one section about one reading, which may be changed between them."""
 
@@ -186,8 +178,8 @@ class Claims(list[Claim]):
 
 
 _COLUMNS = (
-    *("figure", "of", "claim", "section", "reading", "quantity", "claimed"),
-    *("n_runs", "measured", "low", "high", "verdict", "runs_that_would_decide"),
+    *("figure", "of", "claim", "section", "reading", "quantity"),
+    *("least", "most", "n_runs", "measured", "low", "high", "verdict", "runs_that_would_decide"),
 )
 
 
@@ -197,8 +189,8 @@ def write_claims(options: Options, figure: str, claims: Iterable[Claim]) -> None
     lines = [
         [
             *(figure, "ours" if each.ours else "paper", each.claim, each.section, each.reading),
-            *(each.quantity, each.claimed, each.found.runs, *each.found.texts()),
-            *(each.verdict, each.would_decide),
+            *(each.quantity, f"{each.least:g}", f"{each.most:g}", each.found.runs),
+            *(*each.found.texts(), each.verdict, each.would_decide),
         ]
         for each in claims
     ]

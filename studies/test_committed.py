@@ -16,7 +16,7 @@ TABLES = [
     for path in sorted(study.HERE.rglob("*.csv*"))
     if "results" in path.relative_to(study.HERE).parts
 ]
-KEY = ["figure", "claim", "section", "reading", "quantity", "claimed"]
+KEY = ["figure", "claim", "section", "reading", "quantity", "least", "most"]
 
 
 @pytest.fixture(scope="module")

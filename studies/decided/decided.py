@@ -13,7 +13,7 @@ from functools import partial
 import matplotlib as mpl
 import pandas as pd
 
-from studies.claim import OPEN, Claim, Interval, bounds, mean, proportion, write_claims
+from studies.claim import OPEN, Claim, Interval, mean, proportion, write_claims
 from studies.counts import FIGURES
 from studies.headlines import headlines
 from studies.section4 import fig07, fig10, fig12, section4, states
@@ -103,7 +103,8 @@ class Statement:
         """Return the statement with a new value."""
         line = self.line()
         texts = [str(line[name]) for name in ("claim", "section", "reading", "quantity")]
-        return Claim(*texts, found, *bounds(line["claimed"]), ours=line["of"] == "ours")
+        least, most = float(line["least"]), float(line["most"])
+        return Claim(*texts, found, least, most, ours=line["of"] == "ours")
 
 
 # --- section 4 -----------------------------------------------------------------------------------

@@ -1,7 +1,6 @@
 """Law: each open statement that 500 runs decide gets its runs, judged as before."""
 
 import functools
-import math
 from types import ModuleType
 
 import numpy as np
@@ -38,7 +37,7 @@ def test_first_runs_judge_a_statement_as_its_line_does(statement: decided.Statem
     cells = pd.DataFrame(runs.cells)
     cells = cells.astype(dict.fromkeys(cells.select_dtypes(bool), str))  # As a file has them.
     found = statement.judged(runs.found(table.merge(cells, on=list(cells))))
-    assert (found.verdict, found.claimed) == (line["verdict"], line["claimed"])
+    assert found.verdict == line["verdict"]
     assert str(found.found.runs) == line["n_runs"]
     ends = [float(line[name]) for name in ("measured", "low", "high")]
     np.testing.assert_allclose(found.found, ends, rtol=0.02, atol=1e-3)
@@ -76,8 +75,3 @@ def test_the_page_has_the_table_and_counts_its_lines() -> None:
     assert decided.table() in page
     assert f"{len(claims) - left} of {len(decided.STATEMENTS)}" in page
     assert decided.table().count("\n") == 2 + len(claims)
-
-
-def test_bounds_are_those_of_the_text() -> None:
-    found = [decided.bounds(text) for text in (">= 0.05", "<= 0.5", "-0.2 to 0.2")]
-    assert found == [(0.05, math.inf), (-math.inf, 0.5), (-0.2, 0.2)]
