@@ -1,4 +1,4 @@
-//! Work shared out to threads, in a way that survives a fork: the flocks of a batch.
+//! Divides the flocks of a batch among threads, also in a forked process.
 
 use rayon::{Scope, ThreadPool, ThreadPoolBuilder};
 use std::collections::VecDeque;

@@ -42,8 +42,8 @@ impl Samples {
             .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())
     }
 
-    /// The recorded quantities, at each time, of the boats that have both a pose and a velocity; NaN where there is
-    /// none.
+    /// The recorded quantities, at each time, of the boats that have both a pose and a velocity; NaN if no boat
+    /// has.
     ///
     /// # Errors
     /// Those of [`recorded`].

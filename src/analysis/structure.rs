@@ -15,7 +15,7 @@ pub const JAM_BOATS: usize = 3;
 /// Largest angle in rad between a jammed boat's heading and the outward direction.
 pub const JAM_ANGLE: f64 = PI / 3.0;
 
-/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN of none.
+/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN without boats.
 pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let largest = cluster_sizes(poses, parameters).into_iter().max();
     largest.unwrap_or(0) as f64 / poses.len() as f64
@@ -50,7 +50,7 @@ fn cluster_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     sizes
 }
 
-/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN of none.
+/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN without boats.
 pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let hull = Hull::new(parameters);
     let radius = parameters.pool.outer_radius_cm;
@@ -63,7 +63,7 @@ pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
 }
 
 /// Length of the mean heading in the axes of the world (Vicsek et al. 1995): 1 if all boats point the same way, some
-/// 0.886/√N for N independent headings; NaN of none.
+/// 0.886/√N for N independent headings; NaN without boats.
 pub fn polarization(poses: &[Pose]) -> f64 {
     let sum = poses
         .iter()

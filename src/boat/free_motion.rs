@@ -87,7 +87,7 @@ impl FreeMotion {
         let preferred = axis * drive.preferred_speed + drive.water;
         Velocity {
             linear: velocity.linear + (preferred - velocity.linear) * relaxed,
-            angular: self.held_back(driven, spin, along, drive.rudder) + drive.noise,
+            angular: self.limited(driven, spin, along, drive.rudder) + drive.noise,
         }
     }
 
@@ -111,14 +111,14 @@ impl FreeMotion {
         (axis * drive.preferred_speed + drive.water - velocity) * relaxed
     }
 
-    /// The spin that a boat is driven to. Eq. (9) never drives a backing boat past the equilibrium spin, so a step that
-    /// overshoots ends there.
+    /// The spin after a step, limited for a backing boat. Eq. (9) never drives such a boat past its equilibrium spin, so a
+    /// step that overshoots ends at it.
     #[inline]
-    fn held_back(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
+    fn limited(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let turns_back =
             || (driven - spin) * self.angular_acceleration(driven, along, rudder) < 0.0;
         if along < 0.0 && turns_back() {
-            return self.at_most_at_rest(driven, spin, along, rudder);
+            return self.within_equilibria(driven, spin, along, rudder);
         }
         driven
     }
@@ -126,7 +126,7 @@ impl FreeMotion {
     /// A spin limited by the boat's present spin or by a bound of the equilibria of eq. (9): the roots of c1·w³ = (c2·s
     /// − c3·w)·u·ẋ with c1 > 0.
     #[cold]
-    fn at_most_at_rest(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
+    fn within_equilibria(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
         let fastest = (self.c3 * push).sqrt() + libm::cbrt(self.c2 * rudder.abs() * push);
         let most = spin.abs().max(fastest);
@@ -164,11 +164,11 @@ impl FreeMotion {
         let rate = self.c1 * spin * spin + self.c3 * along;
         let turn = self.c2 * drive.rudder * along * dt;
         let driven = spin * Self::damped(rate, dt * angular_mobility) + turn * angular_mobility;
-        let held = self.held_back(driven, spin, along, drive.rudder);
+        let limited = self.limited(driven, spin, along, drive.rudder);
         FreeVelocity {
             velocity: Velocity {
                 linear: velocity.linear + change,
-                angular: held + drive.noise * angular_mobility,
+                angular: limited + drive.noise * angular_mobility,
             },
             angular_mobility,
         }

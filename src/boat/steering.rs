@@ -29,8 +29,8 @@ pub struct Course {
     pub angular: f64,
 }
 
-/// Forward s = clamp(gain·δ, −1, 1), where δ is the misalignment. Backward, where a rudder works in reverse,
-/// s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also counters the turning that makes backing boats spin.
+/// While a boat moves forward, s = clamp(gain·δ, −1, 1), where δ is the misalignment. While it backs, a rudder works in
+/// reverse: s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also counters the turning that makes it spin.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DampedLaw {
@@ -81,7 +81,7 @@ impl DampedLaw {
         ),
     ];
 
-    /// The tuned law of a pool, on behalf of a setting that needs it.
+    /// The tuned law of a pool, for a setting that needs it.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names setting and value if the law has not been tuned in the pool.

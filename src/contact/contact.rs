@@ -1,4 +1,4 @@
-//! One place where a hull is near another hull or a wall.
+//! One point at which a hull is near another hull or a wall.
 
 use crate::geometry::{Feature, Gap, Hull, HullPose, Vec2, Velocity};
 

@@ -19,7 +19,7 @@ const LARGEST_STEP: f64 = 0.2;
 /// Number of passes after which a substep accepts the remaining overlaps.
 const MOST_PASSES: u32 = 8;
 
-/// Called now and then in long work: whether to continue.
+/// Function that long work calls now and then; the work ends if it returns false.
 pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A projection of poses, with its scratch space.
@@ -37,7 +37,7 @@ pub(super) struct Depenetration {
 }
 
 impl Depenetration {
-    /// For checked parameters.
+    /// A projection for checked parameters.
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         let gyration_radius = parameters.gyration_radius_cm;
         Self {
@@ -56,8 +56,9 @@ impl Depenetration {
         }
     }
 
-    /// Displaces poses until no overlap exceeds `allowed` (cm, positive; one is known to), then fills `found` with the
-    /// contacts nearer than `margin`. Any overlap is among them, which tells whether another pass is needed.
+    /// Displaces poses until no overlap exceeds `allowed` (cm, positive), then fills `found` with the contacts nearer
+    /// than `margin`. The caller knows of an overlap that exceeds it. Contacts include all overlaps, which decide whether
+    /// another pass is needed.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,

@@ -10,7 +10,7 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
-/// If the fastest boat moves by more than this part of a radius in a substep, it pays to look which contacts close.
+/// If the fastest boat moves by more than this part of a radius in a substep, finding the contacts that close saves work.
 const LONG: f64 = 0.1;
 /// Most pairs per boat in a substep in which boats move by more than half their length: enough for all within a few
 /// lengths in the densest flock. With more, linearized gaps mean nothing, and memory and time grow with the square of
@@ -39,7 +39,7 @@ pub struct ContactDetector {
 }
 
 impl ContactDetector {
-    /// For checked parameters.
+    /// A detector for checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let hull = Hull::new(parameters);
         // The list lasts until boats have drifted by about a radius, and for at least a few long substeps.
@@ -58,7 +58,7 @@ impl ContactDetector {
         }
     }
 
-    /// From now on finds contacts for another substep length.
+    /// Sets the length of a whole substep in s, for which contacts are found from now on.
     pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
         self.shortest_s = SHORTEST_SHARE * dt_s;
     }
@@ -81,8 +81,8 @@ impl ContactDetector {
         fastest
     }
 
-    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`. Contacts may add to a
-    /// velocity: as much as the fastest boat has is allowed for. Returns a margin that includes all of them.
+    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, even if contacts add the
+    /// speed of the fastest boat to theirs. Returns a margin that includes all of them.
     pub fn detect_moving(
         &mut self,
         boats: &[HullPose],
@@ -311,7 +311,7 @@ impl ContactDetector {
             let (hull, margin) = (self.hull, 2.0 * self.hull.reach());
             let obstacle = &self.obstacles.obstacles[number as usize];
             obstacle.gaps(boat, hull, margin, &mut |feature, gap| {
-                note_touch(&mut touches, feature, &gap);
+                store_touch(&mut touches, feature, &gap);
             });
         }
         touches
@@ -338,7 +338,8 @@ impl ContactDetector {
         }
     }
 
-    /// The gap of contact k where its touch has moved to. A pair's only contact describes the whole pair.
+    /// The gap of contact k at other poses, at the point to which its touch has moved. If two bodies have one contact, it
+    /// describes both of their touches: the smaller gap counts.
     pub(crate) fn moved_gap(&self, contacts: &[Contact], k: usize, boats: &[HullPose]) -> Gap {
         let contact = &contacts[k];
         if !contact.has_ends() || contact.feature.side().is_none() {
@@ -365,9 +366,9 @@ impl ContactDetector {
     }
 }
 
-/// Notes a touch under the end of the boat at which it is; a touch between the ends counts for both.
+/// Stores a touch by the end of the boat at which it is; a touch between the ends counts for both.
 #[inline]
-fn note_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
+fn store_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
     match feature {
         Feature::Stern => touches[0] = gap.into(),
         Feature::Bow => touches[1] = gap.into(),

@@ -16,7 +16,7 @@ pub(super) struct NearObstacles {
 }
 
 impl NearObstacles {
-    /// Of these obstacles.
+    /// Lists for these obstacles, empty at first.
     pub(super) fn new(obstacles: Vec<Obstacle>) -> Self {
         Self {
             has_walls: obstacles.iter().any(Obstacle::is_thin),

@@ -1,4 +1,4 @@
-//! Poses to which a solve would move the boats, and the gaps there.
+//! Poses to which a solve would move the boats, and the gaps at those poses.
 
 use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
@@ -9,8 +9,8 @@ use crate::geometry::{Hull, HullPose, Pose, Velocity};
 pub(super) struct PredictedPoses {
     poses: Vec<Pose>,
     hulls: Vec<HullPose>,
-    /// Whether these are the poses for the velocities solved for last.
-    is_end: bool,
+    /// Whether these poses follow from the velocities of the last solve.
+    is_current: bool,
     /// Largest motion of each boat's hull, in cm.
     displacements: Vec<f64>,
     /// Boats to be moved again, and for each boat whether it is one of them.
@@ -19,8 +19,8 @@ pub(super) struct PredictedPoses {
 }
 
 impl PredictedPoses {
-    /// Moves boats from these poses with these velocities for `dt`.
-    pub(super) fn place(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64, hull: Hull) {
+    /// Predicts all poses: boats move from these poses with these velocities for `dt`.
+    pub(super) fn predict(&mut self, poses: &[Pose], velocities: &[Velocity], dt: f64, hull: Hull) {
         let moved = poses
             .iter()
             .zip(velocities)
@@ -30,11 +30,11 @@ impl PredictedPoses {
         HullPose::replace_all(&mut self.hulls, &self.poses);
         self.displacements.clear();
         self.displacements
-            .extend(velocities.iter().map(|each| hull.speed(each) * dt));
-        self.is_end = true;
+            .extend(velocities.iter().map(|velocity| hull.speed(velocity) * dt));
+        self.is_current = true;
     }
 
-    /// Moves the boats of some islands, given by their contacts, again. The others stay where they are.
+    /// Predicts the poses of the boats of some islands, given by their contacts, again.
     pub(super) fn move_islands<'a>(
         &mut self,
         contacts: &[Contact],
@@ -62,24 +62,24 @@ impl PredictedPoses {
             self.displacements[boat] = hull.speed(&velocities[boat]) * dt;
         }
         HullPose::replace_some(&mut self.hulls, &self.poses, &self.listed);
-        self.is_end = true;
+        self.is_current = true;
     }
 
     /// Marks the prediction as outdated: velocities have changed.
-    pub(super) fn set_old(&mut self) {
-        self.is_end = false;
+    pub(super) fn set_outdated(&mut self) {
+        self.is_current = false;
     }
 
     /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date.
     pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
-        if self.is_end {
+        if self.is_current {
             std::mem::swap(poses, &mut self.poses);
             std::mem::swap(hulls, &mut self.hulls);
         }
-        std::mem::take(&mut self.is_end)
+        std::mem::take(&mut self.is_current)
     }
 
-    /// Whether anything found as a contact overlaps by more than `allowed`.
+    /// Whether one of these contacts overlaps by more than `allowed` at the predicted poses.
     pub(super) fn overlaps(
         &self,
         detector: &ContactDetector,
@@ -107,13 +107,14 @@ impl PredictedPoses {
                 })
     }
 
-    /// Whether the prediction is for the velocities solved for last.
-    pub(super) fn is_end(&self) -> bool {
-        self.is_end
+    /// Whether the poses follow from the velocities of the last solve.
+    pub(super) fn is_current(&self) -> bool {
+        self.is_current
     }
 
-    /// The gap of contact k where its touch has moved to; infinite if it is gone. The only contact of a pair stands for the whole pair. `pair`
-    /// keeps the number of the first of two contacts of a pair and the gaps of both for the second.
+    /// The gap of contact k at the point to which its touch has moved; infinite if the bodies do not touch there any more.
+    /// If two bodies have one contact, the smaller gap of their touches counts. `pair` caches the index of the first of two
+    /// contacts, and the gaps of both.
     #[inline]
     pub(super) fn gap(
         &self,

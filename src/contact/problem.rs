@@ -28,7 +28,7 @@ pub struct ContactProblem<'a> {
 }
 
 impl ContactProblem<'_> {
-    /// w_k = J_k·v + bias_k: what is left of the gap at the substep's end, over dt.
+    /// w_k = J_k·v + bias_k: the gap at the substep's end, over dt.
     #[inline(always)]
     pub fn slack(&self, k: usize, velocities: &[Velocity]) -> f64 {
         self.contacts[k].gap_rate(velocities) + self.biases[k]

@@ -85,7 +85,7 @@ pub(crate) struct ContactResolver {
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
-    /// Contacts that are left out as long as the solution keeps them open.
+    /// Contacts that are skipped as long as the solution keeps them open.
     skipped: SkippedContacts,
     biases: Vec<f64>,
     /// Whether each contact carried an impulse in the substep before.
@@ -98,14 +98,14 @@ pub(crate) struct ContactResolver {
     relinearization: Relinearization,
     /// Overlaps beyond this (cm) are undone by moving poses.
     penetration_slop: f64,
-    /// Whether moving poses has left overlaps that are beyond that.
+    /// Whether moving poses has left overlaps beyond that.
     is_deep: bool,
-    /// Length of a whole substep in s: what an overlap has to close in, however short a substep is.
+    /// Length of a whole substep in s: the time in which an overlap has to close, however short a substep is.
     whole_substep_s: f64,
 }
 
 impl ContactResolver {
-    /// For checked parameters.
+    /// A resolver for checked parameters.
     pub(crate) fn new(parameters: &FlockParameters) -> Self {
         let penetration_slop = PENETRATION_SLOP * parameters.boat_radius_cm;
         Self {
@@ -165,7 +165,7 @@ impl ContactResolver {
         dt: f64,
         statistics: &mut Statistics,
     ) -> bool {
-        self.predicted.set_old();
+        self.predicted.set_outdated();
         let builds_before = self.detector.neighbors.builds();
         let margin = self
             .detector
@@ -180,7 +180,7 @@ impl ContactResolver {
         self.skipped.clear();
         if self.relinearization.is_on() && self.detector.is_far() {
             self.skipped
-                .set_apart(&self.detector, velocities, dt, &mut self.contacts);
+                .skip_open(&self.detector, velocities, dt, &mut self.contacts);
         }
         statistics.contacts += self.contacts.len() as u64;
         statistics.neighbor_builds += self.detector.neighbors.builds() - builds_before;
@@ -198,7 +198,7 @@ impl ContactResolver {
         statistics: &mut Statistics,
     ) {
         let depenetration = &mut self.depenetration;
-        depenetration.solver.share_room(&self.solver);
+        depenetration.solver.share_budget(&self.solver);
         let passes = depenetration.passes;
         let angular_momentum = orbital_angular_momentum(poses, velocities);
         depenetration.open_overlaps(
@@ -209,7 +209,7 @@ impl ContactResolver {
             margin,
             &mut self.contacts,
         );
-        self.solver.share_room(&depenetration.solver);
+        self.solver.share_budget(&depenetration.solver);
         statistics.depenetration_passes += depenetration.passes - passes;
         statistics.displaced_angular_momentum_cm2_s +=
             (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
@@ -225,7 +225,8 @@ impl ContactResolver {
         self.solver.active.clone_from(&self.persistent);
     }
 
-    /// Whether moving with these velocities for `dt` overlaps anything found last by more than `allowed`.
+    /// Whether one of the contacts found last overlaps by more than `allowed` after boats move with these velocities for
+    /// `dt`.
     pub(crate) fn overlaps_after(
         &mut self,
         poses: &[Pose],
@@ -234,7 +235,7 @@ impl ContactResolver {
         allowed: f64,
     ) -> bool {
         self.predicted
-            .place(poses, velocities, dt, self.detector.hull());
+            .predict(poses, velocities, dt, self.detector.hull());
         self.predicted
             .overlaps(&self.detector, &self.contacts, allowed)
     }
@@ -249,7 +250,7 @@ impl ContactResolver {
         divisibility: Divisibility,
         statistics: &mut Statistics,
     ) -> Result<(), NotTaken> {
-        self.solver.give_up_early(divisibility.if_driven);
+        self.solver.reserve_budget(divisibility.if_driven);
         if self.solver.is_exhausted() {
             return Err(NotTaken::Exhausted);
         }
@@ -307,8 +308,8 @@ impl ContactResolver {
         self.warm_start();
     }
 
-    /// Solves the contacts at hand and looks at what it came to: at the gaps where boats end, at skipped contacts, at the
-    /// energy.
+    /// Solves the contacts that are not skipped, and checks the solution: the gaps at the substep's end, the skipped
+    /// contacts, and the energy.
     fn solve_and_check(&mut self, motion: &Motion, statistics: &mut Statistics) -> Solution {
         let (free, bias) = (motion.free, self.bias(motion));
         self.biases.clear();
@@ -328,7 +329,7 @@ impl ContactResolver {
         let (predicted, detector) = (&self.predicted, &self.detector);
         let velocities = &self.solver.velocities;
         let skipped = &self.skipped;
-        if !skipped.are_apart(predicted, detector, velocities, motion.dt, tolerance) {
+        if !skipped.stay_open(predicted, detector, velocities, motion.dt, tolerance) {
             return Solution::Closing;
         }
         if self.stop_driving(motion) {
@@ -371,7 +372,7 @@ impl ContactResolver {
         motion: &Motion,
         statistics: &mut Statistics,
     ) -> Solution {
-        self.predicted.set_old();
+        self.predicted.set_outdated();
         let Self {
             contacts,
             biases,

@@ -1,5 +1,5 @@
-//! Skipped contacts: boats would not close them at their free velocities. They are left out as long as the solution
-//! does not close them either.
+//! Skipped contacts: boats would not close them at their free velocities. They stay out of the problem as long as its
+//! solution does not close them either.
 
 use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
@@ -26,10 +26,10 @@ impl SkippedContacts {
         self.contacts.is_empty()
     }
 
-    /// Takes out the contacts that boats with these velocities do not close within `dt`. The normal of the nearer touch
+    /// Skips the contacts that boats with these velocities do not close within `dt`. The normal of the nearer touch
     /// separates two bodies: along it their cores approach no faster than their centers do, plus what turning adds at
     /// their ends. Both touches of a pair are kept or skipped together, since closing one moves the other.
-    pub(super) fn set_apart(
+    pub(super) fn skip_open(
         &mut self,
         detector: &ContactDetector,
         velocities: &[Velocity],
@@ -59,7 +59,7 @@ impl SkippedContacts {
     }
 
     /// Whether no skipped contact overlaps by more than `allowed` at the poses predicted for these velocities and `dt`.
-    pub(super) fn are_apart(
+    pub(super) fn stay_open(
         &self,
         predicted: &PredictedPoses,
         detector: &ContactDetector,
@@ -67,7 +67,7 @@ impl SkippedContacts {
         dt: f64,
         allowed: f64,
     ) -> bool {
-        let is_apart = |touches: &[Contact]| {
+        let stays_open = |touches: &[Contact]| {
             // If a wall continues in another one, its nearer touch may be missing.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
             let is_far = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
@@ -75,7 +75,7 @@ impl SkippedContacts {
             is_far || !predicted.overlaps(detector, touches, allowed)
         };
         self.is_empty()
-            || predicted.is_end() && self.contacts.chunk_by(Contact::is_twin).all(is_apart)
+            || predicted.is_current() && self.contacts.chunk_by(Contact::is_twin).all(stays_open)
     }
 
     /// Moves the skipped contacts back to the others; returns their number.

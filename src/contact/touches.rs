@@ -7,18 +7,18 @@
 use super::Contact;
 use crate::geometry::{EndTouch, Gap};
 
-/// Coordinates along both cores in cm.
-pub(super) type Place = [f64; 2];
+/// Position of a touch: its coordinates along both cores in cm.
+pub(super) type TouchPosition = [f64; 2];
 
-/// Coordinates of a touch.
+/// Position of a gap's touch.
 #[inline]
-pub(super) fn place(gap: &Gap) -> Place {
+pub(super) fn position(gap: &Gap) -> TouchPosition {
     [gap.along, gap.along_j]
 }
 
 /// Distance of two touches along both cores, in cm.
 #[inline]
-pub(super) fn distance(a: Place, b: Place) -> f64 {
+pub(super) fn distance(a: TouchPosition, b: TouchPosition) -> f64 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
 }
 
@@ -43,7 +43,7 @@ pub(super) fn are_swapped(touches: &[EndTouch; 2], contacts: &[Contact]) -> bool
             return 0.0;
         }
         let known = &contacts[contact].gap;
-        distance(along, place(known)) + (gap - known.gap).abs()
+        distance(along, position(known)) + (gap - known.gap).abs()
     };
     moved(1, 0) + moved(0, 1) < moved(0, 0) + moved(1, 1)
 }

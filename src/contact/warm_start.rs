@@ -1,6 +1,6 @@
 //! Contacts that carried an impulse in the last substep: the guess for the next one.
 
-use super::touches::{Place, distance, place};
+use super::touches::{TouchPosition, distance, position};
 use super::{Contact, Partner};
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ pub(crate) struct CachedImpulse {
     /// The other side.
     pub partner: Partner,
     /// Where the touch was, along both cores.
-    place: Place,
+    position: TouchPosition,
     /// In cm/s; 0 for none.
     pub impulse: f64,
 }
@@ -23,29 +23,29 @@ impl CachedImpulse {
         Self {
             boat: contact.boat,
             partner: contact.partner,
-            place: place(&contact.gap),
+            position: position(&contact.gap),
             impulse,
         }
     }
 
     /// Whether all its numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
-        self.impulse.is_finite() && self.place.iter().all(|along| along.is_finite())
+        self.impulse.is_finite() && self.position.iter().all(|along| along.is_finite())
     }
 
     #[inline]
-    fn is_of(&self, contact: &Contact) -> bool {
+    fn has_same_bodies(&self, contact: &Contact) -> bool {
         (self.boat == contact.boat) && self.partner == contact.partner
     }
 
     /// Whether the impulse was nearer to the first contact than to the second.
     #[inline]
     fn is_nearer(&self, one: &Contact, other: &Contact) -> bool {
-        distance(place(&one.gap), self.place) < distance(place(&other.gap), self.place)
+        distance(position(&one.gap), self.position) < distance(position(&other.gap), self.position)
     }
 }
 
-/// The contacts and impulses of one substep, to be looked up by contact.
+/// The contacts and impulses of one substep, looked up by contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WarmStartCache {
     /// Entries in the order of detection, with the contacts of a pair one after the other. Contacts without an impulse
@@ -90,7 +90,7 @@ impl WarmStartCache {
         while let Some(contact) = contacts.get(k) {
             let last = self.entries.len().min(next + AHEAD);
             let mut start = next;
-            while start < last && !self.entries[start].is_of(contact) {
+            while start < last && !self.entries[start].has_same_bodies(contact) {
                 start += 1;
             }
             let entries = if start < last {
@@ -119,7 +119,7 @@ impl WarmStartCache {
     #[inline]
     fn entries_from(&self, start: usize, contact: &Contact) -> Range<usize> {
         let second = self.entries.get(start + 1);
-        let is_two = second.is_some_and(|entry| entry.is_of(contact));
+        let is_two = second.is_some_and(|entry| entry.has_same_bodies(contact));
         start..start + 1 + usize::from(is_two)
     }
 
@@ -146,7 +146,7 @@ impl WarmStartCache {
             .unwrap_or(NONE);
         let mut first = None;
         while let Some(entry) = self.entries.get(index as usize) {
-            if entry.is_of(contact) {
+            if entry.has_same_bodies(contact) {
                 first = Some(index as usize);
             } else if first.is_some() {
                 break;

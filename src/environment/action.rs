@@ -22,7 +22,7 @@ named_choice! {
 }
 
 impl ActionMode {
-    /// The law that steers to an action's heading; `None` where actions are rudders.
+    /// The law that steers to an action's heading; `None` if actions are rudders.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for leans in a pool in which the law has not been tuned.
@@ -36,7 +36,7 @@ impl ActionMode {
         }
     }
 
-    /// Angle in rad outward of the target's tangent, of an action in [−1, 1].
+    /// Angle in rad, outward of the target's tangent, for an action in [−1, 1].
     pub fn angle(self, action: f64) -> f64 {
         match self {
             Self::Rudder => 0.0,

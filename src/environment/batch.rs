@@ -30,7 +30,7 @@ pub struct EnvBatch {
     rows: usize,
 }
 
-/// One flock's part of a step.
+/// One flock's part of a step: its environment, its actions, and the rows that it fills.
 struct Share<'a> {
     env: &'a mut FlockEnv,
     actions: Option<&'a [f64]>,
@@ -85,7 +85,7 @@ impl EnvBatch {
         self.settings.observation.size()
     }
 
-    /// Checks actions and turn, so that a step either happens as a whole or not at all.
+    /// Checks actions, and that every environment is ready: a step moves all flocks or none.
     ///
     /// # Errors
     /// [`FlockError::Shape`], [`FlockError::Parameter`] or [`FlockError::Episode`].
@@ -167,7 +167,7 @@ impl EnvBatch {
     /// Adds one number per row to the rewards of the last step, on top of the settings' weighted terms.
     ///
     /// # Panics
-    /// If there is another number of rewards than rows.
+    /// If the numbers of rewards and rows differ.
     pub fn add_rewards(&mut self, rewards: &[f64]) {
         assert_eq!(rewards.len(), self.rows, "one reward a leader");
         let mut rest = rewards;
@@ -177,11 +177,11 @@ impl EnvBatch {
         }
     }
 
-    /// Starts new episodes: one request a flock, `None` leaves it as it is. Either all requests are met
-    /// or nothing changes.
+    /// Starts new episodes. There is one request per flock; `None` leaves a flock unchanged. If a request cannot be met,
+    /// nothing changes.
     ///
     /// # Errors
-    /// The first error of a request; [`FlockError::Shape`] for another number of requests.
+    /// The first error of a request; [`FlockError::Shape`] if the numbers of requests and flocks differ.
     pub fn reset(&mut self, requests: &[Option<ResetRequest>]) -> Result<()> {
         self.reset_while(&|| true, requests)
     }
@@ -313,7 +313,7 @@ impl EnvBatch {
 }
 
 /// Number of flocks after which a step of many can be interrupted; a long step of one flock can be, too.
-const FLOCKS_BETWEEN_LOOKS: usize = 16;
+const FLOCKS_BETWEEN_CHECKS: usize = 16;
 
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.
 const MOST_BYTES: u64 = 16 << 30;
@@ -323,7 +323,7 @@ const BYTES_A_BOAT: u64 = 2 << 10;
 
 /// Refuses a batch for which memory would run out.
 fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<()> {
-    // Observations are held by the caller too, and at the end of an episode by the environment.
+    // The caller also holds observations, and so does the environment at the end of an episode.
     let bytes_a_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
     let bytes: u64 = members
         .iter()
@@ -332,8 +332,8 @@ fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<(
             BYTES_A_FLOCK + BYTES_A_BOAT * boats + bytes_a_leader * leaders
         })
         .sum();
-    let mut room: Vec<u8> = Vec::new();
-    if bytes <= MOST_BYTES && room.try_reserve_exact(bytes as usize).is_ok() {
+    let mut memory: Vec<u8> = Vec::new();
+    if bytes <= MOST_BYTES && memory.try_reserve_exact(bytes as usize).is_ok() {
         return Ok(());
     }
     Err(FlockError::parameter(
@@ -346,7 +346,7 @@ fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<(
     ))
 }
 
-/// Cuts the rows into one share a flock.
+/// Splits actions and rows into one share per flock.
 fn shares<'a>(
     envs: &'a mut [FlockEnv],
     size: usize,
@@ -363,13 +363,13 @@ fn shares<'a>(
         number += 1;
         let leaders = env.parameters().n_leaders;
         Share {
-            actions: actions.as_mut().and_then(|left| left.split_off(..leaders)),
+            actions: actions.as_mut().and_then(|rest| rest.split_off(..leaders)),
             observations: observations
                 .split_off_mut(..leaders * size)
                 .unwrap_or_default(),
             rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
-            checks_interrupt: number.is_multiple_of(FLOCKS_BETWEEN_LOOKS),
+            checks_interrupt: number.is_multiple_of(FLOCKS_BETWEEN_CHECKS),
             env,
         }
     };

@@ -5,7 +5,7 @@ use crate::geometry::LapFrame;
 use crate::integrator::Integrator;
 use crate::parameters::Target;
 
-/// Time in s after which a turn that a leader gave counts for 1/e.
+/// Time in s after which a turn by a leader counts for 1/e.
 pub(super) const MEMORY_S: f64 = 4.0;
 
 /// Turning of one normal boat by one leader.
@@ -32,18 +32,18 @@ pub struct LeaderCredit {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct ContactCredit {
     leaders: usize,
-    /// (momentum in cm/s, angular velocity in rad/s) given by each leader in the control step.
-    given: Vec<(f64, f64)>,
+    /// (momentum in cm/s, angular velocity in rad/s) that each leader gave to normal boats in the control step.
+    transfers: Vec<(f64, f64)>,
     /// For each leader, an entry per normal boat.
     turned: Vec<Turned>,
 }
 
 impl ContactCredit {
-    /// Without a memory yet.
+    /// Credit without a memory yet.
     pub(super) fn new(leaders: usize, boats: usize) -> Self {
         Self {
             leaders,
-            given: vec![(0.0, 0.0); leaders],
+            transfers: vec![(0.0, 0.0); leaders],
             turned: vec![Turned::default(); leaders * (boats - leaders)],
         }
     }
@@ -51,13 +51,13 @@ impl ContactCredit {
     /// Whether a stored credit fits these numbers of leaders and boats.
     pub(super) fn fits(&self, leaders: usize, boats: usize) -> bool {
         self.leaders == leaders
-            && self.given.len() == leaders
+            && self.transfers.len() == leaders
             && self.turned.len() == leaders * (boats - leaders)
     }
 
-    /// Clears the gifts of the previous control step.
+    /// Clears the momentum and angular velocity of the previous control step.
     pub(crate) fn start(&mut self) {
-        self.given.fill((0.0, 0.0));
+        self.transfers.fill((0.0, 0.0));
     }
 
     /// Adds the contacts of the substep just taken.
@@ -79,14 +79,14 @@ impl ContactCredit {
             let spin = -contact.gap.arm_j * impulse * flock.inertia[boat].angular;
             // sin δ, where δ is how far counter-clockwise the boat has to turn.
             let misaligned = -towards * frame.components(flock.boats[boat].axis).x;
-            let given = &mut self.given[leader];
-            given.0 += towards * push;
-            given.1 += spin * misaligned;
+            let transfer = &mut self.transfers[leader];
+            transfer.0 += towards * push;
+            transfer.1 += spin * misaligned;
             self.turned[leader * normal + boat - self.leaders].spin += spin;
         }
     }
 
-    /// Moves the turns through a control step: eq. (9) damps the spins, and the angles are forgotten.
+    /// Advances the turns by a control step: eq. (9) damps the spins, and the angles decay.
     pub(crate) fn remember(&mut self, flock: &Integrator, step_s: f64) {
         let normal = flock.poses.len() - self.leaders;
         if normal == 0 {
@@ -117,10 +117,10 @@ impl ContactCredit {
         step_s: f64,
     ) -> LeaderCredit {
         let normal = flock.poses.len() - self.leaders;
-        let (push, alignment) = self.given[leader];
-        let own = &self.turned[leader * normal..(leader + 1) * normal];
+        let (push, alignment) = self.transfers[leader];
+        let turned_by_leader = &self.turned[leader * normal..(leader + 1) * normal];
         let hulls = &flock.boats[self.leaders..];
-        let gains = own.iter().zip(hulls).map(|(turned, hull)| {
+        let gains = turned_by_leader.iter().zip(hulls).map(|(turned, hull)| {
             if turned.angle == 0.0 {
                 return 0.0;
             }

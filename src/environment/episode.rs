@@ -130,7 +130,7 @@ impl Episode {
         FlockError::unless_fitting(state.fits(settings, parameters), why)?;
         let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
         let camera = settings.lens().zip(state.camera);
-        state.camera = camera.map(|(lens, camera)| camera.restored(lens, seed, leaders));
+        state.camera = camera.map(|(lens, camera)| camera.with_lens(lens, seed, leaders));
         Self::from_state(settings, state)
     }
 
@@ -206,7 +206,7 @@ impl Episode {
         observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
     }
 
-    /// Writes the features of the flock in the frame of a target, which bypass the camera.
+    /// Writes the features of the flock, which bypass the camera, in the frame of a target.
     pub(crate) fn observe_features(
         &self,
         features: &FlockFeatures,
@@ -235,8 +235,8 @@ impl Episode {
         let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
         self.state.terms.fill([0.0; TERMS]);
         rewards.fill(0.0);
-        let mut taken = 0;
-        while taken == 0 || (taken < settings.period_steps() && !self.state.ended) {
+        let mut steps = 0;
+        while steps == 0 || (steps < settings.period_steps() && !self.state.ended) {
             if let Some(actions) = actions {
                 self.command(settings, actions, mirror_to.as_ref());
                 self.move_rudders(servo);
@@ -245,11 +245,11 @@ impl Episode {
             self.add_rewards(settings, rewards);
             self.note_order(elapsed);
             self.advance_schedule()?;
-            taken += 1;
+            steps += 1;
         }
-        if taken > 1 {
+        if steps > 1 {
             let terms = self.state.terms.iter_mut().flatten();
-            terms.for_each(|term| *term /= f64::from(taken));
+            terms.for_each(|term| *term /= f64::from(steps));
         }
         Ok(())
     }
@@ -332,14 +332,14 @@ impl Episode {
         for (leader, (sums, sum)) in state.terms.iter_mut().zip(rewards).enumerate() {
             let target = view.targets.of(leader);
             let credit = state.credit.as_ref();
-            let credit = credit.map_or_else(LeaderCredit::default, |each| {
-                each.of(leader, &flock.integrator, target, step_s)
+            let credit = credit.map_or_else(LeaderCredit::default, |credit| {
+                credit.of(leader, &flock.integrator, target, step_s)
             });
             let terms = reward.terms(&view, leader, &credit);
-            let own = settings.reward_factor() * settings.reward.total(leader, &terms);
+            let reward = settings.reward_factor() * settings.reward.total(leader, &terms);
             state.statistics.add_terms(share, &terms);
-            state.statistics.add_reward(share * own);
-            *sum += own;
+            state.statistics.add_reward(share * reward);
+            *sum += reward;
             sums.iter_mut()
                 .zip(terms)
                 .for_each(|(sum, term)| *sum += term);
@@ -375,7 +375,7 @@ impl Episode {
         statistics.add_window(&boats, flock.parameters().target.reference());
     }
 
-    /// Moves the episode's clock on: targets change, the camera takes its picture.
+    /// Advances the episode's clock by a control step: targets may change, and the camera takes a frame.
     fn advance_schedule(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.schedule.step += 1;

@@ -34,7 +34,7 @@ pub struct FlockEnv {
 }
 
 impl FlockEnv {
-    /// For checked settings and parameters; to be reset before it can be stepped.
+    /// An environment for checked settings and parameters, which needs a reset before it can be stepped.
     pub fn new(settings: &EnvSettings, parameters: FlockParameters) -> Self {
         Self {
             servo: settings.servo(),
@@ -54,7 +54,7 @@ impl FlockEnv {
         &self.parameters
     }
 
-    /// The episode under way, or that has ended last; `None` before the first reset.
+    /// The present episode, or the last one if it has ended; `None` before the first reset.
     pub fn episode(&self) -> Option<&Episode> {
         self.episode.as_ref()
     }
@@ -92,12 +92,12 @@ impl FlockEnv {
         let bw_s = upcoming
             .bw_s
             .map_or(self.parameters.bw_s, |bw_s| bw_s.at(0.0));
-        let own = FlockParameters {
+        let parameters = FlockParameters {
             bw_s,
             ..self.parameters.clone()
         };
-        own.check()?;
-        upcoming.settings(settings).check(&own)
+        parameters.check()?;
+        upcoming.settings(settings).check(&parameters)
     }
 
     /// The next episode, not started yet.
@@ -115,7 +115,7 @@ impl FlockEnv {
             return Err(FlockError::Episode(message.to_owned()));
         };
         let flock_seed = seeds.next_seed();
-        let request = request.over(&self.upcoming);
+        let request = request.completed_by(&self.upcoming);
         let (schedule, flock) =
             request.build(settings, &self.parameters, flock_seed, keep_going)?;
         Ok((seeds, Episode::new(settings, schedule, flock)?))

@@ -59,9 +59,9 @@ impl Upcoming {
 }
 
 impl ResetRequest {
-    /// The request, completed by the settings of future episodes.
+    /// The request, with the settings of future episodes where it says nothing.
     #[must_use]
-    pub(super) fn over(&self, upcoming: &Upcoming) -> Self {
+    pub(super) fn completed_by(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();
         request.target = request.target.or_else(|| upcoming.target.clone());
         // A snapshot has its own.

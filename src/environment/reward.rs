@@ -137,8 +137,8 @@ impl RewardWeights {
     /// Checks the weights for flocks with these parameters.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for weights that are not finite, or that need normal boats where
-    /// there is none.
+    /// [`FlockError::Parameter`] for weights that are not finite, or that need a normal boat in a
+    /// flock without any.
     pub fn check(&self, parameters: &FlockParameters) -> Result<()> {
         for (term, weight) in RewardTerm::ALL.iter().zip(self.0) {
             let value = format!("{}: {weight}", term.name());
@@ -177,16 +177,16 @@ impl Setting for RewardWeights {
 
     /// Terms that are not named weigh nothing.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
-        let Value::Map(weights) = value else {
+        let Value::Map(given) = value else {
             let accepted = "a dictionary of weights, or a list of dictionaries, one per leader";
             return wrong_kind(name, accepted);
         };
-        let mut own = Self([0.0; TERMS]);
-        for (term, weight) in weights {
+        let mut weights = Self([0.0; TERMS]);
+        for (term, weight) in given {
             let term: RewardTerm = term.parse()?;
-            own.0[term as usize] = f64::from_value(name, weight)?;
+            weights.0[term as usize] = f64::from_value(name, weight)?;
         }
-        Ok(own)
+        Ok(weights)
     }
 }
 
@@ -265,8 +265,8 @@ impl Setting for Weights {
 
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         match value {
-            Value::List(each) => {
-                let weights = each.iter().map(|value| Setting::from_value(name, value));
+            Value::List(list) => {
+                let weights = list.iter().map(|value| Setting::from_value(name, value));
                 weights.collect::<Result<_>>().map(Self::Each)
             }
             _ => RewardWeights::from_value(name, value).map(Self::One),
@@ -283,7 +283,7 @@ pub struct Reward {
 }
 
 impl Reward {
-    /// At the end of a control step; `order` is the true one, whatever leaders see.
+    /// The reward at the end of a control step, from the flock without the camera's flaws.
     pub fn new(parameters: &FlockParameters, view: &FlockView) -> Self {
         let inverse_speed = 1.0 / speed_scale_cm_s(parameters);
         let reference = view.targets.reference();
@@ -326,7 +326,7 @@ fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTe
     terms
 }
 
-/// Degree of jamming in [0, 1]: aligned, at the outer wall, and standing.
+/// Degree of jamming in [0, 1]: 1 if boats are aligned, point at the outer wall, and stand still.
 fn jam(order: &OrderParameters, inverse_speed: f64) -> f64 {
     order.psi_o * libm::cos(order.phi_o).max(0.0) * (1.0 - order.psi_v * inverse_speed).max(0.0)
 }

@@ -162,7 +162,7 @@ impl EnvSettings {
         action::command(action, self.rudder_levels)
     }
 
-    /// The servo, prepared for control steps.
+    /// The servo, for control steps of this environment.
     pub fn servo(&self) -> Servo {
         Servo::new(
             self.rudder_lag_s,

@@ -11,7 +11,7 @@ pub enum Change {
     /// The direction that all leaders follow from now on, or one direction per leader.
     Target(Targets),
     /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the
-    /// pool changes, each boat keeps its angle about the center and its share of the way between the walls. Boats that
+    /// pool changes, each boat keeps its angle about the center and its relative distance between the walls. Boats that
     /// obstacles then overlap are an error.
     Parameters(Box<FlockParameters>),
 }
@@ -28,7 +28,7 @@ impl Flock {
                 let poses = moved(self.poses(), self.parameters().pool, parameters.pool);
                 let mut next = Self::new(FlockParameters::clone(parameters), self.seed())?;
                 next.branch(self.noise_seed());
-                // A smaller pool may let hulls overlap a little; the contact solver parts them.
+                // A smaller pool may let hulls overlap a little; the contact solver moves them apart.
                 next.set_state(&poses, self.velocities(), self.time_s(), true)?;
                 next.integrator.keep_water(self.integrator.water_cm_s);
                 if !self.parameters().has_same_water(parameters) {

@@ -29,9 +29,9 @@ pub struct Flock {
     before: Box<Checkpoint>,
 }
 
-/// Work between two points at which a long run can be ended, in boats moved, contacts and rows factored: some
-/// milliseconds, or a single substep that takes longer.
-const WORK_BETWEEN_LOOKS: u64 = 20_000;
+/// Work between two calls of `keep_going`, in boats moved, contacts and rows factored: some milliseconds, or a single
+/// substep that takes longer.
+const WORK_BETWEEN_CHECKS: u64 = 20_000;
 /// Part of `dt_s` below which no substep is cut to protect walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
@@ -168,10 +168,10 @@ impl Flock {
         self.integrator.law(leader)
     }
 
-    /// Changes the direction of the steering law, for all leaders or for each one.
+    /// Sets the target of the steering law, for all leaders or for each one.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for another number of targets than leaders; the flock is unchanged then.
+    /// [`FlockError::Parameter`] if the numbers of targets and leaders differ; the flock is unchanged then.
     pub fn set_target(&mut self, target: impl Into<Targets>) -> Result<()> {
         let target = target.into();
         target.check(self.parameters.n_leaders)?;
@@ -233,8 +233,8 @@ impl Flock {
     /// on phase switches and at `end`.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] if the motion left the range or the water, [`FlockError::Interrupted`] where `keep_going`
-    /// said no; the flock is unchanged then.
+    /// [`FlockError::Solver`] if the motion left the range or the water, [`FlockError::Interrupted`] if `keep_going`
+    /// returned false; the flock is unchanged then.
     pub fn advance_to(
         &mut self,
         keep_going: KeepGoing,
@@ -282,7 +282,7 @@ impl Flock {
             }
             self.take_substep(end.min(grid), steering)?;
             watch(&self.integrator);
-            if self.work() - seen >= WORK_BETWEEN_LOOKS {
+            if self.work() - seen >= WORK_BETWEEN_CHECKS {
                 seen = self.work();
                 if !keep_going() {
                     return Err(FlockError::Interrupted);
@@ -340,8 +340,8 @@ impl Flock {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Time of an advance by about this many substeps times boats. It lies on the substep grid, where stopping changes
-    /// nothing.
+    /// Time after about `boat_substeps` / n_boats more substeps, at most `end`. It is a multiple of dt, so that a stop
+    /// there changes nothing.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);

@@ -14,9 +14,9 @@ use crate::random::{Stream, StreamRng};
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
 
-/// Tries a boat before rejection gives up.
+/// Number of draws for each boat after which rejection fails.
 const TRIES_PER_BOAT: usize = 200;
-/// Fresh starts of grow-and-relax before placement fails.
+/// Number of attempts to grow hulls before placement fails.
 const ATTEMPTS: usize = 6;
 /// Part of the water that hulls may cover; beyond it placement is not even tried.
 const LARGEST_COVER: f64 = 0.92;
@@ -83,13 +83,13 @@ struct Region {
     outer: f64,
     /// In cm², without the area of obstacles.
     area: f64,
-    /// Draws of a boat's position before rejection gives up.
+    /// Number of draws of a boat's position after which rejection fails.
     tries: usize,
 }
 
 impl Region {
-    /// Numbers of boats and of attempts to grow. Hulls that cover nearly all of the water must overlap: one attempt
-    /// counts how many do not, for the error message.
+    /// How many boats to grow, and in how many attempts. Hulls that cover nearly all of the water must overlap: then one
+    /// attempt counts how many do not, for the error message.
     fn worth_growing(&self, boats: usize) -> (usize, usize) {
         let full = self.area / self.hull.area();
         if boats as f64 <= LARGEST_COVER * full {

@@ -117,7 +117,7 @@ impl<T: Real> Recording<T> {
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`] or than there is memory.
-    pub fn with_room_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
+    pub fn with_capacity_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
         let samples = sampling.count();
         let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
         let rudders = parameters.n_leaders * size_of::<f64>();
@@ -164,7 +164,7 @@ impl<T: Real> Recording<T> {
         }
         let leaders = 0..flock.parameters().n_leaders;
         match rudder {
-            Some(held) => self.rudder.extend(held),
+            Some(rudder) => self.rudder.extend(rudder),
             None => self.rudder.extend(leaders.map(|k| flock.steering_law(k))),
         }
         self.order
@@ -206,7 +206,7 @@ pub struct Recorder<T> {
     flock: Flock,
     sampling: Sampling,
     start: Ticks,
-    taken: u64,
+    samples: u64,
     changes: VecDeque<(Ticks, Change)>,
     control: Option<Control>,
     recording: Recording<T>,
@@ -216,13 +216,13 @@ impl<T: Real> Recorder<T> {
     /// A run from where a flock is now, under the steering law, with nothing recorded yet.
     ///
     /// # Errors
-    /// As for [`Recording::with_room_for`], and for a run that would end later than any flock may.
+    /// As for [`Recording::with_capacity_for`], and for a run that would end later than any flock may.
     pub fn new(flock: Flock, sampling: Sampling) -> Result<Self> {
         flock.end_of(seconds(sampling.time(sampling.count() - 1)))?;
         Ok(Self {
-            recording: Recording::with_room_for(&sampling, flock.parameters())?,
+            recording: Recording::with_capacity_for(&sampling, flock.parameters())?,
             start: flock.time(),
-            taken: 0,
+            samples: 0,
             changes: VecDeque::new(),
             control: None,
             flock,
@@ -316,7 +316,7 @@ impl<T: Real> Recorder<T> {
                 control.control_steps += 1;
                 return Ok(Pause::Control);
             }
-            if self.taken == self.sampling.count() {
+            if self.samples == self.sampling.count() {
                 return Ok(Pause::End);
             }
             if left == 0 {
@@ -336,10 +336,10 @@ impl<T: Real> Recorder<T> {
     }
 
     fn sample_and_change(&mut self, now: Ticks) -> Result<()> {
-        if self.taken < self.sampling.count() && self.sampling.time(self.taken) == now {
+        if self.samples < self.sampling.count() && self.sampling.time(self.samples) == now {
             let held = self.control.as_ref().map(|control| &control.rudder[..]);
             self.recording.push(&self.flock, held);
-            self.taken += 1;
+            self.samples += 1;
         }
         while let Some((_, change)) = self.changes.pop_front_if(|(time, _)| *time <= now) {
             self.flock.change(&change)?;
@@ -348,7 +348,7 @@ impl<T: Real> Recorder<T> {
     }
 
     fn next_event(&self) -> Ticks {
-        let mut next = self.sampling.time(self.taken);
+        let mut next = self.sampling.time(self.samples);
         if let Some(&(time, _)) = self.changes.front() {
             next = next.min(time);
         }

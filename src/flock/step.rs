@@ -37,13 +37,13 @@ impl Flock {
     }
 
     /// Advances as [`Self::advance`], and returns the error that the step made on the way: the distance in cm from where
-    /// substeps of an eighth lead from the same start on the same noise paths, as [`rms_distance`] has it. That takes nine
+    /// substeps of an eighth lead from the same start on the same noise paths, as [`rms_distance`] defines it. That takes nine
     /// times as long. Errors of advances one after another do not add up: boats that press against a wall forget some, and
     /// impacts enlarge others.
     ///
     /// # Errors
-    /// As for [`Self::advance`]; [`FlockError::Parameter`] for a step that has no eighth, and for noise that is another
-    /// one in each step. The flock is unchanged then.
+    /// As for [`Self::advance`]; [`FlockError::Parameter`] for a step too short to be divided by 8, and for noise that
+    /// depends on the step. The flock is unchanged then.
     pub fn advance_with_error(&mut self, duration_s: f64, rudder: Option<&[f64]>) -> Result<f64> {
         let end = self.end_of(duration_s)?;
         self.check_rudder(rudder)?;

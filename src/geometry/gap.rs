@@ -130,13 +130,16 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Nearest points for an end of hull a. If end meets end, both ends describe the gap. With `once` only the first
-    /// hull's end does, and only if neither end could slide nearer.
-    fn end_of_a(&self, side: f64, once: bool) -> Option<Touch> {
+    /// Nearest points for an end of hull a. If two ends face each other, both describe the same gap. With `only_nearest`
+    /// such an end counts only if neither end could slide nearer.
+    fn end_of_a(&self, side: f64, only_nearest: bool) -> Option<Touch> {
         let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
         let along_b = side * h * self.cosine - self.apart_b;
         let nearest = along_b.clamp(-other, other);
-        if once && along_b.abs() > other && (self.apart_a + nearest * self.cosine) * side < h {
+        if only_nearest
+            && along_b.abs() > other
+            && (self.apart_a + nearest * self.cosine) * side < h
+        {
             return None;
         }
         Some(self.touch(side * h, nearest))
@@ -163,7 +166,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The square of their distance, infinite if no end faces the other core.
+    /// The squared distance of those points, infinite if no end faces the other core.
     #[inline]
     fn square_towards(&self, side: f64) -> f64 {
         let square = |touch: Touch| touch.between.norm_squared();

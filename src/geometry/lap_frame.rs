@@ -4,7 +4,7 @@
 
 use super::{Pose, Vec2, turned_left, wrap_angle};
 
-/// The axes at one place.
+/// The axes at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LapFrame {
     /// Unit vector away from the pool's center.

@@ -66,7 +66,7 @@ impl Obstacle {
         all
     }
 
-    /// Whether a boat that moves by more than half its radius might pass through.
+    /// Whether a boat that moves by more than half its radius in a substep might pass through the obstacle.
     pub(crate) fn is_thin(&self) -> bool {
         matches!(self, Self::Wall { .. })
     }
@@ -82,15 +82,15 @@ impl Obstacle {
         Some([-1.0, 1.0].map(|side| (pose.end(side, *half_length), -pose.axis * side)))
     }
 
-    /// Whether a boat pushed along a normal lies beyond an end that another wall continues towards it. There is nothing
-    /// to touch at such an end: a contact there would brake a boat that slides past.
-    fn leads_on(&self, normal: Vec2) -> bool {
+    /// Whether a boat pushed along a normal lies beyond an end at which another wall continues towards the boat. Such an end
+    /// has no contact: it would brake a boat that slides past.
+    fn is_continued(&self, normal: Vec2) -> bool {
         let Self::Wall { pose, joints, .. } = self else {
             return false;
         };
         let beyond = normal.dot(&pose.axis);
         let joint = joints[usize::from(beyond > 0.0)];
-        beyond.abs() > UPRIGHT && joint.is_some_and(|onward| normal.dot(&onward) > UPRIGHT)
+        beyond.abs() > UPRIGHT && joint.is_some_and(|next_wall| normal.dot(&next_wall) > UPRIGHT)
     }
 
     /// The point of its core nearest to a point, and its radius about that; a disc's core is its center.
@@ -140,7 +140,7 @@ impl Obstacle {
             } => {
                 let wall = (pose, wall_hull(*half_length));
                 pair_gaps((boat, hull), wall, margin, |feature, gap| {
-                    if feature == Feature::Crossed || !self.leads_on(gap.normal) {
+                    if feature == Feature::Crossed || !self.is_continued(gap.normal) {
                         found(feature, beside_wall(feature, gap, hull));
                     }
                 });
@@ -172,8 +172,8 @@ impl Obstacle {
 fn join(obstacles: &mut [Obstacle]) {
     let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
     for (number, obstacle) in obstacles.iter().enumerate() {
-        let own = obstacle.ends().into_iter().flatten().enumerate();
-        ends.extend(own.map(|(side, (end, inward))| (end, inward, number, side)));
+        let its_ends = obstacle.ends().into_iter().flatten().enumerate();
+        ends.extend(its_ends.map(|(side, (end, inward))| (end, inward, number, side)));
     }
     ends.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
     for (k, &(end, inward, number, side)) in ends.iter().enumerate() {

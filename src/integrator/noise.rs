@@ -6,8 +6,8 @@ use crate::clock::{Ticks, seconds};
 use crate::parameters::Noise;
 
 impl Integrator {
-    /// Fills `noise_increments` with the noise of the interval [from, to] (half ticks), which the scheme takes
-    /// at `start`.
+    /// Fills `noise_increments` with the noise of the interval [from, to] in half ticks. Noise that is drawn per step is
+    /// keyed by the substep's `start`.
     pub(super) fn draw_noise(&mut self, start: Ticks, from: u64, to: u64) {
         let Some(noise) = &mut self.noise else { return };
         let scale = match self.parameters.noise_scheme {

@@ -21,7 +21,7 @@ pub(crate) struct Integrator {
     /// The poses with their direction vectors.
     pub(crate) boats: Vec<HullPose>,
     pub(crate) contacts: ContactResolver,
-    /// η of eq. (9); `None` where c4 = 0.
+    /// η of eq. (9); `None` if c4 = 0.
     pub(super) noise: Option<BrownianPaths>,
     /// Change of each boat's angular velocity by noise over the substep.
     pub(crate) noise_increments: Vec<f64>,
@@ -39,7 +39,7 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// For checked parameters; boats at the origin, to be placed.
+    /// The state for checked parameters; all boats lie at the origin until they are placed.
     pub(crate) fn new(parameters: &FlockParameters, seed: u64) -> Self {
         let n = parameters.n_boats;
         let p = parameters;

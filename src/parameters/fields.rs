@@ -107,7 +107,8 @@ impl FlockParameters {
         self.boat_shape * self.boat_radius_cm
     }
 
-    /// Deepest overlap in cm that a substep may leave, by the scheme's own tolerance too.
+    /// Deepest overlap in cm that a substep may leave: by `tolerance_cm`, and in the paper's scheme also by its own
+    /// tolerance.
     pub fn allowed_overlap_cm(&self) -> f64 {
         if self.scheme == Scheme::Paper {
             self.tolerance_cm.max(self.overlap_tolerance_cm)

@@ -71,11 +71,12 @@ impl Preset {
 
     /// Source of this preset's value of a field; `None` for an unknown field.
     pub fn source(self, field: &str) -> Option<&'static str> {
-        let own = self.changes().1.iter().find(|(name, _)| *name == field);
+        let change = self.changes().1.iter().find(|(name, _)| *name == field);
         let declared = FlockParameters::FIELDS
             .iter()
             .find(|declared| declared.name == field);
-        own.map(|(_, source)| *source)
+        change
+            .map(|(_, source)| *source)
             .or_else(|| declared.map(|field| field.source))
     }
 

@@ -160,7 +160,7 @@ impl Law {
         self.leaning().map_or(Ok(()), LeaningLaw::check)
     }
 
-    /// The damped law by which it steers, if any.
+    /// The damped law that it steers by, if any.
     fn damped(&self) -> Option<&DampedLaw> {
         match self {
             Self::Damped(law) => Some(law),

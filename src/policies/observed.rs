@@ -12,7 +12,7 @@ pub struct ObservedLaw {
     size: usize,
     /// `None` if the law's actions are rudders, or leans that the environment steers to.
     courses: Option<CourseReader>,
-    /// Where the lean features start, if the law looks at them.
+    /// Index of the first lean feature, if the law reads them.
     features: Option<usize>,
 }
 

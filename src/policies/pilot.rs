@@ -16,9 +16,9 @@ pub struct Pilot {
     /// Control steps from one decision to the next.
     period: u32,
     /// Control steps since the last decision.
-    held: u32,
-    /// How far each leader's heading leans outward, in rad; or its rudder for a clockwise target, if the law chooses
-    /// rudders.
+    steps: u32,
+    /// Angle in rad by which each leader's heading leans outward. If the law chooses rudders: its rudder for a clockwise
+    /// target.
     leans: Vec<f64>,
     views: Views,
 }
@@ -57,7 +57,7 @@ impl Pilot {
             .map(|period| whole_steps("decision_period_s", period, control_hz, "control steps"));
         Ok(Self {
             period: period.transpose()?.unwrap_or(1),
-            held: 0,
+            steps: 0,
             leans: vec![0.0; parameters.n_leaders],
             views: Views::new(&law, parameters)?,
             law,
@@ -75,14 +75,14 @@ impl Pilot {
         let features = self.views.features.as_ref();
         let order = features.and_then(|_| flock.order_parameters(false).ok());
         let view = FlockView::new(flock, &[], order.as_ref());
-        if self.held == 0 {
+        if self.steps == 0 {
             self.decide(&view);
         }
-        self.held = (self.held + 1) % self.period;
-        let steers = self.law.leaning().is_some_and(|law| law.gains.is_none());
+        self.steps = (self.steps + 1) % self.period;
+        let chooses_rudders = self.law.leaning().is_some_and(|law| law.gains.is_none());
         let leans = self.leans.iter().enumerate();
         let rudders = leans.map(|(leader, &lean)| {
-            if steers {
+            if chooses_rudders {
                 return view.targets.of(leader).sign() * lean;
             }
             let course = self.views.courses.course(&view, leader, lean);
@@ -100,11 +100,11 @@ impl Pilot {
         }
     }
 
-    /// From now on each leader's heading leans outward of its target's tangent by this angle in rad, which need not be
-    /// wrapped. A leaning law decides its lean itself.
+    /// Sets the angles in rad by which the leaders' headings lean outward of their targets' tangents from now on. They need
+    /// not be wrapped. A leaning law replaces them at its next decision.
     pub fn lean_to(&mut self, leans: impl IntoIterator<Item = f64>) {
-        for (lean, wanted) in self.leans.iter_mut().zip(leans) {
-            *lean = wanted;
+        for (lean, new) in self.leans.iter_mut().zip(leans) {
+            *lean = new;
         }
     }
 

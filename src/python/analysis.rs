@@ -2,7 +2,7 @@
 //! n, 3).
 
 use super::arrays::{rows_of, same_length, wrong_shape};
-use super::value::given;
+use super::value::argument;
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::{CollectiveState, ordering_time};
 use crate::analysis::quantities::{Formula, QUANTITIES, RECORDED, Recorded, quantity};
@@ -89,7 +89,7 @@ pub(super) fn derived_series<'py>(
     let Formula::Derived(formula) = quantity(name)?.formula else {
         return Err(wrong_formula(name, "a derived quantity"));
     };
-    let targets: Targets = given(target, "target")?;
+    let targets: Targets = argument(target, "target")?;
     let accepted = "\"cw\", \"ccw\", or a list with one of them per leader";
     let is_any = targets != Targets::Each(Vec::new());
     FlockError::unless(is_any, "target", &targets, accepted)?;

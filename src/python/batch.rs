@@ -5,7 +5,7 @@ use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
 use super::observation::layout_from;
 use super::parameters::PyParameters;
-use super::value::{given, noise_seed_from, seed_from, set_given, value_from};
+use super::value::{argument, noise_seed_from, seed_from, set_given, value_from};
 use crate::analysis::quantities::RECORDED;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
@@ -73,7 +73,7 @@ fn never_reset() -> FlockError {
     FlockError::Episode("reset has not been called yet".to_owned())
 }
 
-/// So many numbers that `fill` writes.
+/// `count` numbers that `fill` writes.
 fn filled(count: usize, fill: impl FnOnce(&mut [f32])) -> Vec<f32> {
     let mut numbers = vec![0.0; count];
     fill(&mut numbers);
@@ -343,8 +343,8 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
         match text_of("reset option", &value_from(&name))? {
             "seed" if value.is_none() => request.seed = None,
             "seed" => request.seed = Some(seed_from(&value)?),
-            "target" => request.target = Some(given(&value, "target")?),
-            "bw_s" => request.bw_s = Some(given(&value, "bw_s")?),
+            "target" => request.target = Some(argument(&value, "target")?),
+            "bw_s" => request.bw_s = Some(argument(&value, "bw_s")?),
             "state" => request.start = Start::State(state_from(&value, boats)?),
             "snapshot" => snapshot = Some(value.extract()?),
             "noise_seed" => noise_seed = noise_seed_from(&value)?,

@@ -48,8 +48,8 @@ impl<T> Exclusive<T> {
     }
 }
 
-/// Time between two looks at Python's signals.
-const PATIENCE: Duration = Duration::from_millis(20);
+/// Time between two checks of Python's signals.
+const SIGNAL_PERIOD: Duration = Duration::from_millis(20);
 
 /// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
 /// going. Python handles signals only in the calling thread: that thread checks for them when it asks, and the others
@@ -63,7 +63,7 @@ pub(super) fn interruptible<T: Send>(
     let keep_going = || {
         let mut last_look = last_look.lock().unwrap_or_else(PoisonError::into_inner);
         let (at, raised) = &mut *last_look;
-        if raised.is_none() && thread::current().id() == caller && at.elapsed() >= PATIENCE {
+        if raised.is_none() && thread::current().id() == caller && at.elapsed() >= SIGNAL_PERIOD {
             *raised = Python::attach(|py| py.check_signals().err());
             *at = Instant::now();
         }

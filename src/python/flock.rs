@@ -3,7 +3,7 @@
 use super::arrays::{floats, rows_from, rows_of};
 use super::exclusive::{Exclusive, interruptible};
 use super::parameters::PyParameters;
-use super::value::{given, noise_seed_from, seed_from, value_from, wrong_type};
+use super::value::{argument, noise_seed_from, seed_from, value_from, wrong_type};
 use crate::analysis::quantities::Recorded;
 use crate::clock::Ticks;
 use crate::contact::{KeepGoing, Partner};
@@ -36,7 +36,7 @@ impl PyFlock {
         rudder: Option<&Bound<'_, PyAny>>,
         advance: fn(&mut Flock, KeepGoing, Ticks, Steering) -> Result<T>,
     ) -> PyResult<T> {
-        let seconds = given(seconds, "seconds")?;
+        let seconds = argument(seconds, "seconds")?;
         let rudder = rudders_from(rudder, &*self.0.read()?)?;
         let mut flock = self.0.write()?;
         let flock = &mut *flock;
@@ -149,7 +149,7 @@ impl PyFlock {
     }
 
     fn set_target(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
-        let target: Targets = given(target, "target")?;
+        let target: Targets = argument(target, "target")?;
         Ok(self.0.write()?.set_target(target)?)
     }
 
@@ -175,7 +175,7 @@ impl PyFlock {
     }
 
     fn set_step(&self, dt_s: &Bound<'_, PyAny>) -> PyResult<()> {
-        let dt_s = given(dt_s, "dt_s")?;
+        let dt_s = argument(dt_s, "dt_s")?;
         Ok(self.0.write()?.set_step(dt_s)?)
     }
 
@@ -264,8 +264,8 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
                 let rows = rows_from(&value, "velocity", boats)?.into_iter();
                 state.velocities = rows.map(|[x, y, w]| Velocity::new(x, y, w)).collect();
             }
-            "time_s" => state.time_s = given(&value, "time_s")?,
-            "allow_overlap" => state.allow_overlap = given(&value, "allow_overlap")?,
+            "time_s" => state.time_s = argument(&value, "time_s")?,
+            "allow_overlap" => state.allow_overlap = argument(&value, "allow_overlap")?,
             other => return Err(refuse(&format!("{other:?}")).into()),
         }
     }
@@ -323,7 +323,7 @@ impl PyFrameRenderer {
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let side = |object, name| {
             // A number beyond 32 bits is as much out of range as the largest one within.
-            Ok::<_, PyErr>(u32::try_from(given::<usize>(object, name)?).unwrap_or(u32::MAX))
+            Ok::<_, PyErr>(u32::try_from(argument::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);
         Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))

@@ -2,7 +2,7 @@
 
 use super::arrays::rows_of;
 use super::flock::{PyFlock, rudders_from};
-use super::value::given;
+use super::value::argument;
 use crate::environment::observation::{BOAT, ObservationLayout, observe_flock, state_entries};
 use crate::error::FlockError;
 use crate::flock::Flock;
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 /// A checked layout from the blocks that differ from the default one, and whether it is mirrored.
 pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
-    let layout: ObservationLayout = given(blocks, "observation")?;
+    let layout: ObservationLayout = argument(blocks, "observation")?;
     layout.check()?;
     Ok(layout.mirrored(mirror))
 }
@@ -28,7 +28,7 @@ pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value
 /// Every entry of the global state of a number of boats, in order.
 #[pyfunction]
 pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
-    let n_boats = given(n_boats, "n_boats")?;
+    let n_boats = argument(n_boats, "n_boats")?;
     let most = FlockParameters::MOST_BOATS;
     FlockError::unless(n_boats <= most, "n_boats", n_boats, format!("0 to {most}"))?;
     let entries = state_entries(n_boats).into_iter().enumerate();

@@ -1,6 +1,6 @@
 //! Parameters that are checked, behind `flockenv.FlockParameters`, which shows their values.
 
-use super::value::{given, set_given, wrong_type};
+use super::value::{argument, set_given, wrong_type};
 use crate::geometry::{Hull, resized_gyration_radius_cm};
 use crate::parameters::{Field, FlockParameters, Value};
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ impl PyParameters {
     fn new(base: &Bound<'_, PyAny>, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
         let base = match base.cast::<Self>() {
             Ok(base) => base.get().0.clone(),
-            Err(_) => FlockParameters::preset(given(base, "preset")?),
+            Err(_) => FlockParameters::preset(argument(base, "preset")?),
         };
         let mut changed = base.clone();
         set_given(&mut changed, FlockParameters::FIELDS, changes)?;

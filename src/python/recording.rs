@@ -6,7 +6,7 @@ use super::exclusive::interruptible;
 use super::flock::{PyFlock, contact_columns};
 use super::law::PyLaw;
 use super::observation::{layout_from, observed};
-use super::value::given;
+use super::value::argument;
 use crate::clock::ticks;
 use crate::environment::observation::ObservationLayout;
 use crate::flock::{Change, Pause, Real, Recorder, Recording, Sampling};
@@ -50,8 +50,8 @@ pub(super) fn record<'py>(
     duration_s: &Bound<'py, PyAny>,
     plan: Plan<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let duration_s = given(duration_s, "duration_s")?;
-    let sampling = Sampling::new(duration_s, given(&plan.sample_hz, "sample_hz")?)?;
+    let duration_s = argument(duration_s, "duration_s")?;
+    let sampling = Sampling::new(duration_s, argument(&plan.sample_hz, "sample_hz")?)?;
     if plan.single_precision {
         recorded::<f32>(py, flock, sampling, &plan)
     } else {
@@ -66,7 +66,7 @@ fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
     if value.hasattr("n_boats")? {
         return Ok(Change::Parameters(Box::new(value.extract()?)));
     }
-    given::<Targets>(value, "target").map(Change::Target)
+    argument::<Targets>(value, "target").map(Change::Target)
 }
 
 fn recorded<'py, T: Real + Element>(
@@ -85,7 +85,7 @@ fn recorded<'py, T: Real + Element>(
     }
     let (mut layouts, mut pilot) = (Vec::new(), None);
     if let Some(hz) = &plan.control.control_hz {
-        let hz = given(hz, "control_hz")?;
+        let hz = argument(hz, "control_hz")?;
         recorder = recorder.with_control(hz)?;
         for (blocks, is_mirrored) in &plan.control.layouts {
             layouts.push(layout_from(blocks, *is_mirrored)?);

@@ -1,6 +1,6 @@
 //! Declarations of parameters and options, and values that follow from them without a flock.
 
-use super::value::given;
+use super::value::argument;
 use crate::clock::whole_steps;
 use crate::environment::EnvSettings;
 use crate::error::Result;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 /// Source of each field of a preset.
 #[pyfunction]
 pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
-    let preset: Preset = given(preset, "preset")?;
+    let preset: Preset = argument(preset, "preset")?;
     let fields = FlockParameters::FIELDS.iter();
     Ok(fields
         .map(|field| (field.name, preset.source(field.name)))
@@ -20,7 +20,7 @@ pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
 /// The fields that a choice of physics sets.
 #[pyfunction]
 pub(super) fn physics_fields(physics: &Bound<'_, PyAny>) -> PyResult<Value> {
-    let stepping = given::<Physics>(physics, "physics")?.stepping();
+    let stepping = argument::<Physics>(physics, "physics")?.stepping();
     let fields = stepping.map(|(dt_s, tolerance_cm)| {
         [
             ("dt_s", Value::from(dt_s)),
@@ -36,22 +36,22 @@ pub(super) fn critical_bw_s(
     preset: &Bound<'_, PyAny>,
     pool: &Bound<'_, PyAny>,
 ) -> PyResult<Option<f64>> {
-    let preset: Preset = given(preset, "preset")?;
-    Ok(preset.critical_bw_s(&given(pool, "pool")?))
+    let preset: Preset = argument(preset, "preset")?;
+    Ok(preset.critical_bw_s(&argument(pool, "pool")?))
 }
 
 /// Radii of a pool in cm, outer and inner, whether it has a name or not.
 #[pyfunction]
 pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
-    let pool: Pool = given(pool, "pool")?;
+    let pool: Pool = argument(pool, "pool")?;
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
 
 /// Number of decisions at a rate in a time (s), which must be whole.
 #[pyfunction]
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
-    let held_s = given(hold_s, "hold_s")?;
-    Ok(whole_steps("hold_s", held_s, rate_hz, "decisions")?)
+    let hold_s = argument(hold_s, "hold_s")?;
+    Ok(whole_steps("hold_s", hold_s, rate_hz, "decisions")?)
 }
 
 /// The rudders of levels by their numbers, in an environment with `rudder_levels`.

@@ -88,19 +88,19 @@ impl<'py> IntoPyObject<'py> for Value {
 }
 
 /// The argument of that name.
-pub(super) fn given<T: Setting>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
+pub(super) fn argument<T: Setting>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
     let value = value_from(object);
     T::from_value(name, &value).map_err(|error| refused(error, &value, object))
 }
 
 /// A seed.
 pub(super) fn seed_from(object: &Bound<'_, PyAny>) -> PyResult<u64> {
-    Ok(given::<usize>(object, "seed")? as u64)
+    Ok(argument::<usize>(object, "seed")? as u64)
 }
 
-/// A seed of other noise; `None` for None.
+/// A seed of other noise, or `None`.
 pub(super) fn noise_seed_from(object: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
-    Ok(given::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
+    Ok(argument::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
 }
 
 /// The error of a field's type, with the value that Python code gave.
@@ -147,21 +147,21 @@ pub(super) fn set_given<S>(
 
 /// The error of a value that is out of range.
 fn not_accepted(name: &'static str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
-    FlockError::parameter(name, shown(value), accepted).into()
+    FlockError::parameter(name, short_repr(value), accepted).into()
 }
 
 /// The `TypeError` for an argument.
 pub(super) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyErr {
     let kind = object.get_type().name();
     let kind = kind.map_or_else(|_| "?".to_owned(), |name| name.to_string());
-    let found = shown(object);
+    let found = short_repr(object);
     PyTypeError::new_err(format!(
         "{name} must be {accepted}, not {found} of type {kind}"
     ))
 }
 
 /// Repr of a value for messages, cut to fit a line.
-fn shown(object: &Bound<'_, PyAny>) -> String {
+fn short_repr(object: &Bound<'_, PyAny>) -> String {
     const LONGEST: usize = 80;
     // A repr may fail; for an int of more than 4300 digits it does.
     let full = object.repr().map_or_else(

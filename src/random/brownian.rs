@@ -10,15 +10,15 @@ use rand_chacha::rand_core::Rng;
 /// Standard normal draws keyed by (boat, cell, node).
 #[derive(Debug, Clone)]
 struct KeyedNormals {
-    /// One a boat.
+    /// One key per boat.
     keys: Vec<u64>,
     ziggurat: Ziggurat,
 }
 
 impl KeyedNormals {
-    fn new(mut words: StreamRng, boats: usize) -> Self {
+    fn new(mut generator: StreamRng, boats: usize) -> Self {
         Self {
-            keys: (0..boats).map(|_| words.next_u64()).collect(),
+            keys: (0..boats).map(|_| generator.next_u64()).collect(),
             ziggurat: Ziggurat::new(),
         }
     }
@@ -61,8 +61,8 @@ pub struct BrownianPaths {
 /// The paths at a point within a cell.
 #[derive(Debug, Clone)]
 struct Reading {
-    /// The cell, and how many half ticks after its start; `None` before anything was read.
-    place: Option<(u64, u64)>,
+    /// The cell, and half ticks since its start; `None` before the first reading.
+    point: Option<(u64, u64)>,
     /// Increments since the cell's start, one per boat.
     path: Vec<f64>,
     /// Increments over the whole cell, one per boat.
@@ -87,7 +87,7 @@ impl BrownianPaths {
             cell_length,
             shift,
             last: Reading {
-                place: None,
+                point: None,
                 path: zeros.clone(),
                 whole: zeros.clone(),
             },
@@ -133,11 +133,11 @@ impl BrownianPaths {
 
     /// Draws keyed by a time, for noise that is drawn step by step.
     pub(crate) fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
-        let found = self.normals.draws(time, 0);
+        let normals = self.normals.draws(time, 0);
         draws
             .iter_mut()
-            .zip(found)
-            .for_each(|(draw, found)| *draw = found);
+            .zip(normals)
+            .for_each(|(draw, normal)| *draw = normal);
     }
 
     /// Draws the increments over a whole cell.
@@ -150,7 +150,7 @@ impl BrownianPaths {
 
     /// Sets `last` to the paths at `offset` half ticks into a cell, strictly inside of it.
     fn read(&mut self, cell: u64, offset: u64) {
-        let known = self.last.place.replace((cell, offset));
+        let known = self.last.point.replace((cell, offset));
         if known == Some((cell, offset)) {
             return;
         }

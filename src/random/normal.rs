@@ -57,7 +57,7 @@ impl Ziggurat {
     /// The number of a word.
     #[inline]
     pub(super) fn normal(self, word: u64) -> f64 {
-        let (layer, x) = self.place(word);
+        let (layer, x) = self.choose(word);
         if x.abs() < self.0.edges[layer + 1] {
             x
         } else {
@@ -65,16 +65,16 @@ impl Ziggurat {
         }
     }
 
-    /// The layer that a word chooses, and a position within its width on either side.
+    /// Chooses a layer by a word, and an x within its width on either side of 0.
     #[inline]
-    fn place(self, word: u64) -> (usize, f64) {
+    fn choose(self, word: u64) -> (usize, f64) {
         let layer = (word & (LAYERS as u64 - 1)) as usize;
         // The upper 53 bits, in [−1, 1).
         let share = ((word as i64) >> 11) as f64 / (1_u64 << 52) as f64;
         (layer, share * self.0.edges[layer])
     }
 
-    /// For a position that is not certain to lie under the curve.
+    /// The number for an x that may lie outside the curve.
     #[cold]
     #[inline(never)]
     fn beyond_layer(self, mut layer: usize, mut x: f64, mut word: u64) -> f64 {
@@ -94,7 +94,7 @@ impl Ziggurat {
             if height < density(x) {
                 return x;
             }
-            (layer, x) = self.place(uniform().0);
+            (layer, x) = self.choose(uniform().0);
         }
     }
 }

@@ -36,8 +36,8 @@ pub(super) fn ridge(matrix: &Matrix, part: f64, b: &Features) -> Features {
     let mut factor = [[0.0; SIZE]; SIZE];
     for row in 0..SIZE {
         for column in 0..=row {
-            let own = if row == column { ridge } else { 0.0 };
-            let sum = (0..column).fold(matrix[row][column] + own, |sum, k| {
+            let added = if row == column { ridge } else { 0.0 };
+            let sum = (0..column).fold(matrix[row][column] + added, |sum, k| {
                 sum - factor[row][k] * factor[column][k]
             });
             factor[row][column] = if row == column {

@@ -20,7 +20,7 @@ pub(super) struct Relinearization {
 }
 
 impl Relinearization {
-    /// For checked parameters.
+    /// Settings from checked parameters.
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         Self {
             tolerance: parameters.allowed_overlap_cm(),
@@ -37,8 +37,8 @@ impl Relinearization {
 
 impl ContactResolver {
     /// Solves islands again until no gap at the substep's end, evaluated where the last solve moves the boats, overlaps
-    /// by more than the tolerance: with biases for which those gaps open to zero. The normals stay those of the substep's
-    /// start, along which forces act, and so does the factor. `first` is what the first solve came to.
+    /// by more than the tolerance: with biases for which those gaps open to zero. Normals, along which forces act, and the
+    /// factor stay those of the substep's start. `first` is the outcome of the first solve.
     pub(super) fn relinearize(
         &mut self,
         motion: &Motion,
@@ -81,7 +81,7 @@ impl ContactResolver {
     fn predict(&mut self, motion: &Motion) {
         let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
         self.predicted
-            .place(motion.poses, velocities, motion.dt, hull);
+            .predict(motion.poses, velocities, motion.dt, hull);
     }
 
     /// Predicts where the last solve moves the boats of some islands; the others stay where they are predicted.

@@ -45,9 +45,9 @@ pub struct ContactSolver {
     /// The numbers of all islands.
     all: Vec<u32>,
     pivoting: BlockPivoting,
-    /// The work budget of a whole substep, and the part of it that the present contacts may not use.
+    /// The work budget of a whole substep, and the part of it that is reserved for later contacts.
     most_work: i64,
-    kept_back: i64,
+    reserved: i64,
     /// Work of the earlier substeps.
     work_before: i64,
     /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
@@ -68,7 +68,7 @@ impl ContactSolver {
             pivoting: BlockPivoting::new(1e-13),
             // Unbounded until the first substep sets a budget.
             most_work: 0,
-            kept_back: 0,
+            reserved: 0,
             work_before: i64::MAX,
             active: Vec::new(),
             impulses: Vec::new(),
@@ -85,13 +85,13 @@ impl ContactSolver {
         }
     }
 
-    /// The same solver, which may keep its factors: solving the same contacts again costs less then.
+    /// The same solver, set to keep its factors or not: with them, solving the same contacts again costs less.
     pub fn keeping_factors(mut self, keeps: bool) -> Self {
         self.pivoting.keeps_factors = keeps;
         self
     }
 
-    /// Takes on a new set of contacts; `active` and `impulses` must hold a guess for each.
+    /// Prepares for new contacts; `active` and `impulses` must hold a guess for each.
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
@@ -102,38 +102,38 @@ impl ContactSolver {
 
     /// Sets the work budget of a whole substep.
     pub(crate) fn refill(&mut self, boats: usize) {
-        if self.pivoting.budget + self.kept_back != self.most_work {
+        if self.pivoting.budget + self.reserved != self.most_work {
             self.work_before = self.work();
             self.most_work = MOST_WORK + MOST_WORK_A_BOAT * boats as i64;
-            (self.pivoting.budget, self.kept_back) = (self.most_work, 0);
+            (self.pivoting.budget, self.reserved) = (self.most_work, 0);
         }
     }
 
     /// Takes over the remaining work budget of another solver in the same substep.
-    pub(crate) fn share_room(&mut self, other: &Self) {
-        let budget = other.pivoting.budget + other.kept_back;
-        (self.pivoting.budget, self.kept_back) = (budget, 0);
+    pub(crate) fn share_budget(&mut self, other: &Self) {
+        let budget = other.pivoting.budget + other.reserved;
+        (self.pivoting.budget, self.reserved) = (budget, 0);
     }
 
-    /// Limits the next contacts to a small part of the budget if easier contacts can replace them.
-    pub(crate) fn give_up_early(&mut self, easier_possible: bool) {
-        let budget = self.pivoting.budget + self.kept_back;
+    /// Reserves most of the budget if easier contacts can replace the next ones, which then may use a small part of it.
+    pub(crate) fn reserve_budget(&mut self, easier_possible: bool) {
+        let budget = self.pivoting.budget + self.reserved;
         let spare = (budget - self.most_work / 16).max(0);
-        self.kept_back = if easier_possible { spare } else { 0 };
-        self.pivoting.budget = budget - self.kept_back;
+        self.reserved = if easier_possible { spare } else { 0 };
+        self.pivoting.budget = budget - self.reserved;
     }
 
     /// About how many multiplications the contacts of all substeps took, those that failed included.
     pub(crate) fn work(&self) -> i64 {
-        self.work_before + self.most_work - self.pivoting.budget - self.kept_back
+        self.work_before + self.most_work - self.pivoting.budget - self.reserved
     }
 
-    /// Whether the last contacts exceeded the work budget, without a solution.
+    /// Whether the last contacts exceeded the work budget and have no solution.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.pivoting.budget < 0
     }
 
-    /// The islands of the contacts taken on last.
+    /// The islands of the present contacts.
     pub fn islands(&self) -> &Islands {
         &self.islands
     }

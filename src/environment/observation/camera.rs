@@ -61,7 +61,7 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// A camera that sees the whole flock in its first frame.
+    /// A camera at an episode's start: its first frame loses no boat.
     pub(crate) fn new(lens: Lens, seed: u64, leaders: usize, flock: &Flock) -> Self {
         let now = Frame {
             poses: flock.poses().to_vec(),
@@ -76,11 +76,11 @@ impl Camera {
             hulls: Vec::new(),
             order: None,
         };
-        camera.restored(lens, seed, leaders)
+        camera.with_lens(lens, seed, leaders)
     }
 
-    /// The camera with stored frames, given its lens and its episode's seed.
-    pub(crate) fn restored(mut self, lens: Lens, seed: u64, leaders: usize) -> Self {
+    /// The camera with its lens and its episode's seed, which are not stored with the frames.
+    pub(crate) fn with_lens(mut self, lens: Lens, seed: u64, leaders: usize) -> Self {
         (self.lens, self.seed) = (lens, seed);
         self.develop(leaders);
         self

@@ -15,12 +15,12 @@ pub struct CourseReader {
     sin_orientation: usize,
     forward_velocity: usize,
     clockwise_spin: usize,
-    /// `None` where the observation is mirrored, so that the target is always clockwise.
+    /// `None` if the observation is mirrored, so that the target is always clockwise.
     target: Option<usize>,
 }
 
 impl CourseReader {
-    /// For observations of a checked layout.
+    /// A reader of observations in a checked layout.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if a block that the laws read is switched off.

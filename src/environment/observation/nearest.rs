@@ -62,7 +62,7 @@ impl Nearest {
         count
     }
 
-    /// Computes distances from some leaders.
+    /// Computes distances from up to [`AT_ONCE`] leaders, from `first` on.
     fn measure(&mut self, hulls: &[HullPose], first: usize) {
         let others = hulls[first..].iter().map(|hull| hull.center);
         let (mut x, mut y) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);

@@ -29,20 +29,20 @@ impl IslandSolver {
     /// if some push already, and one by one otherwise.
     fn descend_from(
         &mut self,
-        mut held: Vec<f64>,
+        mut current: Vec<f64>,
         regularization: f64,
         report: &mut SolveReport,
     ) -> bool {
-        let count = held.len();
-        let is_warm = self.start_from(&held);
+        let count = current.len();
+        let is_warm = self.start_from(&current);
         if is_warm {
-            self.approach(&mut held, regularization, report);
+            self.approach(&mut current, regularization, report);
         }
         // If a contact would have to pull as soon as it enters, it depends on the active ones.
         let mut is_refused = vec![false; count];
         let mut enters_alone = !is_warm;
         for _ in 0..50 + 10 * count {
-            let largest = held.iter().copied().fold(0.0, f64::max);
+            let largest = current.iter().copied().fold(0.0, f64::max);
             if !largest.is_finite() || largest > CONTRADICTION || self.factor.budget < 0 {
                 return false;
             }
@@ -55,7 +55,7 @@ impl IslandSolver {
             } else {
                 self.enter_violated();
             }
-            let moved = self.approach(&mut held, regularization, report);
+            let moved = self.approach(&mut current, regularization, report);
             if moved > 0.0 || self.rows.rows[entering].is_active {
                 is_refused.fill(false);
                 enters_alone = !is_warm;
@@ -68,13 +68,13 @@ impl IslandSolver {
     }
 
     /// Takes impulses and activates the contacts that push; returns whether any does.
-    fn start_from(&mut self, held: &[f64]) -> bool {
-        for (k, &impulse) in held.iter().enumerate() {
+    fn start_from(&mut self, current: &[f64]) -> bool {
+        for (k, &impulse) in current.iter().enumerate() {
             self.rows.rows[k].impulse = impulse;
             self.set_active(k, impulse > 0.0);
         }
         self.rows.update();
-        held.iter().any(|&impulse| impulse > 0.0)
+        current.iter().any(|&impulse| impulse > 0.0)
     }
 
     /// Keeps the strongest impulses if there are more than can be independent of each other.
@@ -89,7 +89,7 @@ impl IslandSolver {
     }
 
     /// Activates all contacts whose gaps close, or the fastest of them, at most as many as can be independent of each
-    /// other. Contacts that would have to pull leave again at once. In a large island the rest are mostly far apart.
+    /// other. Contacts that would have to pull leave again at once. In a large island the other contacts are mostly far apart.
     fn enter_violated(&mut self) {
         let rows = &self.rows.rows;
         let active = rows.iter().filter(|row| row.is_active).count();
@@ -113,25 +113,30 @@ impl IslandSolver {
             .map(|(k, _)| k)
     }
 
-    /// Goes from `held` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes on
+    /// Moves `current` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes on
     /// the way; returns how far the first step went, in (0, 1], or 0 if it could not be taken.
-    fn approach(&mut self, held: &mut [f64], regularization: f64, report: &mut SolveReport) -> f64 {
+    fn approach(
+        &mut self,
+        current: &mut [f64],
+        regularization: f64,
+        report: &mut SolveReport,
+    ) -> f64 {
         let mut first = None;
         loop {
             report.iterations += 1;
             report.factored_rows += self.solve_active(regularization);
             self.refine(regularization);
             self.charge_round();
-            let step = self.feasible_step(held);
+            let step = self.feasible_step(current);
             first.get_or_insert(step);
-            for (k, held) in held.iter_mut().enumerate() {
+            for (k, current) in current.iter_mut().enumerate() {
                 let target = self.rows.rows[k].impulse;
-                *held = (*held + step * (target - *held)).max(0.0);
+                *current = (*current + step * (target - *current)).max(0.0);
                 // If the step is below 1, this drops at least the contact that stopped it.
                 let is_active = self.rows.rows[k].is_active;
-                if is_active && target <= 0.0 && *held <= 1e-14 * (1.0 + target.abs()) {
+                if is_active && target <= 0.0 && *current <= 1e-14 * (1.0 + target.abs()) {
                     self.set_active(k, false);
-                    *held = 0.0;
+                    *current = 0.0;
                 }
             }
             if step == 1.0 || self.factor.budget < 0 {
@@ -140,12 +145,12 @@ impl IslandSolver {
         }
     }
 
-    /// The largest part of the way from `held` to the impulses before one turns negative.
-    fn feasible_step(&self, held: &[f64]) -> f64 {
-        let pairs = self.rows.rows.iter().zip(held);
+    /// The largest part of the way from `current` to the impulses before one turns negative.
+    fn feasible_step(&self, current: &[f64]) -> f64 {
+        let pairs = self.rows.rows.iter().zip(current);
         pairs
             .filter(|(row, _)| row.is_active && row.impulse < 0.0)
-            .map(|(row, held)| held / (held - row.impulse))
+            .map(|(row, current)| current / (current - row.impulse))
             .fold(1.0, f64::min)
     }
 }

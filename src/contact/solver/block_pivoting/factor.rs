@@ -74,7 +74,7 @@ pub(super) struct Factor {
     used: usize,
     /// Whether rows have entered or left since it was brought up to date.
     is_stale: bool,
-    /// Multiplications that are left, roughly; negative if it has stopped halfway.
+    /// Rough number of multiplications that are still allowed; negative if the update has stopped halfway.
     pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
@@ -158,7 +158,7 @@ impl Factor {
         is_dirty
     }
 
-    /// Empties a row; its parent changes with it.
+    /// Empties a row, and marks its parent as changed.
     fn release(&mut self, k: usize) {
         let node = self.nodes[k];
         for entry in row_of(&self.entries, &node).as_flattened() {
@@ -243,7 +243,7 @@ impl Factor {
         self.budget -= others.map(|node| i64::from(node.count)).sum::<i64>();
     }
 
-    /// Puts row k's couplings with the active rows before it to `work`.
+    /// Adds row k's couplings with the active rows before it to `work`.
     fn add_couplings(&mut self, rows: &[Row], k: usize) {
         // Slices of one length, so that one bounds check covers all three.
         let (nodes, work) = (&self.nodes[..rows.len()], &mut self.work[..rows.len()]);

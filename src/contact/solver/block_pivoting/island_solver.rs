@@ -16,7 +16,7 @@ pub(super) const SWEPT_ROWS: usize = 48;
 /// all of them.
 const ROUND: u64 = 50;
 const ENTRY: u64 = 8;
-/// Sweeps that guess the active rows.
+/// Number of sweeps that guess the active rows.
 const SWEEPS: u32 = 2;
 
 /// One island with its factor.
@@ -53,7 +53,7 @@ impl IslandSolver {
         self.factor.reset(self.rows.rows.len());
     }
 
-    /// Takes on the free velocities of boats.
+    /// Sets the free velocities of the boats.
     // Bodies are built with theirs, and few solves change them.
     #[cold]
     pub(super) fn set_free(&mut self, problem: &ContactProblem) {
@@ -62,7 +62,7 @@ impl IslandSolver {
         }
     }
 
-    /// Takes on biases and right-hand sides.
+    /// Sets biases and right-hand sides.
     pub(super) fn set_right(&mut self, problem: &ContactProblem, rights: &[f64]) {
         for row in &mut self.rows.rows {
             row.bias = problem.biases[row.contact as usize];
@@ -159,8 +159,8 @@ impl IslandSolver {
         computed
     }
 
-    /// Regularization and rounding leave a remainder at the active contacts; another solve removes it. A regularized
-    /// problem keeps it: it is meant to yield. Returns whether there was anything to do.
+    /// Solves again for the slack that rounding leaves at the active contacts. A regularized problem keeps its slack,
+    /// since its contacts are meant to yield. Returns whether it solved.
     pub(super) fn refine(&mut self, regularization: f64) -> bool {
         if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
             return false;

@@ -73,7 +73,7 @@ fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
 }
 
 impl Body {
-    /// The walls, which rest.
+    /// The walls, as a body at rest.
     fn walls() -> Self {
         Self {
             boat: NONE,
@@ -200,8 +200,8 @@ impl Rows {
             for row in rows.iter_mut() {
                 // Each row waits for the one before it, except for the division; `f64::max` would take longer.
                 let inverse = 1.0 / row.diagonal;
-                let (wanted, least) = (-row.slack(bodies) * inverse, -row.impulse);
-                let change = if wanted > least { wanted } else { least };
+                let (full, least) = (-row.slack(bodies) * inverse, -row.impulse);
+                let change = if full > least { full } else { least };
                 row.push(change, bodies);
                 row.impulse += change;
                 row.is_active = row.impulse > 0.0;

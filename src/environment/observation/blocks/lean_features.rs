@@ -16,7 +16,7 @@ pub const LEAN_FEATURES: usize = 29;
 /// The pools in which the features are standardized.
 const POOLS: [&str; 2] = ["wide", "narrow"];
 
-/// Standardized features are clipped here: beyond lie flocks unlike those that were measured.
+/// Standardized features are clipped at ± this: larger ones come from flocks unlike those that were measured.
 const BOUND: f64 = 20.0;
 
 /// Usual values of the features, a row each: the mean and the standard deviation in each of [`POOLS`]. Measured with
@@ -78,7 +78,7 @@ fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
     usual
 }
 
-/// The neighbors that the features look at.
+/// Number of neighbors that the features use.
 const SEEN_NEIGHBORS: usize = 6;
 /// Where the neighbors start in the view, where the order parameters start, and where these end.
 const NEIGHBORS: usize = OWN.len() + PHASE.len();
@@ -101,7 +101,7 @@ impl LeanFeatures {
         ENTRIES.iter().map(|entry| entry.name)
     }
 
-    /// For checked parameters, standardized as is usual in a pool.
+    /// A writer for checked parameters, with the means and deviations of a pool.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for pools in which they are not standardized.
@@ -199,13 +199,13 @@ fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
             add(&mut near, present * libm::exp(-square / 2.0), terms);
         }
     }
-    let mut found = [0.0; LEAN_FEATURES];
-    found[..5].copy_from_slice(&[radial, outward, clockwise, forward, (radial - 0.6).max(0.0)]);
-    found[5..9].copy_from_slice(&view[ORDERS..]);
-    found[9..20].copy_from_slice(&near);
-    found[20..23].copy_from_slice(&leaders);
-    found[23..].copy_from_slice(&[cos, sin, spin, fw, bw, bw_duration]);
-    found
+    let mut features = [0.0; LEAN_FEATURES];
+    features[..5].copy_from_slice(&[radial, outward, clockwise, forward, (radial - 0.6).max(0.0)]);
+    features[5..9].copy_from_slice(&view[ORDERS..]);
+    features[9..20].copy_from_slice(&near);
+    features[20..23].copy_from_slice(&leaders);
+    features[23..].copy_from_slice(&[cos, sin, spin, fw, bw, bw_duration]);
+    features
 }
 
 fn add<const N: usize>(sums: &mut [f64; N], weight: f64, terms: [f64; N]) {

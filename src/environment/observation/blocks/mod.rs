@@ -44,7 +44,7 @@ impl<'a> Seen<'a> {
 
 /// Anything made for a flock. Types that implement `Default` are the same for every flock.
 trait MadeFor: Sized {
-    /// Made for checked parameters.
+    /// The object for checked parameters.
     ///
     /// # Errors
     /// [`crate::FlockError::Parameter`] for flocks that it cannot serve.
@@ -59,7 +59,7 @@ impl<T: Default> MadeFor for T {
 
 /// Writer of the physical values of a block, with its memory.
 trait WriteBlock: MadeFor {
-    /// Adds the values of a block that occurs so often, in the order of its entries.
+    /// Adds the values of a block that occurs `repeats` times, in the order of its entries.
     fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
 }
 
@@ -101,7 +101,7 @@ macro_rules! declare_blocks {
         pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
 
         impl Writers {
-            /// For a layout, which says how often each occurs, and checked parameters.
+            /// Writers for checked parameters; `repeats` says how often each block occurs.
             ///
             /// # Errors
             /// [`crate::FlockError::Parameter`] for flocks that one of the blocks cannot serve.
