@@ -1,6 +1,7 @@
 """The runs of the worth of leaders: a few leaders of one policy, alone or against the law."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -56,24 +57,35 @@ class _Against:
         return np.concatenate([ours[: self._leaders], theirs[self._leaders :]]), state
 
 
-def measure(row: Row) -> Row:
-    """Return means of m over the analysis window after the first third of a run."""
-    sides = ["cw"] * row["leaders"] + ["ccw"] * row["against"]
+def of_pool(row: Row, sides: Sequence[str] = ()) -> flockenv.FlockParameters:
+    """Return the flock of a row in a pool of one shape and density; leaders head for `sides`."""
     scale = math.sqrt(row["n_boats"] / DENSITY_BOATS)
-    parameters = flock(
+    return flock(
         row,
         n_leaders=len(sides),
         target=tuple(sides) or "cw",
         pool="wide" if row["n_boats"] == DENSITY_BOATS else (180.0 * scale, 97.0 * scale),
     )
-    by_law = row["policy"] == LAW or not sides
-    policy: Any = None if by_law else flockenv.policies.policy(row["policy"], "wide").source
+
+
+def steering(row: Row) -> Any:
+    """Return the policy of a row's leaders; None is the paper's law."""
+    if row["policy"] == LAW:
+        return None
+    policy = flockenv.policies.policy(row["policy"], "wide").source
     if isinstance(policy, flockenv.policies.LeaningLaw) and row["n_boats"] != DENSITY_BOATS:
         policy.pool = None  # It refuses other pools than its own, also those of the same shape.
+    return policy
+
+
+def measure(row: Row) -> Row:
+    """Return means of m over the analysis window after the first third of a run."""
+    sides = ["cw"] * row["leaders"] + ["ccw"] * row["against"]
+    policy = steering(row) if sides else None
     if policy is not None and row["against"]:
         policy = _Against(policy, row["leaders"])
     run = flockenv.simulate(
-        parameters,
+        of_pool(row, sides),
         FIRST_SEED + row["seed"],
         60.0 * row["minutes"],
         sample_hz=2.0,
