@@ -430,8 +430,11 @@ def _draw_times(axes: Axes, table: pd.DataFrame) -> None:
         label = f"{cell.leaders}, {POLICY_NAMES[cell.policy]}"
         curve(axes, at, found, color=COLORS[place], label=label)
     scale = factor(table, MAIN, f"m_{LAST}")[0]
-    follows = [scale * np.nanmean(of(table, MAIN, [FREE], f"m_{w}")) for w in range(LAST + 1)]
-    axes.plot(TIMES_S, follows, "--", color="0.4", label="fluctuations")
+    free = [
+        compared([of(table, MAIN, [FREE], f"m_{window}")], lambda each: scale * each)
+        for window in range(LAST + 1)
+    ]
+    curve(axes, TIMES_S, free, color="0.4", linestyle="--", marker="", label="fluctuations")
     axes.set(xlabel="time after the branch (s)", ylabel="m per leader, n = 27, bw = 0.31 s")
     axes.legend(title="leaders")
 

@@ -52,6 +52,7 @@ def test_a_factor_is_per_leader(script) -> None:
     cell, law, large = script.Cell, script.LAW, script.SIZES[1]
     small = table(script, {cell(law, 3): (0.3, 20), script.FREE: (0.05, 20)})
     other = table(script, {cell(law, 15): (0.3, 20), script.FREE: (0.005, 20)}, large, 1e-4)
+    assert script.factor(small, script.MAIN, "m_4")[0] == pytest.approx(0.3 / 3 / 0.05)
     found = script.factors(pd.concat([small, other]), large, "m_4", "m_4")
     assert found[0] == pytest.approx((0.3 / 15 / 0.005) / (0.3 / 3 / 0.05))
 
