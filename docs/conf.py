@@ -81,7 +81,7 @@ nitpick_ignore_regex = [
         r"PathLike|Executor|Future|Any|rich|importlib|"
         r"Self|Mapping|Sequence|Callable|Iterator|Iterable|Generator)(\..*)?",
     ),
-    # What DTypeLike is short for.
+    # The types that DTypeLike stands for.
     (r"py:.*", r"type\[.*"),
     # Internal modules and type variables of public signatures.
     (r"py:.*", r"(flockenv\.)?_core(\..*)?"),
@@ -128,7 +128,7 @@ SHORT = {
 
 
 def setup(app: Sphinx) -> None:
-    """Register what autodoc does not know by itself."""
+    """Register the handlers that autodoc and the pages need."""
     app.connect("autodoc-process-docstring", _link_environment_pages)
     app.connect("autodoc-process-signature", _shorten)
     app.connect("doctree-resolved", _mark_wide_pictures)

@@ -60,7 +60,7 @@ RECORDED = tuple(quantity for quantity in QUANTITIES if quantity.kind == "record
 """The quantities that are recorded with every sample."""
 
 ORDER = tuple(quantity.name for quantity in RECORDED)
-"""Their names."""
+"""Names of the recorded quantities."""
 
 _MEANINGS = {
     "psi": "'psi_o', of headings, or 'psi_v', of velocities",
@@ -173,7 +173,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         name
             Its name in the table of quantities.
         target
-            Direction that signed quantities count towards, "cw" or "ccw"; of a list the first.
+            Direction that signed quantities count towards, "cw" or "ccw"; a list counts by its
+            first entry.
 
         Raises
         ------

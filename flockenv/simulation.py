@@ -95,11 +95,11 @@ def simulate(
     noise_seed
         Other noise after a start from a snapshot; see `Flock.restore`.
     schedule
-        What changes on the way: pairs of a time in s from the start of the run and a dictionary of
+        Changes during the run: pairs of a time in s from the start of the run and a dictionary of
         the parameters' fields that have other values from then on, after the sample at that time:
         ``[(60.0, {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp, all of which comes before the
-        last sample. With another pool each boat keeps its angle about the center and its share of
-        the way between the walls. The recording has the parameters of its start.
+        last sample. With another pool each boat keeps its angle about the center and its relative
+        distance between the walls. The recording has the parameters of its start.
     quantities
         Quantities of your own, by name: functions that take the recording, whose arrays are
         read-only then, and return an array (t,), a real number for each sample. They are kept in

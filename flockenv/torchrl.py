@@ -65,10 +65,10 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     num_flocks
         Number of flocks, at least 1.
     state
-        What a centralized critic sees: "boats" (the global state, the boats one after another),
-        "set" (the same with a row for each boat, its own entries and then the clock's, for networks
-        that take sets), "features" (features of the flock that do not depend on the order of boats,
-        as `LeadersVectorEnv.flock_features`) or "none".
+        The observation of a centralized critic: "boats" (the global state, the boats one after
+        another), "set" (the same with a row for each boat, its own entries and then the clock's,
+        for networks that take sets), "features" (features of the flock that do not depend on the
+        order of boats, as `LeadersVectorEnv.flock_features`) or "none".
     device
         Where tensors are; the simulator itself runs on the processor.
     options

@@ -1,10 +1,10 @@
 """Follow pages of this folder to the letter: `make extend`, or `make extend PAGE=policy`.
 
-A page is a patch. A block ```` ```diff ```` starts with the file that it changes; what it keeps and
-takes away has to stand in that file once. A block after ``<!-- new file: PATH -->`` is a file. The
-changes are made in a copy of the tree, where the page's blocks for a shell are then run in their
-order. The first command that fails ends the script. The copy stays in target/extend, so that the
-next page compiles its own changes alone.
+A page is a patch. A block ```` ```diff ```` starts with the file that it changes; the lines that it
+keeps or removes have to occur in that file exactly once. A block after ``<!-- new file: PATH -->``
+is a file. The changes are made in a copy of the tree, where the page's blocks for a shell are then
+run in their order. The first command that fails ends the script. The copy stays in target/extend,
+so that the next page compiles its own changes alone.
 """
 
 import os
@@ -49,7 +49,7 @@ def apply(page: str, tree: Path) -> list[str]:
 
 
 def changed(content: str, hunk: str, name: str) -> str:
-    """Return a file's content after one change, whose place it must hold exactly once."""
+    """Return a file's content after one change; its old lines must occur in it exactly once."""
     lines = hunk.splitlines(keepends=True)
     before = "".join(line[1:] or line for line in lines if line[0] in " -\n")
     after = "".join(line[1:] or line for line in lines if line[0] in " +\n")
@@ -76,7 +76,7 @@ def copy_tree() -> None:
         git("init", "--quiet", str(COPY))
     for name in wanted:
         source, target = REPOSITORY / name, COPY / name
-        # What is the same keeps its time, so that nothing is compiled in vain.
+        # Unchanged files keep their time, so that nothing is compiled again.
         if not target.exists() or target.read_bytes() != source.read_bytes():
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(source.read_bytes())

@@ -27,7 +27,7 @@ def floors() -> str:
     for below, (folder, names) in enumerate(layers):
         for path in (_module(folder, name) for name in names.split(" | ")):
             number = str(len(layers) - below)
-            body.append([number, f"`{path.relative_to(REPOSITORY)}`", _what(path)])
+            body.append([number, f"`{path.relative_to(REPOSITORY)}`", _purpose(path)])
     return markdown(["floor", "module", "what it is"], body)
 
 
@@ -36,7 +36,7 @@ def _module(folder: Path, name: str) -> Path:
     return next((path for path in files if path.exists()), folder / name)
 
 
-def _what(path: Path) -> str:
+def _purpose(path: Path) -> str:
     """Return the first sentence of a module's own words."""
     inside = (path / "__init__.py", path / "mod.rs")
     file = path if path.is_file() else next(each for each in inside if each.exists())

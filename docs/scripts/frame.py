@@ -14,7 +14,7 @@ AXES, BOAT = OKABE_ITO["blue"], OKABE_ITO["vermilion"]
 
 
 def frame_and_signs(figure: Figure) -> None:
-    """Draw a hull, the frame of its place and its angles, and the phases of its motor."""
+    """Draw a hull, its local frame and its angles, and the phases of its motor."""
     water, motor = figure.subplots(1, 2, width_ratios=(3, 2))
     _draw_pool(water)
     _draw_motor(motor)
@@ -25,31 +25,35 @@ def _draw_pool(axes: Axes) -> None:
         Wedge((0, 0), OUTER_CM, -5, 95, width=OUTER_CM - INNER_CM, fc="#e8f1f8", ec="0.4")
     )
     theta, alpha, at = np.radians(38), np.radians(-8), 66.0
-    place = at * np.array([np.cos(theta), np.sin(theta)])
+    position = at * np.array([np.cos(theta), np.sin(theta)])
     heading = np.array([np.cos(alpha), np.sin(alpha)])
-    outward = place / at
+    outward = position / at
     clockwise = np.array([outward[1], -outward[0]])
     hull = FancyBboxPatch(
         (-HALF_CM, 0), 2 * HALF_CM, 0, f"round,pad={RADIUS_CM}", fc="#f7d9c4", ec=BOAT
     )
-    hull.set_transform(Affine2D().rotate(alpha).translate(*place) + axes.transData)
+    hull.set_transform(Affine2D().rotate(alpha).translate(*position) + axes.transData)
     axes.add_patch(hull)
     for way, color, word in (
         (outward, AXES, "outward"),
         (clockwise, AXES, "clockwise"),
         (heading, BOAT, "heading u(α)"),
     ):
-        tip = place + 21 * way
-        axes.annotate("", tip, place, arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.5})
+        tip = position + 21 * way
+        axes.annotate(
+            "", tip, position, arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.5}
+        )
         axes.annotate(word, tip + 2 * way, color=color, va="center", ha="left")
-    axes.plot([0, place[0]], [0, place[1]], color="0.5", lw=1)
+    axes.plot([0, position[0]], [0, position[1]], color="0.5", lw=1)
     axes.plot([0, 40], [0, 0], color="0.5", lw=1)
     axes.add_patch(Arc((0, 0), 50, 50, theta1=0, theta2=np.degrees(theta), color="0.3"))
     axes.annotate("θ", (27, 8))
     axes.add_patch(
-        Arc(place, 24, 24, theta1=np.degrees(alpha), theta2=np.degrees(theta), color=BOAT, lw=1.5)
+        Arc(
+            position, 24, 24, theta1=np.degrees(alpha), theta2=np.degrees(theta), color=BOAT, lw=1.5
+        )
     )
-    axes.annotate("φ", place + np.array([13.5, 3.0]), color=BOAT)
+    axes.annotate("φ", position + np.array([13.5, 3.0]), color=BOAT)
     axes.add_patch(Circle((0, 0), 1, color="0.3"))
     axes.set(xlim=(-4, 118), ylim=(-4, 94), aspect="equal")
     axes.set_axis_off()

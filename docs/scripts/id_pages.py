@@ -46,7 +46,7 @@ WORDS = {
         re.MULTILINE,
     )
 }
-"""What stands below the plot of what policies reach, by the data."""
+"""Text below the plot of the orders that policies reach, by the data."""
 MEANS = STUDIES / "leaders" / "results" / "means.csv"
 
 
@@ -89,7 +89,7 @@ def page(env_id: str) -> str:
         history="\n".join(f"- {change}" for change in declared.history),
         film=shown(name, alt, "../"),
         policy=good_policy(env_id),
-        told=_told(env_id),
+        told=_shared_target(env_id),
         seed=SEED,
         step_s=f"{step_s:g}",
         steps=steps,
@@ -102,7 +102,7 @@ def page(env_id: str) -> str:
 
 
 def _reached(env_id: str) -> str:
-    """Return the section on what policies reach; none without data."""
+    """Return the section on the orders that policies reach; empty without data."""
     found = reached(env_id)
     if found is None:
         return ""
@@ -225,16 +225,16 @@ def draw_films() -> None:
 
 def good_policy(env_id: str) -> str:
     """Return the name of the policy in the film."""
-    if _told(env_id):
+    if _shared_target(env_id):
         # Learned leaders see the flock in the frame of their own target.
         return REFERENCE
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
     return GOOD_POLICIES.get(pool, "damped law")
 
 
-def _told(env_id: str) -> str:
-    is_each = isinstance(ENVIRONMENTS[env_id].options.get("target"), tuple)
-    return ", which are both told the direction of leader 0" if is_each else ""
+def _shared_target(env_id: str) -> str:
+    is_per_leader = isinstance(ENVIRONMENTS[env_id].options.get("target"), tuple)
+    return ", which are both told the direction of leader 0" if is_per_leader else ""
 
 
 def film(env_id: str) -> Iterator[Image.Image]:
@@ -251,7 +251,7 @@ def film(env_id: str) -> Iterator[Image.Image]:
         if step >= skipped and (step - skipped) % round(STEP_S * hz) == 0:
             yield Image.fromarray(env.render())
         rows = observation.reshape(env.unwrapped.num_leaders, -1)
-        if _told(env_id):
+        if _shared_target(env_id):
             # The roles of studies/roles/misinformed_pair.py.
             rows[:, _TOLD] = rows[0, _TOLD]
         observation = env.step(leaders.predict(rows.reshape(-1))[0])[0]
@@ -323,7 +323,7 @@ def _easy() -> tuple[Plot, str]:
 
 
 DATA: dict[str, Callable[[], tuple[Plot, str]]] = {LEADERS: _leaders, EASY: _easy}
-"""Of ids that are no task of the suite."""
+"""Plots of ids that are no task of the suite."""
 
 
 def _interval(row: Row, mean: str, ends: str = "") -> Interval:

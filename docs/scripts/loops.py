@@ -24,7 +24,7 @@ SHOWN = DOCS / "_build" / "shown" / "loops"
 
 _KEYS = DOCS / "_build" / "loops"
 HEIGHT = 360
-"""Of a picture in pixels."""
+"""Height of a picture in pixels."""
 
 _FPS = 12.5
 

@@ -38,7 +38,7 @@ LETTERS = "Letters"
 """The key of a picture's metadata that holds the size of its smallest letters in pixels."""
 
 LEAST_LETTERS_PX = 9.0
-"""Letters of a picture are at least so large where a page shows it."""
+"""Least size in pixels of a picture's letters, as a page shows it."""
 DESK_PX, PHONE_PX, SCROLLED_PX = 736, 358, 544
 """Widths of the site's pictures on a desk, on a phone of 390 pixels, and of those that a phone
 scrolls (`docs/static/phones.css`)."""
@@ -73,7 +73,7 @@ def write_png(figure: Figure, file: Path | IO[bytes], dpi: float, **stamp: str) 
 
 
 def letters_px(path: Path, shown_px: float) -> float:
-    """Return the size of a picture's smallest letters if it is shown no wider than this."""
+    """Return the size of a picture's smallest letters on a page that shows at most `shown_px`."""
     with Image.open(path) as picture:
         return float(picture.info[LETTERS]) * min(shown_px / picture.width, 1.0)
 

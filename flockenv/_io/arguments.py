@@ -25,13 +25,13 @@ def items(values: object, name: str) -> Any:
     unordered = isinstance(values, Set) and not isinstance(values, MappingView)
     if unordered or isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
         raise TypeError(f"{name} must be a sequence, not {short_repr(values)}")
-    found = tuple(islice(_each(values, name), _MOST_ITEMS + 1))
+    found = tuple(islice(_iterated(values, name), _MOST_ITEMS + 1))
     if len(found) > _MOST_ITEMS:
         raise ParameterError(f"{name} has more than {_MOST_ITEMS} items: too many")
     return found
 
 
-def _each(values: Any, name: str) -> Any:
+def _iterated(values: Any, name: str) -> Any:
     try:
         return iter(values)
     except TypeError as error:  # An array of one number.

@@ -18,7 +18,7 @@ _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
 def most_held(size: int) -> int:
-    """Return the most bytes that the entries of a file of this size may hold together.
+    """Return the largest number of bytes that the entries of a file of this size may hold.
 
     Compression makes the numbers of a run ten times smaller at best, and zeros a thousand times.
     """

@@ -35,12 +35,12 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     It is removed however the block ends, except by a kill; at the latest when Python ends. The new
     file keeps the old one's mode. A link stays a link, and the file that it names is replaced. If
     the file cannot be written, an OSError is raised and the old file is still there. A
-    ParameterError refuses to take the place of a device, a pipe or a socket.
+    ParameterError refuses to replace a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
     try:
-        temporary, file = _held_file(target.parent)
+        temporary, file = _locked_file(target.parent)
     except OSError as error:  # The temporary file's name would tell a reader nothing.
         error.filename = os.fspath(path)
         raise
@@ -59,7 +59,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         _temporary.discard(temporary)
 
 
-def _held_file(folder: Path) -> tuple[Path, IO[bytes]]:
+def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
     """Return a new temporary file, locked so that no process removes it as a leftover."""
     while True:
         temporary = folder / f".{secrets.token_hex(8)}.tmp"

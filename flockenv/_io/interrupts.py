@@ -2,7 +2,7 @@
 
 While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
 done, and executors start no further run. A second signal ends the process at once. A request to
-end, such as Slurm's before a job's time is over, counts as Ctrl-C. So does the end of the terminal.
+end, such as Slurm's before a job's time is over, counts as Ctrl-C, as does the end of the terminal.
 Both the system and the shell report the end of a terminal, so this second signal does not end the
 process at once.
 """

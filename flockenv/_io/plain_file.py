@@ -47,7 +47,7 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:
-    """Refuse to put a file in the place of a device, a pipe or a socket, or of a protected file.
+    """Refuse to replace a device, a pipe, a socket or a protected file.
 
     A write-protected file is a PermissionError, for root too: renaming another file to its name
     would bypass the protection.

@@ -25,7 +25,7 @@ Given = str | Mapping[str, str]
 """A policy as it is typed, or one for each leader."""
 
 Steers = Policy | Mapping[str, Policy]
-"""The policy that it is, or one for each leader."""
+"""A policy, or one for each leader."""
 
 _BOATS = 27
 _MOST_LEADERS = 64
@@ -69,7 +69,7 @@ class CompareOptions(Flocks, Printing):
         None, "With --suite v3: the file of an entry; repeatable.", metavar="FILE"
     )
     trial_flocks: int | None = option(
-        None, "With --suite v3: score in so few flocks, as a trial.", min=2
+        None, "With --suite v3: score in fewer flocks, as a trial.", min=2
     )
     flock_hours: list[float] | None = option(
         None,
@@ -271,8 +271,8 @@ def _own_policies(options: CompareOptions) -> dict[str, Given]:
         raise ParameterError(f"{many}: name all of yours, in order, or none")
     own: dict[str, Given] = {}
     for index, text in enumerate(given):
-        is_each = text.startswith("leader_")
-        is_file = text.endswith(FILES) and not is_each
+        is_per_leader = text.startswith("leader_")
+        is_file = text.endswith(FILES) and not is_per_leader
         name = printable(names[index] if names else Path(text).stem if is_file else text)
         if name in own or (name in REFERENCES and text != name):
             if names:
@@ -281,7 +281,7 @@ def _own_policies(options: CompareOptions) -> dict[str, Given]:
         if name in own:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")
         own[name] = text
-        if is_each:  # A number is refused like an unknown name.
+        if is_per_leader:  # A number is refused like an unknown name.
             by_leader = changed_fields(text.split(","), "--policy").items()
             own[name] = {leader: str(given) for leader, given in by_leader}
     return own

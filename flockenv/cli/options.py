@@ -27,16 +27,16 @@ def option(
     endings: Endings | None = None,
     **settings: Any,
 ) -> Any:
-    """Return a field that is an option, from its default and the arguments of `typer.Option`.
+    """Return a dataclass field that is an option, with the arguments of `typer.Option`.
 
-    `endings` lists the endings that the name of a given file may have.
+    `endings` returns the accepted endings of the name of a file that the option names.
     """
     declared = typer.Option(*names, help=help, **settings)
     return field(default=default, metadata={"typer": declared, "endings": endings})
 
 
 def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa: A002
-    """Return a field that is an argument, which must be given if it has no default."""
+    """Return a dataclass field that is an argument; without a default it must be given."""
     return field(default=default, metadata={"typer": typer.Argument(help=help, **settings)})
 
 

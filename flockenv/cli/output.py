@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def printable(name: str | os.PathLike[str]) -> str:
-    """Return the name of a file or policy with a sign in place of bytes that are not UTF-8.
+    """Return the name of a file or policy with bytes that are not UTF-8 replaced by a sign.
 
     Such a name opens its file, but cannot be printed in a page, table or picture.
     """

@@ -25,11 +25,11 @@ def progress(
     ends: bool = True,
     kept: str = "Nothing of it is stored.",
 ) -> Iterator[Callable[..., None]]:
-    """Show a bar with the time left of a total of work, on a terminal unless `quiet`.
+    """Show a progress bar with the time left, on a terminal unless `quiet`.
 
-    Yields a function that advances the bar by an amount of work, and may change its text. With
-    `ends`, that function ends the work if Ctrl-C was noted; then `kept` says how much of it is
-    stored.
+    Yields a function that advances the bar, and may change its text; `total` is the amount of work.
+    With `ends` that function also ends the work after Ctrl-C: the sentence `kept` then tells the
+    user how much of the work is stored.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:

@@ -31,7 +31,7 @@ from flockenv.training.branches import (
     training_flocks,
 )
 
-#: Between two lines on the training, in s.
+#: Time in s between two lines of progress.
 _BETWEEN_LINES_S = 3.0
 
 

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 class Case:
     """One flock in which policies are compared."""
 
-    #: That of its file of parameters.
+    #: Name of the case, and of the file of its parameters.
     name: str
     #: Parameters of the flock, except for the number of leaders.
     parameters: FlockParameters
     #: Numbers of leaders.
     leaders: tuple[int, ...]
-    #: One episode each.
+    #: Seeds, one episode each.
     seeds: Sequence[int]
     #: Length of an episode in s.
     episode_s: float = 480.0

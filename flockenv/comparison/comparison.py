@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Finished = Callable[["pd.DataFrame"], object]
-"""Called with the rows of a policy and a number of leaders."""
+"""Function that takes the rows of a policy and a number of leaders when they are complete."""
 
-_SAID_BY = {
+_SET_BY = {
     **dict.fromkeys(
         {parameter.name for parameter in fields(FlockParameters)} - {"target"}, "the flock"
     ),
@@ -35,7 +35,7 @@ _SAID_BY = {
     **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
     **dict.fromkeys(("num_envs", "reward", "reward_horizon_s"), "the comparison"),
 }
-"""Arguments of a comparison, by the options of environments that it does not take."""
+"""The argument that sets an option which `environment` may not hold, by the option's name."""
 
 
 def nothing_finished(rows: "pd.DataFrame") -> None:
@@ -74,10 +74,12 @@ class Comparison:
         counts = _counts(leaders, parameters, steers)
         entries = []
         for name, policy in ({NO_LEADERS: None} | steers).items():
-            for k in (k for k in counts if (k == 0) == (name == NO_LEADERS)):
+            for k in counts:
+                if (k == 0) != (name == NO_LEADERS):
+                    continue
                 flock, own = parameters.replace(n_leaders=k), policy
                 if isinstance(own, Mapping) and k < max(counts):
-                    # With fewer leaders the first ones.
+                    # Fewer leaders take the policies of the first ones.
                     own = dict(itertools.islice(own.items(), k))
                 found = Episodes.parse(flock, own, seeds, duration_s, options)
                 entries.append(Entry(name, k, found))
@@ -103,10 +105,10 @@ def _environment(options: Mapping[str, object]) -> dict[str, object]:
     found = by_name(options, "environment")
     for name, value in found.items():
         # A range of noises is no parameter of one flock.
-        if name in _SAID_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
+        if name in _SET_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
             raise ParameterError(
                 f"{name} = {short_repr(value)} is not accepted in the environment of a comparison: "
-                f"{_SAID_BY[name]} says it"
+                f"{_SET_BY[name]} sets it"
             )
     return found
 

@@ -23,7 +23,7 @@ from flockenv.policies.registry import Steering
 Decide = Callable[[NDArray[np.float32]], NDArray[np.float64] | None]
 
 Progress = Callable[[float], object]
-"""Called with flock-seconds as they are simulated."""
+"""Function that takes the flock-seconds simulated since its last call."""
 
 NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
@@ -36,15 +36,15 @@ tenth."""
 ORDERING_TIMES = dict(
     zip(("ordering_time_s", "ordering_time_wide_s"), _core.ORDERED_WITHIN, strict=True)
 )
-"""Ordering times (eq. 7) with the angle as printed and a wider one; infinite where a flock did
-not order."""
+"""Ordering times (eq. 7) with the angle as printed and a wider one; infinite if a flock did not
+order."""
 
 _OF_THE_FLOCK = ("target", "bw_s", "physics")
-"""Options that hold for a flock that nobody steers in steps, too."""
+"""Options that flocks without decisions accept, too."""
 
 
 def no_progress(flock_seconds: float) -> None:
-    """Show nothing of the flock-seconds that are simulated."""
+    """Show no progress."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Episodes:
 
     def _decide(self, batch: LeaderBatch) -> Decide:
         """Return the function that turns observations into actions; None: the law acts alone."""
-        if self.leaders.is_each:
+        if self.leaders.is_per_leader:
             return _decide_each(self.leaders, batch)
         policy, state = self.leaders.seats[0].policy.started(), None
         if policy.control_hz is None:
@@ -134,7 +134,7 @@ def _decide_each(leaders: Leaders, batch: LeaderBatch) -> Decide:
 
 def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
     """Return the environment's options that policies ask for; refuse contradicting ones."""
-    if leaders.is_each:
+    if leaders.is_per_leader:
         if "decision_period_s" in options:
             raise ParameterError(
                 "decision_period_s is not accepted with a policy for each leader: each has its own"
@@ -147,7 +147,7 @@ def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object
         if refused := [name for name in options if name not in _OF_THE_FLOCK]:
             name = policy.name if leaders.seats[0].leaders else NO_LEADERS
             raise ParameterError(
-                f"{name!r} makes no decisions in the environment and cannot have its options "
+                f"{name!r} makes no decisions in the environment, which then takes no "
                 f"{', '.join(refused)}"
             )
         return {"control_hz": CONTROL_HZ}
@@ -189,8 +189,9 @@ def run_episodes(
     Parameters
     ----------
     parameters
-        Parameters of the flock. policy How its leaders steer, as in `flockenv.simulate`; None for
-        flocks without leaders.
+        Parameters of the flock.
+    policy
+        How its leaders steer, as in `flockenv.simulate`; None for flocks without leaders.
     seeds, duration_s, progress
         As for `compare_leaders`.
     options

@@ -113,9 +113,10 @@ def scores_table(result: ComparisonReport) -> "pd.DataFrame":
     Returns
     -------
     pandas.DataFrame
-        For each policy one row per task with ``policy``, ``task``, ``signed_order`` (its mean) and
-        ``score``, ``score_low`` and ``score_high``, the difference from `REFERENCE`; and for two
-        tasks or more a row ``interquartile mean`` and a row ``probability of improvement``.
+        One row for each policy and task. ``signed_order`` is the mean, ``score`` its difference
+        from `REFERENCE`, and ``score_low`` and ``score_high`` are the ends of its interval. With
+        two tasks or more each policy also has a row ``interquartile mean`` and a row ``probability
+        of improvement``.
     """
     orders = result.runs.pivot_table(
         index=["case", "seed"], columns="policy", values="signed_order", sort=False

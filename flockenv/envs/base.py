@@ -127,7 +127,7 @@ class SingleEnvironmentBase(Resumable):
 
     def _reset(self, seed: object, options: object) -> int | None:
         """Start an episode; return the seed that was given, as an int."""
-        requests = reset_requests(options, 1, is_each=False)
+        requests = reset_requests(options, 1, lists_flocks=False)
         given = None if seed is None else seed_of(seed)
         self._batch.reset([given], requests, lambda: drawn_seed(self.np_random))
         return given

@@ -61,7 +61,7 @@ NAMES = (
 """Keyword arguments that every environment takes."""
 
 ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
-"""Arguments of constructors and resets, which some take for options."""
+"""Arguments of constructors and resets that users may mistake for options."""
 
 #: Used if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
 #: leaders.
@@ -101,7 +101,7 @@ class EnvOptions:
                 f"environment: {_instead(name, counts)}"
             )
         given = {name: listed(value) for name, value in options.items()}
-        own_reward = _taken_function(given)
+        own_reward = _pop_function(given)
         if own_reward is not None and not takes_function:
             raise ParameterError(
                 f"reward = {short_repr(own_reward)} is not accepted: weights by name. Environments "
@@ -130,8 +130,8 @@ class EnvOptions:
         return cls(parameters, settings, own_reward)
 
 
-def _taken_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
-    """Remove a reward function from the options, and return it."""
+def _pop_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
+    """Remove a reward function from the options, and return it; None without one."""
     if not callable(given.get("reward")):
         return None
     function: Callable[[Any], ArrayLike] = given.pop("reward")

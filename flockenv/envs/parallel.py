@@ -207,7 +207,7 @@ def _plain_rudders(actions: list[Any]) -> list[float] | None:
 
 
 def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersParallelEnv:
-    """Return a `LeadersParallelEnv`; see there."""
+    """Return a `LeadersParallelEnv` with these options."""
     return LeadersParallelEnv(render_mode=render_mode, **options)
 
 
@@ -228,7 +228,7 @@ class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
         self._flock.np_random = generator
 
     def step(self, action: object) -> None:
-        # Agents whose episode is over take no action.
+        # An agent whose episode is over takes no action.
         if self._flock.agents:
             self._flock._action(self.agent_selection, action)
         super().step(action)

@@ -61,7 +61,7 @@ def reset_requests(
     options: object,
     flocks: int,
     *,
-    is_each: bool = True,
+    lists_flocks: bool = True,
     takes: tuple[str, ...] = RESET_OPTIONS,
 ) -> list[dict[str, Any]]:
     """Return the request for each flock's reset.
@@ -76,10 +76,10 @@ def reset_requests(
         As a user gives them; None for none.
     flocks
         Number of flocks.
-    is_each
-        Whether a list has an entry for each flock; otherwise it is a value.
+    lists_flocks
+        Whether a list has an entry for each flock; otherwise the whole list is one value.
     takes
-        Names of the options that there are.
+        Names of the options that are accepted.
     """
     if options is None:
         return [{} for _ in range(flocks)]
@@ -91,24 +91,24 @@ def reset_requests(
     requests: list[dict[str, Any]] = [{} for _ in range(flocks)]
     for name in (option for option in RESET_OPTIONS if option in options):
         for request, value in zip(
-            requests, _values(name, options[name], flocks, is_each), strict=True
+            requests, _values(name, options[name], flocks, lists_flocks), strict=True
         ):
             request[name] = as_bytes(value, name) if name == "snapshot" else value
     return requests
 
 
-def _values(name: str, value: object, flocks: int, is_each: bool) -> Any:
+def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Any:
     """Return the value of an option for each flock."""
-    held = materialized(value)
+    values = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
-    if not is_each:
+    if not lists_flocks:
         # For one flock, a list is a range of noises, or a target for each leader.
-        return [tuple(held) if is_list else held]
-    if held is value and not is_list:
+        return [tuple(values) if is_list else values]
+    if values is value and not is_list:
         return [value] * flocks
-    if len(held) != flocks:
-        raise ParameterError(f"reset option {name!r} lists {len(held)} values, expected {flocks}")
-    return held
+    if len(values) != flocks:
+        raise ParameterError(f"reset option {name!r} lists {len(values)} values, expected {flocks}")
+    return values
 
 
 def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:

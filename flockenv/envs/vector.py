@@ -50,8 +50,8 @@ class LeadersVectorEnv(
 
     `reward` may also be a function of this environment. `step` calls it once the flocks have
     moved, and it returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
-    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. A flock that
-    starts again in the same step has nothing left to look at: `autoreset_mode="same_step"` is
+    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. With
+    `autoreset_mode="same_step"`, flocks have started again before it could look at them, so that is
     refused.
 
     ## Starting state
@@ -61,9 +61,10 @@ class LeadersVectorEnv(
 
     ## Episode end
     At the end `infos["episode_summary"]` has means over the episode. With
-    `autoreset_mode="next_step"` the next step starts the next episode and ignores its action, with
-    `"same_step"` the step itself does (`infos["final_obs"]` and `infos["final_info"]` are the last
-    ones), with `"disabled"` flocks wait for a reset with a mask, as TorchRL's `GymWrapper` wants.
+    `autoreset_mode="next_step"` the next step starts the next episode and ignores its action. With
+    `"same_step"` the same step starts it, and `infos["final_obs"]` and `infos["final_info"]` are
+    those of the episode that ended. With `"disabled"` flocks wait for a reset with a mask, as
+    TorchRL's `GymWrapper` needs.
 
     ## Arguments
     `num_envs`: number of flocks; `autoreset_mode`: one of Gymnasium's `AutoresetMode` or its name;

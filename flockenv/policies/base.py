@@ -73,7 +73,7 @@ class Policy:
     Attributes
     ----------
     source
-        What acts: any object with ``predict``.
+        The object that acts, which has ``predict``.
     name
         The name in recordings: ``str(source)``, or the class if that is no name, followed by the
         source's ``digest`` if it has one.

@@ -1,4 +1,4 @@
-"""Laws of leaders. Their formulas are in the Rust core, which can steer by them by itself."""
+"""Laws of leaders. Their formulas are in the Rust core, which can steer by them without Python."""
 
 import json
 import math
@@ -26,7 +26,7 @@ LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
 """The features of a lean, in the order of the observation's block ``lean_features``."""
 
 LARGEST_LEAN: float = _core.LARGEST_LEAN
-"""The angle in rad that an action of 1 stands for with ``action_mode="lean"``."""
+"""Angle in rad of an action of 1 with ``action_mode="lean"``."""
 
 
 _MADE_OF = ("law", "gains", "observation", "mirror_to_target")
@@ -138,9 +138,9 @@ class NamedLaw(LawPolicy):
 class DampedLaw(LawPolicy):
     """A law that steers well when backing, too, and counters the turning that makes boats spin.
 
-    Forward: s = clamp(gain·wrap(β - α), -1, 1). Backward, where a rudder works in reverse:
-    s = clamp(-backward_gain·wrap(β - α) + damping·α˙, -1, 1). The *tuned law* is this one with the
-    gains that were tuned in the pool.
+    Moving forward: s = clamp(gain·wrap(β - α), -1, 1). Moving backward, where a rudder works in
+    reverse: s = clamp(-backward_gain·wrap(β - α) + damping·α˙, -1, 1). The *tuned law* is this one
+    with the gains that were tuned in the pool.
 
     Parameters
     ----------
@@ -195,15 +195,15 @@ class LeaningLaw(LawPolicy):
     bias
         Lean in rad if every feature has its usual value.
     weights
-        Rad per standard deviation of a feature, by its name in `LEAN_FEATURES`; 0 for those left
-        out.
+        Rad per standard deviation of a feature, by its name in `LEAN_FEATURES`; missing features
+        have 0.
     gains
         The gains of the damped law, by name; None: those tuned in the pool.
     bound
-        What keeps a lean within ±1.2 rad: ``"tanh"``, or ``"clip"``.
+        How a lean is kept within ±1.2 rad: ``"tanh"`` or ``"clip"``.
     decision_period_s
-        For how many s a lean is held, a whole number of control steps; None: one control step. If
-        it is given, the gains have to be the tuned ones, and the policy's actions are leans, for
+        Time in s for which a lean is held, a whole number of control steps; None: one control step.
+        If it is given, the gains have to be the tuned ones, and the policy's actions are leans, for
         environments with ``action_mode="lean"`` and this ``decision_period_s``.
     judged
         How well it leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
@@ -287,8 +287,8 @@ class LeaningLaw(LawPolicy):
         ):
             if refused:
                 raise ParameterError(
-                    f"a model with {words} is not accepted as a leaning law: leans that are linear "
-                    f"in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
+                    f"a model with {words} is not accepted as a leaning law: its leans must be "
+                    f"linear in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
                 )
         weights, bias = (
             LARGEST_LEAN * tensor.detach().cpu().double().numpy().ravel()

@@ -35,12 +35,12 @@ class Leaders:
     ----------
     seats
         Each policy with its leaders; together these are all leaders.
-    is_each
-        Whether they were given leader by leader.
+    is_per_leader
+        Whether a policy was given for each leader.
     """
 
     seats: tuple[Seat, ...]
-    is_each: bool = False
+    is_per_leader: bool = False
 
     @classmethod
     def from_policies(
@@ -54,7 +54,7 @@ class Leaders:
         """
         k = flock.n_leaders
         if isinstance(given, Mapping) and (given or k > 0):
-            found = cls(_seats(given, flock), is_each=True)
+            found = cls(_seats(given, flock), is_per_leader=True)
             for seat in found.seats:
                 seat.policy.check_action_mode("rudder", "leader by leader")
         else:
@@ -73,7 +73,7 @@ class Leaders:
     @property
     def title(self) -> str:
         """The name under which recordings hold the policies."""
-        if not self.is_each:
+        if not self.is_per_leader:
             return self.seats[0].policy.name
         return "; ".join(
             f"{', '.join(f'leader_{leader}' for leader in seat.leaders)}: {seat.policy.name}"
@@ -83,7 +83,7 @@ class Leaders:
     @property
     def law(self) -> _core.Law | None:
         """The core's law, if it is the one policy for all leaders."""
-        return None if self.is_each else self.seats[0].policy.law
+        return None if self.is_per_leader else self.seats[0].policy.law
 
     def check_pool(self, pool: Pool) -> None:
         """Refuse another pool than one that a policy was made for."""

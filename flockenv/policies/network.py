@@ -51,7 +51,7 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
     "gelu": _gelu,
     "identity": lambda values: values,
 }
-"""Activations after a layer; "identity" stands for none."""
+"""Activations after a layer; "identity" is no activation."""
 
 Norm = tuple[ArrayLike, ArrayLike, float]
 """A layer's normalization, as torch's ``LayerNorm``: scale, shift, and what is added to the
@@ -150,11 +150,11 @@ class NetworkPolicy(RowPolicy):
         ----------
         module
             A ``torch.nn.Module`` from one leader's observation to its rudder: linear layers in the
-            order in which they follow each other, after each of them a ``LayerNorm`` and one of
-            Tanh, ReLU, ELU and GELU, or none. Layers that change nothing (``Identity``, and
-            ``Dropout``, which acts in training alone) are passed over. The module is run on a few
-            observations. It is refused if its output is not that of its layers in this order, for
-            example because its ``forward`` does more.
+            order of their use. Each may be followed by a ``LayerNorm``, and by one of Tanh, ReLU,
+            ELU and GELU. Layers that change nothing (``Identity``, and ``Dropout``, which acts in
+            training alone) are passed over. The module is run on a few observations. It is refused
+            if its output is not that of its layers in this order, for example because its
+            ``forward`` does more.
         space
             The space of the observations that it was trained on, of one leader or of several: it
             holds the options that a policy depends on.

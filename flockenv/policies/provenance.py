@@ -36,7 +36,7 @@ def provenance_of(
     Parameters
     ----------
     command
-        Makes the policy again.
+        The command that makes the policy again.
     seed
         Seed of the training.
     samples

@@ -40,8 +40,8 @@ class ModuleLayer:
 def read_module(module: Any, *, has_spread: bool = False) -> list[ModuleLayer]:
     """Return the layers of a ``torch.nn.Module``, or refuse other objects.
 
-    With `has_spread`, or if a ``NormalParamExtractor`` ends it, the last of two outputs is left
-    out: the spread of a distribution.
+    With `has_spread`, or if a ``NormalParamExtractor`` ends it, the second of two outputs is
+    dropped: the spread of a distribution.
     """
     own = [layer for layer in module.modules() if next(layer.children(), None) is None]
     layers: list[ModuleLayer] = []
@@ -97,7 +97,7 @@ def _add(layers: list[ModuleLayer], layer: Any) -> None:
         last.activation = name
     else:
         raise ParameterError(
-            f"a module with the layer {short_repr(layer)} at this place is not accepted: "
+            f"a module with the layer {short_repr(layer)} at this position is not accepted: "
             f"{_ACCEPTED}"
         )
 

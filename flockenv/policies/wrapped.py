@@ -177,8 +177,8 @@ class _Run:
     """A run: the wrappers' memory, and the model's decisions."""
 
     def __init__(self, policy: WrappedPolicy, items: NDArray[np.float32]) -> None:
-        self.is_each = policy._is_each
-        count = len(items) if self.is_each else 1
+        self.is_per_item = policy._is_each
+        count = len(items) if self.is_per_item else 1
         self.wrapped = [policy._made(items[index:]) for index in range(count)]
         self.state: object = None
         self.actions: Any = None
@@ -186,9 +186,9 @@ class _Run:
     def observed(self, items: NDArray[np.float32]) -> object:
         """Return observations as the wrappers change them."""
         for index, wrapper in enumerate(self.wrapped):
-            wrapper.unwrapped.given = items[index] if self.is_each else items
+            wrapper.unwrapped.given = items[index] if self.is_per_item else items
         starts = self.actions is None
-        if not self.is_each:
+        if not self.is_per_item:
             (venv,) = self.wrapped
             return venv.reset() if starts else venv.step(self.actions)[0]
         seen = [

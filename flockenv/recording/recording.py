@@ -63,7 +63,7 @@ class Recording(HintsAtNames):
     order : OrderSeries
         Order parameters of the normal boats, with these times; NaN only where they are undefined.
     parameters : FlockParameters
-        What was run.
+        Parameters of the flock at the start of the run.
     seed : int
         Seed of all random streams.
     version : str
@@ -75,8 +75,9 @@ class Recording(HintsAtNames):
     contacts : ContactSeries or None
         Contacts that carried a force, if they were recorded.
     policy : str or None
-        What steered the leaders: "paper's law at every substep", or the policy's name; a learned
-        policy's name ends in the first digits of its SHA-256. None if unknown, as for tracks.
+        Name of what steered the leaders: "paper's law at every substep", or the policy's name; a
+        learned policy's name ends in the first digits of its SHA-256. None if unknown, as for
+        tracks.
     statistics : StepStatistics or None
         Worst overlap, unsolved and halved substeps of the flock at the end; None if they are
         unknown, as for tracks.
@@ -194,7 +195,7 @@ class Recording(HintsAtNames):
         `state_at` raises.
         """
         state = self.state_at(time_s)
-        present = self._there(self._sample_at(time_s))
+        present = self._is_present(self._sample_at(time_s))
         leaders = int(present[: self.parameters.n_leaders].sum())
         parameters = self.parameters.replace(n_boats=int(present.sum()), n_leaders=leaders)
         return Flock.from_state(parameters, self.seed, state)
@@ -215,7 +216,7 @@ class Recording(HintsAtNames):
             For a time outside the recording, and a recording without samples or poses.
         """
         sample = self._sample_at(time_s)
-        present = self._there(sample)
+        present = self._is_present(sample)
         if not present.any():
             raise ParameterError(f"no boat is there at {short_repr(time_s)} s")
         return {
@@ -236,7 +237,7 @@ class Recording(HintsAtNames):
             )
         return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
 
-    def _there(self, sample: int) -> NDArray[np.bool_]:
+    def _is_present(self, sample: int) -> NDArray[np.bool_]:
         present: NDArray[np.bool_] = np.isfinite(self.pose[sample, :, 0])
         return present
 
@@ -249,7 +250,7 @@ class Recording(HintsAtNames):
         ----------
         boats
             False: one row per sample, with its time, phase and order parameters. True: one row per
-            sample and boat that is there, with the boat's pose and velocity.
+            sample and present boat, with the boat's pose and velocity.
 
         Returns
         -------
@@ -299,7 +300,7 @@ class Recording(HintsAtNames):
         Parameters
         ----------
         after
-            Share of the run, at its start, that is left out.
+            Share of the run, from its start, that is not used.
 
         Returns
         -------

@@ -34,7 +34,7 @@ class Packer:
         values
             Shape (t, ...), finite.
         quantum
-            What values are rounded to; a coarser one is used for numbers too large for it.
+            Step to which values are rounded; numbers too large for it get a coarser one.
         """
         largest = float(np.abs(values).max(initial=0.0))
         quantum = max(quantum, largest / _LARGEST)

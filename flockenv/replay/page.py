@@ -234,7 +234,7 @@ def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) 
     pose, velocity = recording.pose[shown], recording.velocity[shown]
     if recording.ids is not None:
         packer.add_plain("present", np.isfinite(pose[..., 0]))
-        pose, velocity = _held(pose), np.nan_to_num(velocity)
+        pose, velocity = _without_gaps(pose), np.nan_to_num(velocity)
     packer.add("position_cm", pose[..., :2], _POSITION)
     packer.add("heading", pose[..., 2], _ANGLE)
     packer.add("speed_cm_s", np.hypot(velocity[..., 0], velocity[..., 1]), _SPEED)
@@ -259,7 +259,7 @@ def _has_phases(recording: Recording) -> bool:
     return bool((recording.phase != "").all())
 
 
-def _held(pose: NDArray[Any]) -> NDArray[Any]:
+def _without_gaps(pose: NDArray[Any]) -> NDArray[Any]:
     """Return poses in which a missing boat is where it was last, or where it will first appear."""
     last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
     last = np.maximum.accumulate(last, axis=0)

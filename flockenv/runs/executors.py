@@ -19,7 +19,7 @@ Item = TypeVar("Item")
 Value = TypeVar("Value")
 
 Engine = Callable[[int | None], Executor]
-"""Makes an executor of some workers; None for as many as there are."""
+"""Function that makes an executor with this many workers; None: all that there are."""
 
 
 def cores() -> int:

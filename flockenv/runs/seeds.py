@@ -27,7 +27,7 @@ class SeedRange:
         return range(self.first, self.first + self.runs * self.of_a_run)
 
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
-        """Return `count` seeds of a run from index `start` on, if the run has so many."""
+        """Return `count` seeds of a run from index `start` on; refuse more than the run has."""
         if not 0 <= run < self.runs:
             raise ParameterError(
                 f"seed = {short_repr(run)} is not accepted: from 0 to {self.runs - 1}"

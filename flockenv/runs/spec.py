@@ -51,7 +51,7 @@ class RunSpec:
     policy : str
         Name of a policy, such as "learned"; the paper's law at every substep by default.
     keep : str
-        What is stored of the run, one of `KEEP`.
+        The parts of the run that are stored, one of `KEEP`.
     """
 
     parameters: FlockParameters
@@ -114,7 +114,7 @@ def execute(spec: RunSpec) -> Recording:
     Returns
     -------
     Recording
-        What the spec keeps, in the precision of float32.
+        The parts that the spec keeps, in the precision of float32.
     """
     run = simulate(
         spec.parameters,

@@ -24,7 +24,7 @@ RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
 RESULTS_VERSION = 6
-"""Rises whenever the same spec comes to give other numbers: stored runs are then redone."""
+"""Rises when the same specs give other numbers than before: stored runs are then made again."""
 
 
 class StorageError(FlockError, OSError):

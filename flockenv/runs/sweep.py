@@ -107,10 +107,12 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    # Flocks without leaders are the comparison for those with leaders.
-    unled = run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
+    # No policy steers flocks without leaders, with which the others are compared.
+    leaderless = (
+        run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
+    )
     runs = tuple(
-        RunSpec(parameters=flock, seed=seed, **(run if flock.n_leaders else unled))
+        RunSpec(parameters=flock, seed=seed, **(run if flock.n_leaders else leaderless))
         for flock in flocks
         for seed in seeds
     )
@@ -208,7 +210,7 @@ def run_sweep(
     sweep
         The sweep, from `read_sweep`.
     folder
-        Where.
+        Folder for the runs and the table.
     notify
         See `RunStore`.
     engine, progress, workers

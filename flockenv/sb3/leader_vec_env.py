@@ -198,12 +198,12 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     def _requests(self, options: Any) -> list[dict[str, Any]]:
         """Return the request for each flock's reset, of one dictionary for each slot."""
-        is_each = isinstance(options, Sequence) and len(options) == self.num_envs
-        if not is_each or not all(isinstance(request, Mapping) for request in options):
+        lists_slots = isinstance(options, Sequence) and len(options) == self.num_envs
+        if not lists_slots or not all(isinstance(request, Mapping) for request in options):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
         by_flock: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock, given in zip(self.flock_of_slot.tolist(), options, strict=True):
-            (request,) = reset_requests(given, 1, is_each=False)
+            (request,) = reset_requests(given, 1, lists_flocks=False)
             if by_flock[flock] is None:
                 by_flock[flock] = request
             elif not _equal(by_flock[flock], request):
@@ -367,14 +367,14 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return self._batch.core.observe()
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return a frame of each flock; none if `render_mode` is None."""
+        """Return a frame of each flock, or None for each slot if `render_mode` is None."""
         if self.render_mode is None:
             return [None for _ in self.slots]
         flocks = map(self._batch.flock, range(self.num_flocks))
         return [self._render_mode.frame(flock) for flock in flocks]
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Do nothing: there is nothing to close."""
 
 
 def _equal(one: object, other: object) -> bool:

@@ -16,7 +16,7 @@ from flockenv.errors import ParameterError
 
 
 class FlockMonitor(VecEnvWrapper):
-    """Write the episodes of a `LeaderVecEnv` to a ``monitor.csv``, a row per flock.
+    """Write the episodes of a `LeaderVecEnv` to a ``monitor.csv``, a row per flock's episode.
 
     `VecMonitor` would write a row per leader. stable-baselines3's ``results_plotter`` and
     ``load_results`` read the file. Its header names the registered environment that has the same

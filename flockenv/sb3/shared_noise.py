@@ -88,12 +88,12 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
 
     def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
         super().__init__(action_dim)
-        self.held = HeldNoise(flock_of_slot, hold_steps, action_dim)
+        self.noise = HeldNoise(flock_of_slot, hold_steps, action_dim)
 
     def sample(self) -> torch.Tensor:
         """Return actions, shape (slots, actions)."""
         mean, deviation = self.distribution.mean, self.distribution.stddev
-        return mean + deviation * self.held.next(len(mean), mean.device)
+        return mean + deviation * self.noise.next(len(mean), mean.device)
 
 
 class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
@@ -118,11 +118,11 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     ) -> tuple[torch.nn.Module, torch.nn.Parameter]:
         """Return the last layer, and the logarithms of the deviations of its weights and biases."""
         features = (latent_dim if latent_sde_dim is None else latent_sde_dim) + 1
-        self.held = HeldNoise(self._flock_of_slot, self._hold_steps, features * self.action_dim)
+        self.noise = HeldNoise(self._flock_of_slot, self._hold_steps, features * self.action_dim)
         return super().proba_distribution_net(latent_dim, log_std_init, features)
 
     def sample_weights(self, log_std: torch.Tensor, batch_size: int = 1) -> None:
-        """Draw nothing: `held` says when to draw, not stable-baselines3 at each rollout."""
+        """Draw nothing: `noise` decides when to draw, not stable-baselines3 at each rollout."""
 
     def proba_distribution(
         self, mean_actions: torch.Tensor, log_std: torch.Tensor, latent_sde: torch.Tensor
@@ -136,15 +136,15 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     def get_noise(self, latent_sde: torch.Tensor) -> torch.Tensor:
         """Return deviations from the mean actions, shape (slots, actions).
 
-        The inputs already end in the constant.
+        The last of the inputs is the constant feature.
         """
-        drawn = self.held.next(len(latent_sde), latent_sde.device)
+        drawn = self.noise.next(len(latent_sde), latent_sde.device)
         matrices = drawn.reshape(len(latent_sde), *self._deviations.shape) * self._deviations
         return torch.einsum("sf,sfa->sa", latent_sde.detach(), matrices)
 
 
 class SharedNoisePolicy(ActorCriticPolicy):
-    """An actor-critic policy that explores with one noise for all leaders of a flock, held.
+    """An actor-critic policy that explores with one noise, held, for all leaders of a flock.
 
     ``PPO(SharedNoisePolicy, venv, policy_kwargs=shared_noise(venv, hold_s=24.0))``
 
@@ -163,7 +163,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
     flock_of_slot
         Flock of each slot, as `LeaderVecEnv.flock_of_slot`.
     hold_steps
-        Decisions that a noise is held for, at least 1.
+        Number of decisions for which a noise is held, at least 1.
 
     Raises
     ------

@@ -119,7 +119,8 @@ def bootstrap_interval(
     samples
         One or more arrays of values, one value per run.
     statistic
-        A function of as many arrays that takes ``axis``, such as `numpy.mean`.
+        A function that takes one argument for each array, and ``axis``; for one array such as
+        `numpy.mean`.
     seed
         Seed of the 9999 draws.
     paired
@@ -155,8 +156,8 @@ def bootstrap_interval(
 def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, float]:
     """Return the mean of a table whose rows share its columns, with its interval.
 
-    Trainings that are judged in the same flocks are such rows: an interval over their means leaves
-    out the luck of the flocks, which all of them share. Here the bootstrap draws both, rows and
+    Trainings that are judged in the same flocks are such rows: an interval over their means ignores
+    the luck of the flocks, which all of them share. Here the bootstrap draws both, rows and
     columns, 9999 times. Deviations are stretched so that few rows or columns have Student's
     interval, as in `mean_interval`. The residual beside both effects is counted twice, so a table
     of pure noise gets an interval 1.4 times too wide.

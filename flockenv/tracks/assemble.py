@@ -53,8 +53,8 @@ def recording_of(
         Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
     velocity
         Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central if there is
-        a pose before and after, weighted by the steps in time. There are none across gaps, and none
-        for a boat with a single pose.
+        a pose before and after, weighted by the steps in time. No difference is taken across a gap;
+        a boat with a single pose has no velocity.
     phase
         "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: they are unknown, and all
         samples count as analyzed.

@@ -65,7 +65,7 @@ def _typed(pandas: Any, found: Any) -> Floats | None:
 
 
 def _past_midnight(seconds: Floats) -> Floats:
-    """Return clock times that go on past midnight: those before a gap of half a day are later."""
+    """Return clock times with a day added to those past midnight, which come before a long gap."""
     stamps = np.unique(seconds[np.isfinite(seconds)])
     gap = int(np.diff(stamps).argmax()) if len(stamps) > 1 else 0
     if len(stamps) < 2 or stamps[-1] > _DAY_S or stamps[gap + 1] - stamps[gap] < _DAY_S / 2:
@@ -98,8 +98,8 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
     """Return the frame of each row, of rows in the order of time.
 
-    Rows of one time are one frame. Where each boat has time stamps of its own, a frame lasts until
-    one of its boats is seen again, and less than the boats' own step.
+    Rows of one time are one frame. If each boat has time stamps of its own, a frame ends when one
+    of its boats is seen again, and is shorter than a boat's own step.
     """
     stamps, frames = np.unique(rows["time"], return_inverse=True)
     own = rows.groupby("id", sort=False)["time"].diff()

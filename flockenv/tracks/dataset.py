@@ -43,7 +43,7 @@ def table_of(dataset: Any, layout: TrackLayout) -> Table:
     for index, stem in enumerate(stems.values()):
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
     rows = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return Table(rows, _said(dataset, layout, stems))
+    return Table(rows, _completed(dataset, layout, stems))
 
 
 def _standard(variable: Any, *own: str) -> Any:
@@ -76,7 +76,7 @@ def _named(position: Any, dimension: str) -> list[str]:
     return names
 
 
-def _said(dataset: Any, layout: TrackLayout, stems: dict[str, str]) -> TrackLayout:
+def _completed(dataset: Any, layout: TrackLayout, stems: dict[str, str]) -> TrackLayout:
     """Return a layout with missing fields taken from the dataset."""
     given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
     known, points = key_points(stems), listed([*stems])

@@ -106,7 +106,7 @@ PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
 _LONGEST = 200
-"""Letters of a name of a column; to compare longer ones takes long, and they tell nothing."""
+"""Longest name of a column that is compared: longer ones take long, and tell nothing."""
 
 _TELLING = {"heading", "confidence", "quaternion", "box", "fps"}
 """Fields that make key points and numbered columns better than plain columns of x and y."""
@@ -136,7 +136,7 @@ def unit_of(name: str) -> str:
 
 
 def header_of(count: int) -> list[str]:
-    """Return the columns of a program that writes so many without a header, none for others."""
+    """Return the columns of a program that writes `count` columns without a header, or none."""
     headers = (program.header for program in FORMATS if count <= len(program.header) <= count + 4)
     return [*next(headers, ())[:count]]
 
@@ -171,7 +171,7 @@ def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
 
 
 def quaternion(names: Iterable[str]) -> list[str] | None:
-    """Return the columns x, y, z and w of the first quaternion among names, None if none is."""
+    """Return the columns x, y, z and w of the first quaternion among names, or None."""
     by_key = {name.casefold(): name for name in names}
     for key in by_key:
         for index in (at for at, letter in enumerate(key) if letter == "w"):
@@ -184,11 +184,11 @@ def quaternion(names: Iterable[str]) -> list[str] | None:
 def key_points(
     stems: Mapping[str, str], present: Set[str] = frozenset(), boat: str = ""
 ) -> dict[str, Any]:
-    """Return the fields x, y, heading and confidence, given what columns of key points begin with.
+    """Return the fields x, y, heading and confidence, from the first parts of key points' columns.
 
-    The center is a point in the middle, or the middle of head and tail, or the only point. Several
-    other points are ambiguous, and give no fields. A confidence is among the columns `present`,
-    with `boat` in the place of {id}.
+    The center is a point in the middle, or the middle of head and tail, or the only point. If there
+    are several others, the center is ambiguous, and no fields are returned. A confidence is among
+    the columns `present`, with `boat` in the place of {id}.
     """
     by_part = {
         part: next((stem for name, stem in stems.items() if plain(name)[0] in words), None)

@@ -77,13 +77,13 @@ def _guess_from_values(table: Table, form: Form, doubts: Doubts) -> None:
     table = Table(table.rows, layout)
     if "id" in form and not table.is_named:
         form["id"] = ""
-    _guess_place(table, form, doubts)
+    _guess_pool(table, form, doubts)
     _guess_time(table, form, doubts)
     if len(layout.columns["heading"]) == 1:
         _guess_turn(table.numbers(form["heading"]), form, doubts)
 
 
-def _guess_place(table: Table, form: Form, doubts: Doubts) -> None:
+def _guess_pool(table: Table, form: Form, doubts: Doubts) -> None:
     """Guess the pool, its center and the scale from all positions."""
     names = [table.layout.columns[axis][0] for axis in ("x", "y")]
     points = np.stack([table.numbers(name) for name in names], axis=-1)

@@ -30,7 +30,7 @@ def headings_of(table: Table) -> tuple[Floats, Any]:
     if len(columns) == 4:
         x_tail, y_tail, tail_lost = table.points(columns[:1], columns[1:2])
         x_head, y_head, head_lost = table.points(columns[2:3], columns[3:])
-        heading = direction(x_head - x_tail, (y_head - y_tail) * layout.up)
+        heading = direction(x_head - x_tail, (y_head - y_tail) * layout.y_sign)
         return np.where(tail_lost | head_lost, np.nan, heading), strange
     if columns:
         _check_no_part(table)

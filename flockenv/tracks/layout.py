@@ -69,7 +69,7 @@ def _check(name: str, kind: Any, value: Any) -> None:
 
 
 def _plain(name: str, value: Any) -> Any:
-    """Return lists as tuples. Boats, and values that stand for none, may be written as numbers."""
+    """Return lists as tuples. Names of boats and of missing values may be written as numbers."""
     if not isinstance(value, list | tuple):
         return value
     as_text = name in ("leaders", "unassigned", "missing")
@@ -83,8 +83,8 @@ class TrackLayout:
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
-    columns such as ``nose_x``, and what is left out here is found by their names. Lists are taken
-    as tuples, and "" as None. A ParameterError refuses a value out of range or of another kind.
+    columns such as ``nose_x``, and missing fields are found by their names. A list becomes a tuple,
+    and "" None. A ParameterError refuses a value out of range or of another kind.
 
     Attributes
     ----------
@@ -218,8 +218,8 @@ class TrackLayout:
         return self.cm_per_unit or 1.0
 
     @property
-    def up(self) -> float:
-        """Sign of y of the file, counted upwards."""
+    def y_sign(self) -> float:
+        """1 if y of the file points up, -1 if it points down."""
         return -1.0 if self.y_down else 1.0
 
     @property

@@ -65,7 +65,7 @@ class Motion:
         return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0
 
     def cosine(self, heading: Floats) -> float:
-        """Return the mean cosine between heading and motion, weighted by speed; NaN for none."""
+        """Return the mean cosine between heading and motion, weighted by speed, or NaN."""
         speed = np.nansum(np.hypot(self.velocity[..., 0], self.velocity[..., 1]))
         return float(np.nansum(self.ahead(heading)) / speed) if speed > 0.0 else np.nan
 
@@ -90,8 +90,8 @@ class Motion:
             )
 
 
-def in_water(pool: Any, indices: Floats, margin_cm: float) -> NDArray[np.bool_]:
-    """Return whether places are in the water of a pool, or at most so far beyond its walls."""
+def in_water(pool: Any, positions: Floats, margin_cm: float) -> NDArray[np.bool_]:
+    """Return whether positions are in a pool's water, or at most `margin_cm` outside of it."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
-    distance = np.hypot(indices[..., 0], indices[..., 1])
+    distance = np.hypot(positions[..., 0], positions[..., 1])
     return np.asarray((distance <= outer_cm + margin_cm) & (distance >= inner_cm - margin_cm))

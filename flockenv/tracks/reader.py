@@ -132,7 +132,7 @@ def _report(
         lone=int((present & np.isnan(speed)).sum()),
         cosine=motion.cosine(pose[..., 2]),
         stuck=_stuck(rows, layout),
-        held=_held(rows),
+        held=_stuck_headings(rows),
     )
 
 
@@ -202,11 +202,11 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
     counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
     found = counts.drop_duplicates("id").set_index("id").astype(float)
     x = found["x"] / layout.scale + layout.center[0]
-    y = layout.up * found["y"] / layout.scale + layout.center[1]
+    y = layout.y_sign * found["y"] / layout.scale + layout.center[1]
     return {str(n): (x[n], y[n], int(found["count"][n])) for n in found.index}
 
 
-def _held(rows: "pd.DataFrame") -> dict[str, int]:
+def _stuck_headings(rows: "pd.DataFrame") -> dict[str, int]:
     """Return boats that move with one heading in many samples, and with any other in few."""
     # A boat seen at a single point keeps its heading, too.
     used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])

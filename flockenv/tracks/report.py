@@ -18,8 +18,8 @@ class TrackReport:
     samples: int
     #: Times at which a boat is missing, summed over boats; empty frames count, too.
     missing: int
-    #: From the first to the last time, the median step, and the median of the boats' speeds, NaN
-    #: for none: what a wrong `fps` or `cm_per_unit` shows in.
+    #: Time from first to last, median step, and median of the boats' speeds (NaN without any): a
+    #: wrong `fps` or `cm_per_unit` shows in them.
     duration_s: float
     step_s: float
     median_speed_cm_s: float
@@ -37,7 +37,7 @@ class TrackReport:
     broken: int = 0
     #: Samples without a neighbor in time. They have no velocity, and no quantity counts them.
     lone: int = 0
-    #: Mean cosine between heading and motion, weighted by the way: near 1 for boats that move
+    #: Mean cosine between heading and motion, weighted by distance: near 1 for boats that move
     #: ahead, small or negative if axes, units or directions are wrong; NaN if nothing moves.
     cosine: float = float("nan")
     #: Boats that are at one point in at least 20 samples and a tenth of theirs, or where others

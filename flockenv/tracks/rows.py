@@ -1,4 +1,4 @@
-"""Rows of tracks in cm and rad, and why some of them count for nothing."""
+"""Rows of tracks in cm and rad, and why some of them are omitted."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -20,20 +20,20 @@ _MOST_OUTSIDE = 0.5
 def rows_of(table: Table) -> "pd.DataFrame":
     """Return the columns id, time, x, y, heading and why of rows, in the order of the table.
 
-    Times are in s from the least; places are in cm from the pool's center, y up; headings in rad.
-    `why` says why a row is left out, and is "" where it is not.
+    Times are in s from the least, positions in cm from the pool's center, y up, headings in rad.
+    `why` says why a row is omitted; it is "" for rows that count.
     """
     layout, names = table.layout, _names(table)
     x, y, is_lost = table.points(layout.columns["x"], layout.columns["y"])
     if layout.box is not None:
         x, y = (at + table.numbers(name) / 2 for at, name in zip((x, y), layout.box, strict=True))
-    places = {
+    positions = {
         "x": (x - layout.center[0]) * layout.scale,
-        "y": (y - layout.center[1]) * layout.scale * layout.up,
+        "y": (y - layout.center[1]) * layout.scale * layout.y_sign,
     }
     heading, is_strange = headings_of(table)
     rows: pd.DataFrame = require("pandas", "plot").DataFrame(
-        {"id": names, "time": times_of(table), **places, "heading": heading}, table.index
+        {"id": names, "time": times_of(table), **positions, "heading": heading}, table.index
     )
     is_sure = np.ones(len(rows), bool)
     for name in layout.columns["confidence"]:

@@ -108,7 +108,7 @@ class Table:
         return values
 
     def points(self, x: Iterable[str], y: Iterable[str]) -> tuple[Floats, Floats, Any]:
-        """Return the means of columns of x and of y, and whether a point marks a lost boat."""
+        """Return means of columns of x and of y, and whether any of them marks a lost boat."""
         points = np.array([[self.numbers(name) for name in names] for names in (x, y)])
         is_lost = np.zeros(points.shape[-1], bool)
         for mark in self.layout.lost:

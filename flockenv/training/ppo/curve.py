@@ -63,7 +63,7 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     model
         Model of stable-baselines3.
     settings
-        What it was trained with.
+        The settings that it was trained with.
     episodes
         Number of flocks, each led for 8 minutes (`TrainingSettings.held_out`).
 

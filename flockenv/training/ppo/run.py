@@ -63,7 +63,7 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
     Parameters
     ----------
     settings
-        What to train, and how.
+        Settings of the training.
     folder
         Where to write.
     report
@@ -83,7 +83,7 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
     model = settings.model(venv)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with _held(folder):
+        with _locked(folder):
             if (folder / CHECKPOINT).exists():
                 raise ParameterError(
                     f"{folder} holds a run already: resume it, or name another folder"
@@ -104,7 +104,7 @@ def resume(
     Parameters
     ----------
     folder
-        What was given to `train`.
+        The folder that `train` got.
     flock_hours
         When to stop; by default as in the folder's settings.
     report
@@ -121,7 +121,7 @@ def resume(
     path, settings = folder / CHECKPOINT, stored_settings(folder, flock_hours)
     venv = settings.venv()
     model = settings.model(venv)
-    with _held(folder):
+    with _locked(folder):
         try:
             with open_plain(path) as file:
                 model.set_parameters(cast(str, file), device="cpu")
@@ -148,14 +148,14 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
 
 
 @contextmanager
-def _held(folder: Path) -> Iterator[None]:
+def _locked(folder: Path) -> Iterator[None]:
     """Keep other trainings out of a folder."""
     try:
         held = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout as error:
         raise InUseError(f"{folder} is in use by another process: name another, or wait") from error
     except OSError as error:
-        raise TrainingError(f"{folder} cannot be held: {error}") from error
+        raise TrainingError(f"{folder} cannot be locked: {error}") from error
     with held:
         remove_leftovers(folder)
         yield

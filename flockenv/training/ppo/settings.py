@@ -19,8 +19,8 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-#: How fast a pool's order answers, and with it the horizons in s: of an episode, of the discount
-#: and of the advantages, and how long a flock's leaders hold one exploration.
+#: How fast a pool's order responds decides the times in s: of an episode, of the discount, of the
+#: advantages, and for which a flock's leaders hold one exploration.
 _TIMES_S: Mapping[str, Mapping[str, float]] = {
     "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 240.0},
     "narrow": {"episode": 240.0, "discount": 60.0, "advantage": 27.0, "hold": 60.0},

@@ -166,7 +166,7 @@ def test_a_folder_takes_one_training_at_a_time(tiny: TrainingSettings, tmp_path:
     ppo.resume(tmp_path, report=meanwhile)
     (tmp_path / ".lock").unlink()
     (tmp_path / ".lock").mkdir()
-    with pytest.raises(TrainingError, match="cannot be held"):
+    with pytest.raises(TrainingError, match="cannot be locked"):
         ppo.resume(tmp_path)
 
 
