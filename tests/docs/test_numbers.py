@@ -3,73 +3,20 @@
 A row below names the sentence and the cell. If one of them changes, somebody edits the other.
 """
 
-import re
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 
-from flockenv.statistics import mean_interval, student_interval
-
-pd = pytest.importorskip("pandas")
-
-REPOSITORY = Path(__file__).parents[2]
-DIGITS = r"[+\-−]?\d[\d ]*(?:\.\d+)?(?:e-?\d+)?"
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number of a page.
-
-    Attributes
-    ----------
-    page
-        File of the page.
-    words
-        What stands around it: ``{}`` is the number, ``#`` another one.
-    file
-        Table that it is from.
-    row
-        Values by which its row is found.
-    column
-        Column of the number, or a function of the rows that gives it.
-    form
-        How it is written.
-    """
-
-    page: str
-    words: str
-    file: str
-    row: dict[str, Any] = field(default_factory=dict)
-    column: str | Callable[[Any], float] = "measured"
-    form: str = ".2f"
-
-    def shown(self, text: str) -> list[str]:
-        """Every number of a page that stands between the words."""
-        pattern = re.escape(self.words).replace(r"\{\}", f"({DIGITS})").replace(r"\#", DIGITS)
-        return re.findall(pattern, " ".join(text.split()))
-
-    def expected(self) -> str:
-        """The number of the data, as it is written."""
-        table = pd.read_csv(REPOSITORY / self.file)
-        for name, value in self.row.items():
-            table = table[table[name] == value]
-        assert len(table), f"{self.file} has no row with {self.row}"
-        if callable(self.column):
-            value = self.column(table)
-        else:
-            (value,) = table[self.column]
-        return format(value, self.form).replace("-", "−")
-
-
-def mean(column: str) -> Callable[[Any], float]:
-    return lambda rows: rows[column].mean()
-
-
-def count(verdict: str) -> Callable[[Any], float]:
-    return lambda rows: (rows["verdict"] == verdict).sum()
+from docs.scripts.plots import REPOSITORY
+from docs.scripts.quoted import (
+    DENSITY,
+    Number,
+    mean,
+    most_of_an_offset,
+    offset,
+    plans,
+)
 
 
 def readings_with_rise(rows: Any) -> int:
@@ -78,11 +25,6 @@ def readings_with_rise(rows: Any) -> int:
     means = rows.groupby([*reading, "bw_s"])["abs_m"].mean().unstack()
     means = means[means.notna().sum(axis=1) > 4]
     return int((means.max(axis=1) - means[0.0] >= 0.3).sum())
-
-
-def gain_of_plan(rows: Any, place: int = 0) -> float:
-    gain, low, high = student_interval(rows["planned"] - rows["learned"])
-    return (gain, (high - low) / 2)[place]
 
 
 SPEED = "docs/speed_vs_error/"
@@ -94,11 +36,7 @@ JAM = {"scene": "jam", "n": 27, **OURS}
 SECTION5 = "studies/section5/results/section5.csv.gz"
 WIDE = {"pool": "wide", "n_leaders": 0}
 LOST = {"quantity": "critical bw (s), k = 0"}
-DENSITY = (
-    "bw (s) at which the density of φ_o within 10° of the tangent falls through 3 times uniform"
-)
 COHERENCE = "mean Ψ_o with 3 clockwise leaders minus without, bw 1.4 to 2.0 s; read as at least 0.2"
-
 
 LEADERS = "studies/leaders/results/"
 CLOSE = {"case": "wide-bw-0.31", "policy": "learned", "leaders": 3}
@@ -108,9 +46,6 @@ PAPERS = CLOSE | {"policy": "paper's law"}
 NARROW = {"case": "narrow-bw-0.45", "leaders": 3}
 TRAININGS = "studies/trainings/results/pretrained/algorithms.csv"
 EARLY = "studies/trainings/results/pretrained/algorithms-500.csv"
-FIVE = "studies/trainings/results/algorithms/algorithms.csv"
-TRAININGS_PAGE = "studies/trainings/README.md"
-PLANNING = "studies/planning/results/plan_"
 
 
 def throughput() -> list[Number]:
@@ -190,67 +125,6 @@ def test_drag_leaves_contacts_no_energy_to_add():
     assert (with_drag["largest_gain"] == 0).all()
 
 
-def entries() -> list[Number]:
-    """Numbers of what learns from nothing."""
-    page, folder = "studies/levels/README.md", "studies/levels/results/"
-    pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
-    few = {"level": "order-easy", "budget": 30}
-    longer = {"budget": 100, "entry": "paired branches"}
-    easy, best = {"level": "order-easy"}, {"level": "order-easy", "entry": "TRPO"}
-    unlike, ranks = f"{folder}unlike.csv", f"{folder}unlike_ranks.csv"
-    alternates = easy | {"what": "target"}
-    law = f"{folder}unlike_conditions.csv"
-
-    def told_apart(rows: Any) -> float:
-        return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
-
-    def small(rows: Any) -> float:
-        return (rows["p_of_all_pairs"] < 0.05).sum()
-
-    return [
-        Number(page, "flock-hours, {} of # pairs of", pairs, few, told_apart, "d"),
-        Number(page, "flock-hours, # of {} pairs of", pairs, few, len, "d"),
-        Number(page, "Of {} pairs # differ", pairs, few, len, "d"),
-        Number(page, "Of # pairs {} differ", pairs, few, told_apart, "d"),
-        Number(page, "design. {} of them have", pairs, few, small, "d"),
-        Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
-        Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
-        Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
-        Number(page, "branches have {} (# to #): one", table, longer, "score"),
-        Number(page, "branches have # ({} to #): one", table, longer, "score_low"),
-        Number(page, "branches have # (# to {}): one", table, longer, "score_high"),
-        *(
-            Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
-            for words, level, entry, column in (
-                ("branches in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
-                ("score in `order-noisy`, {} (# to", "order-noisy", "TRPO", "score"),
-                ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
-                ("law gains: MAPPO has {} (", "order-narrow", "MAPPO", "score"),
-                ("to #), and TRPO {} (# to", "order-narrow", "TRPO", "score"),
-            )
-        ),
-        Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
-        Number(page, "algorithms is # ({} to #)", ranks, easy, "low"),
-        Number(page, "algorithms is # (# to {})", ranks, easy, "high"),
-        Number(page, "mean over {} conditions, each", unlike, best, "conditions", "d"),
-        Number(page, "falls from {} to # (# to #)", table, best, "score"),
-        Number(page, "falls from # to {} (# to #)", unlike, best, "unlike"),
-        Number(page, "falls from # to # ({} to #)", unlike, best, "unlike_low"),
-        Number(page, "falls from # to # (# to {})", unlike, best, "unlike_high"),
-        Number(
-            page, "steering, by {} (# to #)", law, alternates, lambda rows: -rows["gain"].item()
-        ),
-        *(
-            Number(page, words, pairs, {"level": level}, told_apart, "d")
-            for words, level in (
-                ("{} of # pairs differ in `order-noisy`", "order-noisy"),
-                ("trainings each), {} in `order-narrow`", "order-narrow"),
-                ("`order-narrow` and {} in `order-wide`", "order-wide"),
-            )
-        ),
-    ]
-
-
 def easy_branches() -> list[Number]:
     """What paired branches reach in the easy flock from nothing."""
     page, file = "docs/train.md", "studies/levels/results/orders.csv.gz"
@@ -262,33 +136,6 @@ def easy_branches() -> list[Number]:
         row = {"budget": 100, "policy": f"branches-100/order-easy-{seed}.json"}
         found.append(Number(page, words.format(*shown), file, row, mean("signed_order")))
     return found
-
-
-def gradients() -> list[Number]:
-    """The squared gradient of the order at two policies."""
-    page, file = "studies/policy_gradient/README.md", "studies/policy_gradient/results/gradient.csv"
-    lean, both = "lean features", "lean and flock features"
-    lines = {
-        ("wide", "tuned law", lean): ("| tuned law | 29 lean features |", ".1f"),
-        ("wide", "learned", lean): ("learned | 29 lean features |", ".0f"),
-        ("wide", "learned", both): ("learned | with the whole flock's |", ".0f"),
-        ("narrow", "tuned law", lean): ("in `narrow` | 29 lean features |", ".0f"),
-    }
-    found = []
-    for (pool, policy, features), (words, form) in lines.items():
-        by_lean = {"pool": pool, "policy": policy, "features": features, "metric": "lean"}
-        for column, shown in (("squared_gradient", "{} ± #"), ("spread", "# ± {}")):
-            for row, before, digits in (
-                (by_lean, words, ".1f"),
-                (by_lean | {"metric": "weights"}, f"{words} # ± # | # |", form),
-            ):
-                value = in_millionths(column)
-                found.append(Number(page, f"{before} {shown} |", file, row, value, digits))
-    return found
-
-
-def in_millionths(column: str) -> Callable[[Any], float]:
-    return lambda rows: 1e6 * rows[column].item()
 
 
 def levels() -> list[Number]:
@@ -412,47 +259,11 @@ def leaders_at_length(page: str) -> list[Number]:
     ]
 
 
-def plans(page: str) -> list[Number]:
-    """What planning ahead adds."""
-    known, fresh = f"{PLANNING}known.csv", f"{PLANNING}fresh.csv"
-    return [
-        Number(
-            page, "reaches a signed order of {}, and the learned", known, column=mean("planned")
-        ),
-        Number(page, "and the learned leaders {}", known, column=mean("learned")),
-        Number(page, "does not know it reaches {}", fresh, column=mean("planned")),
-        Number(page, "a difference of {} ±", fresh, column=gain_of_plan),
-        Number(page, "a difference of # ± {}", fresh, column=lambda rows: gain_of_plan(rows, 1)),
-    ]
-
-
 def offsets() -> list[Number]:
     """What one step of planning without foresight adds."""
-    study, table = "studies/planning/README.md", "studies/planning/results/best_of_offsets.csv"
-    sentences = (
-        (study, "best of 16 leans, adds {}", 96),
-        (study, "The chosen offset adds {} to the mean order between 8 and 64 s", 64),
-        (study, "after the branch, and {} between 8 and 96 s", 96),
-        ("docs/leaders.md", "one such step adds {} to the mean order of the next 96 s", 96),
-    )
-    found = []
-    for page, words, horizon in sentences:
-        for place, form in enumerate(("{} (# to #)", "# ({} to #)", "# (# to {})")):
-            text = words.replace("{}", form)
-            found.append(Number(page, text, table, {"horizon_s": horizon}, gain_of(place), ".3f"))
-    # The larger upper end is that by 64 s.
-    for page, words in (
-        (study, "One step is worth at most {} by the upper ends"),
-        ("docs/levels.md", "planning without foresight adds at most {} of order"),
-        ("studies/README.md", "one step without it at most {}."),
-    ):
-        found.append(Number(page, words, table, {"horizon_s": 64}, gain_of(2), ".3f"))
-    return found
-
-
-def gain_of(place: int) -> Callable[[Any], float]:
-    """The mean gain of the states, or an end of its interval."""
-    return lambda rows: mean_interval(rows["gain"])[place]
+    step = "one such step adds {} to the mean order of the next 96 s"
+    most = "planning without foresight adds at most {} of order"
+    return [*offset("docs/leaders.md", step, 96), most_of_an_offset("docs/levels.md", most)]
 
 
 def trainings() -> list[Number]:
@@ -471,150 +282,7 @@ def trainings() -> list[Number]:
             Number("docs/train.md", text, means, column=column, form=".3f")
             for text, column in places.items()
         ]
-    five = {"train_leaders": "PPO's five seeds gain", "evolution": "the evolution strategy's"}
-    for algorithm, words in five.items():
-        for column, form in (
-            ("gain", "{} (# to #)"),
-            ("gain_low", "# ({} to #)"),
-            ("gain_high", "# (# to {})"),
-        ):
-            text, row = f"{words} {form}", {"algorithm": algorithm}
-            found.append(Number(TRAININGS_PAGE, text, FIVE, row, column, ".3f"))
     return found
-
-
-def headlines() -> list[Number]:
-    """In how many variants the headlines hold."""
-    found, claims = [], "studies/headlines/claims.csv"
-    for page in ("studies/README.md", "studies/headlines/README.md"):
-        found += [
-            Number(page, "Mostly: {} of #", claims, column=count("holds"), form="d"),
-            Number(page, "Mostly: # of {} answers", claims, column=len, form="d"),
-            Number(page, "answers hold, {} are open", claims, column=count("open"), form="d"),
-            Number(page, "are open, and {} fails", claims, column=count("fails"), form="d"),
-        ]
-    return found
-
-
-def studies() -> list[Number]:
-    """Numbers of the studies' first paragraphs."""
-    return [*section_4(), *current(), *transition(), *density(), *decided()]
-
-
-LOST_BELOW = "bw (s) at which mean Ψ_o falls through 0.3, "
-
-
-def section_4() -> list[Number]:
-    page = "studies/section4/README.md"
-    return [
-        Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
-        for words, quantity in (
-            ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),
-            ("and at {} s (# to #) with three. Through", f"{DENSITY}, 3 leaders, CW"),
-            ("bound of disorder, at {} s", f"{LOST_BELOW}no leaders"),
-            (
-                "disorder, at # s (# to #), and with three leaders {} s",
-                f"{LOST_BELOW}with 3 clockwise leaders minus without",
-            ),
-        )
-    ]
-
-
-def decided() -> list[Number]:
-    """What pages quote of the runs that were added."""
-    page, file = "studies/section4/README.md", "studies/decided/claims.csv"
-    medium = {"claim": "Leaders increase the order at medium noise"}
-    rise = {"claim": "Velocities change more abruptly than orientations"}
-    turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
-    slope = {"figure": "fig12"}
-    return [
-        Number(page, "at 1.4 s by {} (# to #; [# more", file, slope, form=".3f"),
-        Number(page, "at 1.4 s by # ({} to #; [# more", file, slope, "low", ".3f"),
-        Number(page, "at 1.4 s by # (# to {}; [# more", file, slope, "high", ".3f"),
-        Number(page, "at low, {} (# to #) at medium", file, medium, form="+.2f"),
-        Number(page, "at low, # ({} to #) at medium", file, medium, "low"),
-        Number(page, "at low, # (# to {}) at medium", file, medium, "high"),
-        Number(
-            page,
-            "rise shorter by {} s (#",
-            file,
-            rise,
-            lambda rows: -rows["measured"].item(),
-            ".1f",
-        ),
-        Number(page, "0 of {} [more runs]", file, turns, "n_runs", "d"),
-        Number(
-            "studies/section5/README.md",
-            "of {} [more runs](../decided/README.md) in the rarer",
-            file,
-            {"figure": "fig17"},
-            "n_runs",
-            "d",
-        ),
-    ]
-
-
-def current() -> list[Number]:
-    page, preset = "studies/current/README.md", {"reading": "preset constants, narrow, n = 27"}
-    return [
-        Number(page, words, "studies/current/claims.csv", preset | {"quantity": quantity})
-        for words, quantity in (
-            ("it is lost at {} s (# to #) with the strong", f"{LOST_BELOW}gain 0.32, k = 0"),
-            ("strong current, instead of {} s", f"{LOST_BELOW}gain 0.04, k = 0"),
-        )
-    ]
-
-
-def transition() -> list[Number]:
-    page, area = "studies/transition/README.md", "area of the loop in c4 in |m|, 80 min per noise"
-    cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
-    rings, claims = "studies/transition/condensation.csv", "studies/transition/claims.csv"
-    dense = {"c4": 0.1, "coverage": 0.6, "start": "one-jam"}
-    ring = "leapfrog, white c4 = 0.1, dt = 0.1 s, bw = 0, ring of 83 cm, n = "
-    outside = "coverage outside of jams, {} boats, coverage 0.6"
-    return [
-        *(
-            Number(page, words, rings, dense | {"n_boats": n}, "outside", form=".2f")
-            for words, n in (
-                ("the coverage outside is {}, # and #", 100),
-                ("the coverage outside is #, {} and #", 200),
-                ("the coverage outside is #, # and {}", 400),
-            )
-        ),
-        *(
-            Number(
-                page,
-                words,
-                claims,
-                {"quantity": outside.format(sizes), "reading": ring + n},
-                form=".2f",
-            )
-            for words, sizes, n in (
-                ("200 have {} (# to #) more than 100", "200 minus 100", "100"),
-                ("400 have {} (# to #) more than 200", "400 minus 200", "200"),
-            )
-        ),
-        *(
-            Number(page, words, claims, {"quantity": area, "reading": cell + n}, form=".3f")
-            for words, n in (
-                ("its area in |m| is {} (", "100"),
-                ("with 100 boats, {} (", "200"),
-                ("with 200 and {} (", "400"),
-            )
-        ),
-    ]
-
-
-def density() -> list[Number]:
-    page, quiet = "studies/density/README.md", "studies/density/results/quiet.csv"
-    flock = {"preset": "simulation", "pool": "wide", "n_boats": 20}
-    return [
-        Number(page, words, quiet, flock | {"c4": c4}, mean("abs_m"))
-        for words, c4 in (
-            ("|m| is {}, #, #, # and #,", 0.0),
-            ("|m| is #, #, #, # and {},", 0.1),
-        )
-    ]
 
 
 def lessons() -> list[Number]:
@@ -641,24 +309,19 @@ NUMBERS = [
     *throughput(),
     *energy(),
     *levels(),
-    *gradients(),
-    *entries(),
     *easy_branches(),
     *leaders("README.md"),
     *leaders("docs/leaders.md"),
     *plans("docs/leaders.md"),
-    *plans("studies/planning/README.md"),
     *offsets(),
     *trainings(),
-    *headlines(),
-    *studies(),
     *lessons(),
 ]
 
 
 @pytest.mark.parametrize("number", NUMBERS, ids=lambda number: f"{number.page}: {number.words}")
 def test_pages_quote_the_data(number):
-    found = number.shown((REPOSITORY / number.page).read_text(encoding="utf-8"))
+    found = number.shown(number.page_text())
     assert found == [number.expected()], f"{number.file} {number.row}"
 
 

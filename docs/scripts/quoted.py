@@ -1,0 +1,116 @@
+"""Numbers that a page quotes from committed data, and sentences that several pages quote.
+
+The tests of numbers, of the product and of the studies, compare what a page says with its data.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import pandas as pd
+
+from docs.scripts.plots import REPOSITORY
+from flockenv.statistics import mean_interval, student_interval
+
+DIGITS = r"[+\-−]?\d[\d ]*(?:\.\d+)?(?:e-?\d+)?"
+DENSITY = (
+    "bw (s) at which the density of φ_o within 10° of the tangent falls through 3 times uniform"
+)
+"""A quantity of the studies' claims, which the front page quotes too."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a page.
+
+    Attributes
+    ----------
+    page
+        File of the page.
+    words
+        What stands around it: ``{}`` is the number, ``#`` another one.
+    file
+        Table that it is from.
+    row
+        Values by which its row is found.
+    column
+        Column of the number, or a function of the rows that gives it.
+    form
+        How it is written.
+    """
+
+    page: str
+    words: str
+    file: str
+    row: dict[str, Any] = field(default_factory=dict)
+    column: str | Callable[[Any], float] = "measured"
+    form: str = ".2f"
+
+    def page_text(self) -> str:
+        """Read the page."""
+        return (REPOSITORY / self.page).read_text(encoding="utf-8")
+
+    def shown(self, text: str) -> list[str]:
+        """Find every number of a text that stands between the words."""
+        pattern = re.escape(self.words).replace(r"\{\}", f"({DIGITS})").replace(r"\#", DIGITS)
+        return re.findall(pattern, " ".join(text.split()))
+
+    def expected(self) -> str:
+        """Take the number from the data, as a page writes it."""
+        table = pd.read_csv(REPOSITORY / self.file)
+        for name, value in self.row.items():
+            table = table[table[name] == value]
+        assert len(table), f"{self.file} has no row with {self.row}"
+        if callable(self.column):
+            value = self.column(table)
+        else:
+            (value,) = table[self.column]
+        return format(value, self.form).replace("-", "−")
+
+
+def mean(column: str) -> Callable[[Any], float]:
+    """Average a column over the rows."""
+    return lambda rows: rows[column].mean()
+
+
+def gain_of(place: int) -> Callable[[Any], float]:
+    """Take the mean gain of the states (0), or the low (1) or high (2) end of its interval."""
+    return lambda rows: mean_interval(rows["gain"])[place]
+
+
+def gain_of_plan(rows: Any, place: int = 0) -> float:
+    """Take the mean difference of the flocks (0), or half the width of its interval (1)."""
+    gain, low, high = student_interval(rows["planned"] - rows["learned"])
+    return (gain, (high - low) / 2)[place]
+
+
+def plans(page: str) -> list[Number]:
+    """List what planning ahead adds."""
+    known, fresh = (f"studies/planning/results/plan_{each}.csv" for each in ("known", "fresh"))
+    return [
+        Number(
+            page, "reaches a signed order of {}, and the learned", known, column=mean("planned")
+        ),
+        Number(page, "and the learned leaders {}", known, column=mean("learned")),
+        Number(page, "does not know it reaches {}", fresh, column=mean("planned")),
+        Number(page, "a difference of {} ±", fresh, column=gain_of_plan),
+        Number(page, "a difference of # ± {}", fresh, column=lambda rows: gain_of_plan(rows, 1)),
+    ]
+
+
+def offset(page: str, words: str, horizon_s: int) -> list[Number]:
+    """List what one step of planning without foresight adds by a horizon, with its interval."""
+    table = "studies/planning/results/best_of_offsets.csv"
+    return [
+        Number(
+            page, words.replace("{}", form), table, {"horizon_s": horizon_s}, gain_of(place), ".3f"
+        )
+        for place, form in enumerate(("{} (# to #)", "# ({} to #)", "# (# to {})"))
+    ]
+
+
+def most_of_an_offset(page: str, words: str) -> Number:
+    """Give the larger upper end of what one such step adds, which is that by 64 s."""
+    table = "studies/planning/results/best_of_offsets.csv"
+    return Number(page, words, table, {"horizon_s": 64}, gain_of(2), ".3f")

@@ -1,0 +1,287 @@
+"""Law: a number that a page of the studies takes from committed data is the number in the data.
+
+A row below names the sentence and the cell. If one of them changes, somebody edits the other.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from docs.scripts.quoted import (
+    DENSITY,
+    Number,
+    mean,
+    most_of_an_offset,
+    offset,
+    plans,
+)
+
+
+def count(verdict: str) -> Callable[[Any], float]:
+    return lambda rows: (rows["verdict"] == verdict).sum()
+
+
+def entries() -> list[Number]:
+    """Numbers of what learns from nothing."""
+    page, folder = "studies/levels/README.md", "studies/levels/results/"
+    pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
+    few = {"level": "order-easy", "budget": 30}
+    longer = {"budget": 100, "entry": "paired branches"}
+    easy, best = {"level": "order-easy"}, {"level": "order-easy", "entry": "TRPO"}
+    unlike, ranks = f"{folder}unlike.csv", f"{folder}unlike_ranks.csv"
+    alternates = easy | {"what": "target"}
+    law = f"{folder}unlike_conditions.csv"
+
+    def told_apart(rows: Any) -> float:
+        return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
+
+    def small(rows: Any) -> float:
+        return (rows["p_of_all_pairs"] < 0.05).sum()
+
+    return [
+        Number(page, "flock-hours, {} of # pairs of", pairs, few, told_apart, "d"),
+        Number(page, "flock-hours, # of {} pairs of", pairs, few, len, "d"),
+        Number(page, "Of {} pairs # differ", pairs, few, len, "d"),
+        Number(page, "Of # pairs {} differ", pairs, few, told_apart, "d"),
+        Number(page, "design. {} of them have", pairs, few, small, "d"),
+        Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
+        Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
+        Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
+        Number(page, "branches have {} (# to #): one", table, longer, "score"),
+        Number(page, "branches have # ({} to #): one", table, longer, "score_low"),
+        Number(page, "branches have # (# to {}): one", table, longer, "score_high"),
+        *(
+            Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
+            for words, level, entry, column in (
+                ("branches in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
+                ("score in `order-noisy`, {} (# to", "order-noisy", "TRPO", "score"),
+                ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
+                ("law gains: MAPPO has {} (", "order-narrow", "MAPPO", "score"),
+                ("to #), and TRPO {} (# to", "order-narrow", "TRPO", "score"),
+            )
+        ),
+        Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
+        Number(page, "algorithms is # ({} to #)", ranks, easy, "low"),
+        Number(page, "algorithms is # (# to {})", ranks, easy, "high"),
+        Number(page, "mean over {} conditions, each", unlike, best, "conditions", "d"),
+        Number(page, "falls from {} to # (# to #)", table, best, "score"),
+        Number(page, "falls from # to {} (# to #)", unlike, best, "unlike"),
+        Number(page, "falls from # to # ({} to #)", unlike, best, "unlike_low"),
+        Number(page, "falls from # to # (# to {})", unlike, best, "unlike_high"),
+        Number(
+            page, "steering, by {} (# to #)", law, alternates, lambda rows: -rows["gain"].item()
+        ),
+        *(
+            Number(page, words, pairs, {"level": level}, told_apart, "d")
+            for words, level in (
+                ("{} of # pairs differ in `order-noisy`", "order-noisy"),
+                ("trainings each), {} in `order-narrow`", "order-narrow"),
+                ("`order-narrow` and {} in `order-wide`", "order-wide"),
+            )
+        ),
+    ]
+
+
+def gradients() -> list[Number]:
+    """The squared gradient of the order at two policies."""
+    page, file = "studies/policy_gradient/README.md", "studies/policy_gradient/results/gradient.csv"
+    lean, both = "lean features", "lean and flock features"
+    lines = {
+        ("wide", "tuned law", lean): ("| tuned law | 29 lean features |", ".1f"),
+        ("wide", "learned", lean): ("learned | 29 lean features |", ".0f"),
+        ("wide", "learned", both): ("learned | with the whole flock's |", ".0f"),
+        ("narrow", "tuned law", lean): ("in `narrow` | 29 lean features |", ".0f"),
+    }
+    found = []
+    for (pool, policy, features), (words, form) in lines.items():
+        by_lean = {"pool": pool, "policy": policy, "features": features, "metric": "lean"}
+        for column, shown in (("squared_gradient", "{} ± #"), ("spread", "# ± {}")):
+            for row, before, digits in (
+                (by_lean, words, ".1f"),
+                (by_lean | {"metric": "weights"}, f"{words} # ± # | # |", form),
+            ):
+                value = in_millionths(column)
+                found.append(Number(page, f"{before} {shown} |", file, row, value, digits))
+    return found
+
+
+def in_millionths(column: str) -> Callable[[Any], float]:
+    return lambda rows: 1e6 * rows[column].item()
+
+
+def offsets() -> list[Number]:
+    """What one step of planning without foresight adds."""
+    page = "studies/planning/README.md"
+    return [
+        *offset(page, "best of 16 leans, adds {}", 96),
+        *offset(page, "The chosen offset adds {} to the mean order between 8 and 64 s", 64),
+        *offset(page, "after the branch, and {} between 8 and 96 s", 96),
+        most_of_an_offset(page, "One step is worth at most {} by the upper ends"),
+        most_of_an_offset("studies/README.md", "one step without it at most {}."),
+    ]
+
+
+def trainings() -> list[Number]:
+    """What PPO and the evolution strategy gained."""
+    page, file = (
+        "studies/trainings/README.md",
+        "studies/trainings/results/algorithms/algorithms.csv",
+    )
+    words = {"train_leaders": "PPO's five seeds gain", "evolution": "the evolution strategy's"}
+    columns = {"gain": "{} (# to #)", "gain_low": "# ({} to #)", "gain_high": "# (# to {})"}
+    return [
+        Number(page, f"{words[algorithm]} {form}", file, {"algorithm": algorithm}, column, ".3f")
+        for algorithm in words
+        for column, form in columns.items()
+    ]
+
+
+def headlines() -> list[Number]:
+    """In how many variants the headlines hold."""
+    found, claims = [], "studies/headlines/claims.csv"
+    for page in ("studies/README.md", "studies/headlines/README.md"):
+        found += [
+            Number(page, "Mostly: {} of #", claims, column=count("holds"), form="d"),
+            Number(page, "Mostly: # of {} answers", claims, column=len, form="d"),
+            Number(page, "answers hold, {} are open", claims, column=count("open"), form="d"),
+            Number(page, "are open, and {} fails", claims, column=count("fails"), form="d"),
+        ]
+    return found
+
+
+LOST_BELOW = "bw (s) at which mean Ψ_o falls through 0.3, "
+
+
+def section_4() -> list[Number]:
+    page = "studies/section4/README.md"
+    return [
+        Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
+        for words, quantity in (
+            ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),
+            ("and at {} s (# to #) with three. Through", f"{DENSITY}, 3 leaders, CW"),
+            ("bound of disorder, at {} s", f"{LOST_BELOW}no leaders"),
+            (
+                "disorder, at # s (# to #), and with three leaders {} s",
+                f"{LOST_BELOW}with 3 clockwise leaders minus without",
+            ),
+        )
+    ]
+
+
+def decided() -> list[Number]:
+    """What pages quote of the runs that were added."""
+    page, file = "studies/section4/README.md", "studies/decided/claims.csv"
+    medium = {"claim": "Leaders increase the order at medium noise"}
+    rise = {"claim": "Velocities change more abruptly than orientations"}
+    turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
+    slope = {"figure": "fig12"}
+    return [
+        Number(page, "at 1.4 s by {} (# to #; [# more", file, slope, form=".3f"),
+        Number(page, "at 1.4 s by # ({} to #; [# more", file, slope, "low", ".3f"),
+        Number(page, "at 1.4 s by # (# to {}; [# more", file, slope, "high", ".3f"),
+        Number(page, "at low, {} (# to #) at medium", file, medium, form="+.2f"),
+        Number(page, "at low, # ({} to #) at medium", file, medium, "low"),
+        Number(page, "at low, # (# to {}) at medium", file, medium, "high"),
+        Number(
+            page,
+            "rise shorter by {} s (#",
+            file,
+            rise,
+            lambda rows: -rows["measured"].item(),
+            ".1f",
+        ),
+        Number(page, "0 of {} [more runs]", file, turns, "n_runs", "d"),
+        Number(
+            "studies/section5/README.md",
+            "of {} [more runs](../decided/README.md) in the rarer",
+            file,
+            {"figure": "fig17"},
+            "n_runs",
+            "d",
+        ),
+    ]
+
+
+def current() -> list[Number]:
+    page, preset = "studies/current/README.md", {"reading": "preset constants, narrow, n = 27"}
+    return [
+        Number(page, words, "studies/current/claims.csv", preset | {"quantity": quantity})
+        for words, quantity in (
+            ("it is lost at {} s (# to #) with the strong", f"{LOST_BELOW}gain 0.32, k = 0"),
+            ("strong current, instead of {} s", f"{LOST_BELOW}gain 0.04, k = 0"),
+        )
+    ]
+
+
+def transition() -> list[Number]:
+    page, area = "studies/transition/README.md", "area of the loop in c4 in |m|, 80 min per noise"
+    cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
+    rings, claims = "studies/transition/condensation.csv", "studies/transition/claims.csv"
+    dense = {"c4": 0.1, "coverage": 0.6, "start": "one-jam"}
+    ring = "leapfrog, white c4 = 0.1, dt = 0.1 s, bw = 0, ring of 83 cm, n = "
+    outside = "coverage outside of jams, {} boats, coverage 0.6"
+    return [
+        *(
+            Number(page, words, rings, dense | {"n_boats": n}, "outside", form=".2f")
+            for words, n in (
+                ("the coverage outside is {}, # and #", 100),
+                ("the coverage outside is #, {} and #", 200),
+                ("the coverage outside is #, # and {}", 400),
+            )
+        ),
+        *(
+            Number(
+                page,
+                words,
+                claims,
+                {"quantity": outside.format(sizes), "reading": ring + n},
+                form=".2f",
+            )
+            for words, sizes, n in (
+                ("200 have {} (# to #) more than 100", "200 minus 100", "100"),
+                ("400 have {} (# to #) more than 200", "400 minus 200", "200"),
+            )
+        ),
+        *(
+            Number(page, words, claims, {"quantity": area, "reading": cell + n}, form=".3f")
+            for words, n in (
+                ("its area in |m| is {} (", "100"),
+                ("with 100 boats, {} (", "200"),
+                ("with 200 and {} (", "400"),
+            )
+        ),
+    ]
+
+
+def density() -> list[Number]:
+    page, quiet = "studies/density/README.md", "studies/density/results/quiet.csv"
+    flock = {"preset": "simulation", "pool": "wide", "n_boats": 20}
+    return [
+        Number(page, words, quiet, flock | {"c4": c4}, mean("abs_m"))
+        for words, c4 in (
+            ("|m| is {}, #, #, # and #,", 0.0),
+            ("|m| is #, #, #, # and {},", 0.1),
+        )
+    ]
+
+
+NUMBERS = [
+    *entries(),
+    *gradients(),
+    *plans("studies/planning/README.md"),
+    *offsets(),
+    *trainings(),
+    *headlines(),
+    *section_4(),
+    *current(),
+    *transition(),
+    *density(),
+    *decided(),
+]
+
+
+@pytest.mark.parametrize("number", NUMBERS, ids=lambda number: f"{number.page}: {number.words}")
+def test_pages_quote_the_data(number: Number) -> None:
+    found = number.shown(number.page_text())
+    assert found == [number.expected()], f"{number.file} {number.row}"
