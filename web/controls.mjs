@@ -31,7 +31,7 @@ const CHOICES = {
 /** Numbers of leaders that may run beside a flock, in words. */
 const NUMBERS_BESIDE = [["n_leaders=0", "no leaders"], ["n_leaders=1", "one leader"], ["n_leaders=4", "four leaders"]];
 
-/** The targets of so many leaders, half of them against the other half. */
+/** The targets of this number of leaders, half of them against the other half. */
 export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }

@@ -3,7 +3,7 @@
 /** Names of the columns that a flock fills, in their order. */
 export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
   "statistics", "contacts", "observation"];
-/** Numbers of a contact: two boats (−1 for a wall), place along the core, direction as a vector, force. */
+/** Numbers of a contact: two boats (−1 for a wall), position along the core, direction as a vector, force. */
 export const CONTACT = 6;
 
 /** The longest sentence, in letters: values may have hundreds of digits. */
@@ -35,7 +35,7 @@ export class Core {
   /** The core's declarations: fields, quantities … */
   describe() {
     this.exports.describe();
-    return this.#said();
+    return this.#answer();
   }
 
   /** All parameters of a request; no flock starts. */
@@ -62,32 +62,32 @@ export class Core {
     this.exports.close(flock);
   }
 
-  /** Keeps the heading that the visitor asks for. */
+  /** Sets the heading that the visitor chose. */
   steer(flock, heading) {
     this.#done(this.exports.steer(flock, heading));
   }
 
-  /** Takes up to so many samples within so much work; returns how many. */
+  /** Takes up to `samples` samples within `work`, in substeps times boats; returns their number. */
   advance(flock, samples, work) {
     const taken = this.exports.advance(flock, samples, work);
     this.#done(taken >= 0);
     return taken;
   }
 
-  /** Notes the contacts, and what a boat observes, at this moment. */
+  /** Fills the columns of contacts and of a boat's observation, as they are now. */
   look(flock, boat) {
     this.#done(this.exports.look(flock, boat));
   }
 
-  /** Starts a training; returns how far it is, and its policy. */
+  /** Starts a training; returns its progress and its policy. */
   train(asked) {
     return this.#ask(asked, () => this.exports.train());
   }
 
-  /** Takes so many branches of the training; returns as `train`. */
+  /** Takes a number of branches of the training; returns what `train` does. */
   learn(branches) {
     this.#done(this.exports.learn(branches));
-    return this.#said();
+    return this.#answer();
   }
 
   /** The quantity at this index of the table, of boats with an order at an angle and of a target of this sign. */
@@ -110,16 +110,16 @@ export class Core {
     const start = this.exports.input(bytes.length);
     new Uint8Array(this.exports.memory.buffer, start, bytes.length).set(bytes);
     this.#done(call());
-    return this.#said();
+    return this.#answer();
   }
 
   #done(isDone) {
     if (!isDone) {
-      throw new Refusal(this.#said());
+      throw new Refusal(this.#answer());
     }
   }
 
-  #said() {
+  #answer() {
     const [start, length] = [this.exports.text(), this.exports.text_length()];
     return JSON.parse(new TextDecoder().decode(new Uint8Array(this.exports.memory.buffer, start, length)));
   }

@@ -119,7 +119,7 @@ export class Flocks {
 
   /** Lets the simulator open or change the flocks; returns whether they continue from their state. */
   async become(wanted, kind) {
-    // Changes made meanwhile start from this.
+    // Changes that are made before the answer start from this.
     this.asked = wanted;
     const requests = requestsOf(wanted, this.kinds).map((each) =>
       (each.leaders === TRAINED && this.trained ? { ...each, trained: this.trained } : each));
@@ -147,11 +147,11 @@ export class Flocks {
     return isSame;
   }
 
-  /** Lets the flocks run for up to so many samples, within some time; returns what the simulator says. */
+  /** Advances the flocks by a number of samples at most, within some time; returns the simulator's answer. */
   async advance(question, onCycle) {
     const { runs } = this;
     const said = await this.simulator.ask("advance", question);
-    // The flocks may have become others meanwhile, or wait behind a recording.
+    // Since the question, other flocks may have replaced these, or a recording may be shown.
     if (runs === this.runs || runs === this.#behind?.runs) {
       this.append(said.taken, onCycle, runs);
     }
@@ -164,7 +164,7 @@ export class Flocks {
     });
   }
 
-  /** Lets the flocks run to a time, in s, as long as that is wanted and no others take their place. */
+  /** Advances the flocks to a time, in s, as long as that is wanted and no others replace them. */
   async runTo(time, isWanted) {
     const { runs } = this;
     for (;;) {

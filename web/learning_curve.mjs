@@ -18,12 +18,12 @@ export class LearningCurve {
     this.canvas = canvas;
   }
 
-  /** Starts with a training that ends after so many flock-hours. */
+  /** Starts with a training that ends after `end` flock-hours. */
   clear(end, law) {
     Object.assign(this, { points: [], end, law });
   }
 
-  /** The flock-hours from which the next of so many judgments is due: one at the start, and one at the end. */
+  /** The flock-hours at which the next judgment is due, of a number from the start to the end of the training. */
   next(judgments) {
     return Math.min(this.points.length / (judgments - 1), 1) * this.end;
   }

@@ -122,7 +122,7 @@ export class LivePage {
     }
   }
 
-  /** Makes one change after another; of those wanted meanwhile, the last of each name. */
+  /** Makes one change after another. Of changes that came during the one before, only the last of each name counts. */
   async #change() {
     if (this.changing) {
       return;
@@ -214,7 +214,7 @@ export class LivePage {
     }
   }
 
-  /** Keeps something else than the flocks in the link; null for the default. */
+  /** Stores a setting of the page, such as its speed, in the link; null removes it. */
   remember(name, value) {
     if (value === null) {
       delete this.other[name];

@@ -29,7 +29,7 @@ export class Playback {
     this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
   }
 
-  /** Other flocks, at their present. */
+  /** Shows other flocks, at their latest sample. */
   restart() {
     const { flocks, hand, view } = this.#page;
     this.time = flocks.runs[0].end;
@@ -76,7 +76,7 @@ export class Playback {
     return this.#page.other.lesson === "steer" && this.#page.flocks.areYours;
   }
 
-  /** Pauses at a still picture or a round, which wait for the visitor; plays again after it. */
+  /** Pauses if the link asks for a still picture or starts a round of the game, which wait for the visitor; otherwise plays again. */
   hold(isStill) {
     const wasHeld = this.#page.isHeld;
     this.#page.isHeld = isStill || this.#isGame;

@@ -1,6 +1,6 @@
 // The quantities of a flock, and what their values mean.
 
-/** What large values under a picture mean. */
+/** Meanings of the large values under a picture. */
 export const MEANINGS = {
   psi_o: "1: all boats keep one angle to the wall, circling or jammed",
   rotation: "1: all circle clockwise; −1: counter-clockwise; 0: a jam",

@@ -29,7 +29,7 @@ const BESIDE = "beside.";
 const CHANGE = /^at\.(\d{1,4}(?:\.\d)?)\.(.+)$/;
 
 /**
- * What a fragment asks for: `flock` and `beside` (null: none) hold parameters by name, `changes` what changes of the
+ * The request in a fragment: `flock` and `beside` (null: none) hold parameters by name, `changes` what changes of the
  * flock on the way, `other` the rest, and `ignored` a sentence for each part that cannot be followed.
  */
 export function readLink(fragment, fields) {
@@ -130,7 +130,7 @@ export function requestOf(flock, kinds) {
   return request;
 }
 
-/** The simulator's requests for the flocks that are shown: each of so many seeds, and then those beside them. */
+/** The simulator's requests for the flocks that are shown: one for each seed, and then those beside them. */
 export function requestsOf({ flock, beside, copies = 1 }, kinds) {
   const kindsOfFlock = [flock, ...(beside ? [{ ...flock, ...beside }] : [])];
   return kindsOfFlock.flatMap((each) => Array.from({ length: copies }, (_, copy) => requestOf({ ...each, ...seedOf(each, copy) }, kinds)));

@@ -58,8 +58,8 @@ export function download(bytes, name) {
 }
 
 /**
- * The run of a recording's file. `check` gives the parameters and lengths of a request, `describe` what a run is
- * described by, and `derive` the rows of the quantities.
+ * The run of a recording's file. `check` gives the parameters and lengths of a request, `describe` the description of a
+ * run, and `derive` the rows of the quantities.
  */
 export async function runOfFile(file, about, { check, describe, derive }) {
   const because = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
@@ -108,9 +108,9 @@ export function derivedOf(arrays, { target, boats }, names) {
 /** Writes the flocks at a time as commands and in Python. */
 export function showTexts(flocks, time) {
   const { first, changes } = flocks.past;
-  const isTold = isSchedule(changes);
-  const told = isTold ? changes : [];
-  const { flock, beside } = isTold ? first : flocks.shown;
+  const hasSchedule = isSchedule(changes);
+  const schedule = hasSchedule ? changes : [];
+  const { flock, beside } = hasSchedule ? first : flocks.shown;
   const isYours = flock.leaders === YOU;
   const { leaders: _, ...lawful } = flock;
   const given = [isYours ? lawful : flock];
@@ -120,15 +120,15 @@ export function showTexts(flocks, time) {
   const isTrained = given.some(({ leaders }) => leaders === TRAINED);
   const texts = given.map((each) => (each.leaders === TRAINED ? { ...each, leaders: flocks.trained ? "policy.json" : "straight ahead" } : each));
   const seconds = Math.max(SECONDS, 60 * Math.ceil((time + 1) / 60));
-  const commands = texts.map((each) => commandLine(each, seconds, told));
+  const commands = texts.map((each) => commandLine(each, seconds, schedule));
   const byId = (id) => document.getElementById(id);
   byId("command").value = commands.join("\n").trim();
-  byId("python").value = pythonText(texts, seconds, flocks.kinds, told);
+  byId("python").value = pythonText(texts, seconds, flocks.kinds, schedule);
   byId("same").textContent = [
     isYours ? "How you steered is in the recording alone: these run the law in your place. " : "",
     isTrained && flocks.trained ? "policy.json is the file of your training, which led with earlier policies on the way. " : "",
     commands.includes("") ? "No command gives each leader a policy of its own, as Python does. " : "",
-    isTold ? "" : "These start as the flock is now: the link alone knows how leaders or the preset changed on the way. ",
+    hasSchedule ? "" : "These start as the flock is now: the link alone knows how leaders or the preset changed on the way. ",
     flocks.linked().isWhole ? "" : "So much changed on the way that the link holds the parameters of now alone. ",
   ].join("");
 }

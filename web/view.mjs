@@ -20,7 +20,7 @@ const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
 /** Time in ms between two updates of words and numbers, which nobody reads faster. */
 const WORDS_EVERY = 250;
 /** Time in ms between two sentences for those who do not see the flocks. */
-const TELL_EVERY = 5000;
+const ANNOUNCE_EVERY = 5000;
 /** Force, in cm/s², that a bar half as long as a hull is wide stands for. */
 const FORCE = 20;
 
@@ -157,7 +157,7 @@ export class View {
       byId(key).previousElementSibling.replaceChildren(...legendOf(chart.runs, this.#quantity(key), time));
     }
     this.#scores.forEach((score, index) => { score.replaceChildren(...this.#score(index, time)); });
-    this.#tellWhatIsDone(time, isPlaying);
+    this.#announceFlocks(time, isPlaying);
     this.#showStatistics();
     this.#showObserved();
   }
@@ -188,7 +188,7 @@ export class View {
   }
 
   /** Says what the flocks do to those who do not see it: in the pictures' names, and in a sentence that is read now and then. */
-  #tellWhatIsDone(time, isPlaying) {
+  #announceFlocks(time, isPlaying) {
     const { areYours } = this.#flocks;
     const told = this.panels.map(({ canvas, run }) => {
       const words = doing(run, run.sampleAt(time), this.palette);
@@ -199,7 +199,7 @@ export class View {
     // No more than is spoken before the next sentence.
     const game = () => [clockwise(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((each) => scoreWords(each, this.rounds))];
     const said = [...chosen, ...(areYours ? game() : told)].join(" ");
-    const isDue = !isPlaying || performance.now() - this.#told > TELL_EVERY;
+    const isDue = !isPlaying || performance.now() - this.#told > ANNOUNCE_EVERY;
     if (isDue && said !== byId("doing").textContent) {
       this.#told = performance.now();
       byId("doing").textContent = said;

@@ -20,8 +20,8 @@ export const ANSWERS = {
   check: ({ request }) => ({ values: core.check(request) }),
 
   /**
-   * The rows of all quantities, in the order of their `names`, of so many samples: recorded ones as they are or from
-   * the `states`, the rest from those. The flock is the one that was checked last.
+   * The rows of all quantities, in the order of their `names`, for a number of samples. Recorded quantities are given,
+   * or computed from the `states`; the others follow from them. The flock is the one that was checked last.
    */
   derive({ names, recorded, states, samples, sign }) {
     const rows = Array.from({ length: samples }, (_, k) => {
@@ -56,7 +56,7 @@ export const ANSWERS = {
     }
   },
 
-  /** Takes samples of all flocks, up to so many within so many milliseconds. */
+  /** Takes samples of all flocks, up to a number and for at most this many milliseconds. */
   advance({ samples, milliseconds, boat, heading }) {
     const start = performance.now();
     for (const flock of shown.keys()) {
@@ -82,7 +82,7 @@ export const ANSWERS = {
 
   train: ({ asked }) => ({ training: core.train(asked) }),
 
-  /** Goes on with the training for so many milliseconds, or to its end. */
+  /** Continues the training for this many milliseconds, or to its end. */
   learn({ milliseconds }) {
     const start = performance.now();
     let training = core.learn(1);
@@ -92,17 +92,17 @@ export const ANSWERS = {
     return { training };
   },
 
-  /** The mean of the quantity at this index, of so many in each sample, over so many samples of a flock from its start. */
+  /** The mean of the quantity at this index, of `quantities` in each sample, over the first `samples` samples of a flock. */
   judge({ request, samples, index, quantities }) {
     core.open(0, request);
     core.take(0);
     advanced(0, samples);
-    const values = core.take(0).series.filter((_, place) => place % quantities === index);
+    const values = core.take(0).series.filter((_, position) => position % quantities === index);
     core.close(0);
     return { mean: values.reduce((sum, value) => sum + value, 0) / values.length };
   },
 
-  /** The contacts, and what a boat observes, at this moment. */
+  /** The contacts, and a boat's observation, at this moment. */
   look({ boat }) {
     for (const flock of shown.keys()) {
       core.look(flock, boat);

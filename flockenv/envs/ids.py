@@ -56,7 +56,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         **_TEN_BOATS,
     ),
     "flockenv/Order-noisy-v0": _from_nothing(
-        "Order-easy at half as much noise again: what a rudder does drowns sooner.",
+        "Order-easy at half as much noise again: the effect of a rudder is lost sooner.",
         0.45,
         120.0,
         **_TEN_BOATS,

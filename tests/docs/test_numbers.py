@@ -168,7 +168,7 @@ def readme() -> list[Number]:
         *(
             Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", ".2g")
             for words, row in (
-                ("ends {} cm from its exact place with the default scheme", OURS),
+                ("ends {} cm from its exact position with the default scheme", OURS),
                 ("{} cm with the first-order scheme `moreau`", MOREAU),
                 ("and {} cm in rapier", RAPIER),
             )

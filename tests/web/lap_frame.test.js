@@ -21,7 +21,7 @@ function words(pose) {
 
 function drawn(pose) {
   const picture = canvas(800, 800);
-  drawLapFrame({ context: picture.getContext(), canvas: picture, palette: {}, scale: 10, poses: [pose], place: () => [400, 400], run: { lengths: { hull_radius_cm: 5 } } }, 0);
+  drawLapFrame({ context: picture.getContext(), canvas: picture, palette: {}, scale: 10, poses: [pose], pixelOf: () => [400, 400], run: { lengths: { hull_radius_cm: 5 } } }, 0);
   return picture.calls;
 }
 

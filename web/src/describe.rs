@@ -59,7 +59,7 @@ pub(crate) fn all() -> Json {
     })
 }
 
-/// The values of all parameters, and lengths that a picture needs, in cm; null for a wall that is not there.
+/// The values of all parameters, and lengths that a picture needs, in cm; null for a missing wall.
 pub(crate) fn values(parameters: &FlockParameters) -> Json {
     let fields = FlockParameters::FIELDS.iter().zip(parameters.values());
     let values: serde_json::Map<_, _> = fields

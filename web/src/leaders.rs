@@ -38,8 +38,8 @@ pub(crate) struct Observing {
 }
 
 impl Leaders {
-    /// The policy of this name, or the policies whose names commas separate, one for each leader. `trained`: that of
-    /// the visitor's training in JSON; those of none head straight ahead.
+    /// The policy of this name, or the policies whose names commas separate, one for each leader. `trained`: the policy
+    /// that the visitor trained, in JSON; without it, trained leaders head straight ahead.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for unknown names, and flocks that the policy is not made for.
@@ -142,7 +142,7 @@ fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
     })
 }
 
-/// What a leader observes by default.
+/// A leader's observation in the default layout.
 ///
 /// # Errors
 /// Those of [`observe_flock`].

@@ -20,7 +20,7 @@ use serde_json::{Value as Json, json};
 use std::cell::RefCell;
 use training::Training;
 
-/// How many flocks the page runs side by side: three of a game, and the law's.
+/// Number of flocks that the page may run side by side: three of a game, and the law's three.
 const FLOCKS: usize = 6;
 
 #[derive(Default)]
@@ -47,7 +47,7 @@ impl Page {
             .map_err(|_| FlockError::parameter("input", "bytes", "text in UTF-8"))
     }
 
-    /// Keeps what a call says, and returns whether it did what it should.
+    /// Stores the answer of a call, and returns whether the call succeeded.
     fn say(&mut self, said: Result<Json, FlockError>) -> u32 {
         let is_done = said.is_ok();
         let said = said.unwrap_or_else(|error| {
@@ -78,25 +78,25 @@ pub extern "C" fn input(length: usize) -> *mut u8 {
     })
 }
 
-/// Where the text of the last call is.
+/// Address of the last call's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
     with(|page| page.text.as_ptr())
 }
 
-/// How many bytes it has.
+/// Number of bytes of that text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_length() -> usize {
     with(|page| page.text.len())
 }
 
-/// Says which parameters, policies, quantities, entries of an observation and colors there are.
+/// Answers with all parameters, policies, quantities, entries of an observation and colors.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> u32 {
     with(|page| page.say(Ok(describe::all())))
 }
 
-/// Says all parameters of a request, without starting it.
+/// Answers with all parameters of a request, and starts no flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn check() -> u32 {
     with(|page| {
@@ -110,7 +110,7 @@ pub extern "C" fn check() -> u32 {
     })
 }
 
-/// Says the recorded quantities of the flock that was last checked in a state: JSON with the lists `pose` and
+/// Answers with the recorded quantities of the flock that was checked last, in a state: JSON with the lists `pose` and
 /// `velocity`, three numbers a boat; null for a quantity that is undefined.
 #[unsafe(no_mangle)]
 pub extern "C" fn recorded() -> u32 {
@@ -185,7 +185,7 @@ pub extern "C" fn change(flock: usize) -> u32 {
     })
 }
 
-/// Forgets a flock.
+/// Drops a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn close(flock: usize) {
     with(|page| {
@@ -195,7 +195,7 @@ pub extern "C" fn close(flock: usize) {
     });
 }
 
-/// Starts a training from a request, and says where it is.
+/// Starts a training from a request, and answers with its progress.
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> u32 {
     with(|page| {
@@ -205,7 +205,7 @@ pub extern "C" fn train() -> u32 {
     })
 }
 
-/// Takes so many branches of the training, and says where it is then.
+/// Takes a number of branches of the training, and answers with its progress.
 #[unsafe(no_mangle)]
 pub extern "C" fn learn(branches: u32) -> u32 {
     with(|page| {
@@ -219,8 +219,8 @@ pub extern "C" fn learn(branches: u32) -> u32 {
     })
 }
 
-/// The derived quantity in this place of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,
-/// clockwise for a positive sign; NaN for a quantity that has more to it.
+/// The derived quantity at this index of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,
+/// clockwise for a positive sign; NaN for a quantity that depends on more.
 #[unsafe(no_mangle)]
 pub extern "C" fn derived(index: usize, psi_o: f64, phi_o: f64, sign: f64) -> f64 {
     let target = if sign < 0.0 {
@@ -266,8 +266,8 @@ pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32
     })
 }
 
-/// Fills the columns of contacts, and of what a leader observes, with what they are now; a boat that is no leader
-/// observes nothing.
+/// Fills the columns of contacts and of a leader's observation, as they are now; a boat that is no leader observes
+///nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
     with(|page| {
@@ -286,13 +286,13 @@ fn column_of(flock: usize, column: usize) -> (*const f64, usize) {
     })
 }
 
-/// Where a column of a flock is.
+/// Address of a column of a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn column(flock: usize, column: usize) -> *const f64 {
     column_of(flock, column).0
 }
 
-/// How many numbers it has.
+/// Number of numbers in that column.
 #[unsafe(no_mangle)]
 pub extern "C" fn column_length(flock: usize, column: usize) -> usize {
     column_of(flock, column).1
@@ -308,7 +308,7 @@ pub extern "C" fn take(flock: usize) {
     });
 }
 
-/// How many columns there are, in the order of [`Columns`].
+/// Number of columns, in the order of [`Columns`].
 #[unsafe(no_mangle)]
 pub extern "C" fn columns() -> usize {
     Columns::default().len()

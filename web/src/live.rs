@@ -1,4 +1,4 @@
-//! A flock that continues for as long as somebody watches.
+//! A flock that continues for as long as the page shows it.
 
 use crate::leaders::{CONTROL_HZ, Leaders, observed};
 use crate::request::Request;
@@ -14,8 +14,8 @@ const LONGEST_S: f64 = 1e9;
 
 /// Numbers of the samples since they were last taken: time in s, phase (0 to 3), whether it is analyzed, poses,
 /// velocities, rudders, quantities; then the statistics of [`statistics`] at the last sample, the contacts that carry a
-/// force now (boats, −1 for a wall; place along the core in cm; direction as a vector; force in cm/s²), and what a leader
-/// observes now.
+/// force now (boats, −1 for a wall; position along the core in cm; direction as a vector; force in cm/s²), and what a
+/// leader observes now.
 pub(crate) type Columns = [Vec<f64>; 10];
 
 /// The quantities of a sample, in the order of the table.
@@ -90,7 +90,7 @@ impl Live {
         self.flock.parameters()
     }
 
-    /// What was sampled.
+    /// The columns of the samples.
     pub fn columns(&mut self) -> &mut Columns {
         &mut self.columns
     }

@@ -1,4 +1,4 @@
-//! What the page asks for: parameters by name, a seed, and how leaders steer.
+//! Requests of the page: parameters by name, a seed, and how leaders steer.
 
 use crate::json::read;
 use crate::leaders::{EVERY_SUBSTEP, Leaders};
@@ -10,7 +10,7 @@ use serde_json::{Map, Value as Json};
 /// Letters of a value that a message shows.
 const SHOWN: usize = 40;
 
-/// A request as it is written. The seed is text: JavaScript has no whole numbers of 64 bits.
+/// A request as JSON holds it. The seed is text: JavaScript has no whole numbers of 64 bits.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Written {
@@ -52,7 +52,7 @@ pub(crate) fn set_given<T>(
                 let given = json
                     .as_str()
                     .map_or_else(|| json.to_string(), str::to_owned);
-                FlockError::parameter(field.name, shown(&given), field.accepted())
+                FlockError::parameter(field.name, shortened(&given), field.accepted())
             }
             other => other,
         })?;
@@ -79,7 +79,7 @@ impl Request {
         let preset: Preset = written.preset.as_deref().unwrap_or("simulation").parse()?;
         let seed = written.seed.as_deref().unwrap_or("0");
         let seed = seed.parse().map_err(|_| {
-            FlockError::parameter("seed", shown(seed), "a whole number from 0 to 2^64 - 1")
+            FlockError::parameter("seed", shortened(seed), "a whole number from 0 to 2^64 - 1")
         })?;
         let defaults = FlockParameters::preset(preset);
         let mut parameters = defaults.clone();
@@ -113,7 +113,7 @@ impl Request {
     }
 }
 
-fn shown(text: &str) -> String {
+fn shortened(text: &str) -> String {
     let mut letters = text.chars();
     let start: String = letters.by_ref().take(SHOWN).collect();
     if letters.next().is_some() {

@@ -1,4 +1,4 @@
-//! A training that the page goes on with, some branches at a time.
+//! A training that the page continues, some branches at a time.
 
 use crate::request::{Request, Written, set_given};
 use flockenv::environment::ActionMode;
@@ -56,7 +56,7 @@ impl Training {
         })
     }
 
-    /// Takes a branch more.
+    /// Takes one more branch.
     ///
     /// # Errors
     /// As for [`Trainer::advance`].

@@ -44,8 +44,8 @@ export class Chart {
 
   yOf(value) {
     const [low, high] = this.range;
-    const room = this.height - EDGE.top - EDGE.bottom;
-    return EDGE.top + ((high - value) / (high - low)) * room;
+    const height = this.height - EDGE.top - EDGE.bottom;
+    return EDGE.top + ((high - value) / (high - low)) * height;
   }
 
   draw(time, quantity, palette) {
@@ -70,7 +70,7 @@ export class Chart {
     context.stroke();
   }
 
-  /** The whole run changes with the size, the series and the colors only. */
+  /** Draws the whole run from a kept picture, which changes only with the size, the series and the colors. */
   #drawKept(context, quantity, palette) {
     const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
     if (this.cached?.key !== key) {

@@ -1,8 +1,8 @@
-// Contact forces as bars, whose area is in proportion to the force: less than half a boat long, and wider for what is more.
+// Contact forces as bars whose area is in proportion to the force. Bars are less than half a boat long: a larger force makes them wider.
 
 import { roundNumber } from "./words.mjs";
 
-/** Length of the bar of the scale's force, and width of the bars that are not longer than the longest, in widths of a hull. */
+/** Length of the bar of the scale's force, and width of all bars but those of the greatest length, in widths of a hull. */
 const [LENGTH, NARROWEST] = [0.5, 0.2];
 /** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam are no line. */
 const LONGEST = 0.45;
@@ -29,7 +29,7 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** A force's bar on a boat of this length, in hull widths. A bar is as wide as a boat at most; 0 long for no bar. */
+/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 is no bar. */
 export function barOf(force, scale, boat) {
   const [widths, longest] = [(LENGTH * force) / scale, LONGEST * boat];
   const length = widths < SHORTEST ? 0 : Math.min(widths, longest);

@@ -151,7 +151,7 @@ export class Panel {
     return corner;
   }
 
-  /** The signed order; without leaders there is none, and rotation stands in its place. */
+  /** The signed order, or the rotation of a run without leaders. */
   #sense() {
     const hasTarget = this.run.target !== null;
     this.signedKey = hasTarget ? "signed_order" : "rotation";
@@ -200,7 +200,7 @@ export class Panel {
   }
 
   #showCard(boat, sample) {
-    const isShown = boat !== null && boat < this.run.boats && this.run.isThere(boat, sample);
+    const isShown = boat !== null && boat < this.run.boats && this.run.isPresent(boat, sample);
     this.card.hidden = !isShown;
     if (!isShown) {
       return;
@@ -219,18 +219,18 @@ export class Panel {
     this.#placeCard(boat);
   }
 
-  /** In the hole of the pool if it has room there, otherwise below the picture: never over the flock. */
+  /** Puts the card into the hole of the pool if it fits, otherwise below the picture: never over the flock. */
   #placeCard(boat) {
     const { card, canvas, scene } = this;
     const hole = (this.run.lengths.inner_radius_cm ?? 0) * scene.scale;
     const asked = `${boat} ${hole}`;
     if (asked !== this.#placed) {
       this.#placed = asked;
-      // A copy is measured: without the card in its place for an instant, the page would be shorter, and scroll back.
+      // A copy is measured: if the card itself left the page for an instant, the page would be shorter, and scroll back.
       const copy = card.cloneNode(true);
       copy.className = "card inside";
       this.picture.append(copy);
-      // With some room for longer numbers, which come later.
+      // With some margin for longer numbers, which come later.
       card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < 0.96 * hole);
       copy.remove();
     }
@@ -240,7 +240,7 @@ export class Panel {
   }
 }
 
-/** A boat's numbers at a sample: name, value, unit and, where the name says too little, its meaning. */
+/** A boat's numbers at a sample: name, value, unit and, if the name says too little, its meaning. */
 export function boatNumbers(run, boat, sample) {
   const at = (name, channel) => run.columns.get(name).at(sample, channel);
   const numbers = [

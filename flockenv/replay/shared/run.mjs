@@ -53,15 +53,15 @@ export class Run {
       return now + share * (column.at(next, channel) - now);
     };
     const nowhere = [NaN, NaN, NaN];
-    return Array.from({ length: this.boats }, (_, boat) => this.isThere(boat, sample) ? [
+    return Array.from({ length: this.boats }, (_, boat) => this.isPresent(boat, sample) ? [
       between(position, 2 * boat),
       between(position, 2 * boat + 1),
       between(heading, boat),
     ] : nowhere);
   }
 
-  /** Whether a boat is there at a sample; tracked ones come and go. */
-  isThere(boat, sample) {
+  /** Whether a boat is present at a sample; tracked ones come and go. */
+  isPresent(boat, sample) {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }
 

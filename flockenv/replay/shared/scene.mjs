@@ -30,7 +30,7 @@ export function colors() {
   return { ...palette, window: `${palette.ink}12` };
 }
 
-/** Fits a canvas' pixels to its place on the page; returns its context in CSS pixels. */
+/** Fits a canvas's pixels to its size on the page; returns its context in CSS pixels. */
 export function fitted(canvas) {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.round(canvas.clientWidth * ratio);
@@ -86,17 +86,17 @@ export class Scene {
     if (trailSeconds > 0) {
       this.#trails(time, trailSeconds, boat);
     }
-    const isThere = (k) => !Number.isNaN(this.poses[k][0]);
+    const isPresent = (k) => !Number.isNaN(this.poses[k][0]);
     for (let k = this.run.boats - 1; k >= 0; k -= 1) {
-      // A canvas ignores a place that is no number, and would draw the boat in its corner.
-      if (isThere(k)) {
+      // A canvas ignores a position that is no number, and would draw the boat in its corner.
+      if (isPresent(k)) {
         this.#boat(k);
       }
     }
     if (forceScale !== null && this.run.hasForces) {
       drawForces(this, this.run.sampleAt(time), forceScale);
     }
-    if (boat !== null && isThere(boat)) {
+    if (boat !== null && isPresent(boat)) {
       this.#ring(boat);
     }
   }
@@ -108,7 +108,7 @@ export class Scene {
     let found = null;
     let nearest = reach;
     this.poses.forEach(([, , heading], boat) => {
-      const [cx, cy] = this.place(boat);
+      const [cx, cy] = this.pixelOf(boat);
       const [dx, dy] = [x - cx, y - cy];
       const [ux, uy] = [Math.cos(heading), -Math.sin(heading)];
       const length = half * this.scale;
@@ -122,7 +122,7 @@ export class Scene {
   }
 
   /** A boat's position on the canvas. */
-  place(boat) {
+  pixelOf(boat) {
     return this.pixel(this.poses[boat][0], this.poses[boat][1]);
   }
 
@@ -145,9 +145,9 @@ export class Scene {
       this.scale = (side * (0.5 - MARGIN)) / outer;
       return;
     }
-    const there = this.poses.filter((pose) => !Number.isNaN(pose[0]));
-    const xs = there.map((pose) => pose[0]);
-    const ys = there.map((pose) => pose[1]);
+    const present = this.poses.filter((pose) => !Number.isNaN(pose[0]));
+    const xs = present.map((pose) => pose[0]);
+    const ys = present.map((pose) => pose[1]);
     const [left, right] = [Math.min(...xs), Math.max(...xs)];
     const [low, high] = [Math.min(...ys), Math.max(...ys)];
     this.center = [(left + right) / 2, (low + high) / 2];
@@ -278,7 +278,7 @@ export class Scene {
           context.lineTo(...this.pixel(position.at(k, 2 * boat), position.at(k, 2 * boat + 1)));
         }
         if (piece === TRAIL_PIECES - 1) {
-          context.lineTo(...this.place(boat));
+          context.lineTo(...this.pixelOf(boat));
         }
         context.stroke();
       }
@@ -311,7 +311,7 @@ export class Scene {
       context.fill();
     };
     context.save();
-    context.translate(...this.place(boat));
+    context.translate(...this.pixelOf(boat));
     context.rotate(-this.poses[boat][2]);
     fill(radius, palette.outline);
     if (ring) {
@@ -338,7 +338,7 @@ export class Scene {
     context.strokeStyle = this.palette.pin;
     context.lineWidth = 2;
     context.beginPath();
-    context.arc(...this.place(boat), reach + 4, 0, 2 * Math.PI);
+    context.arc(...this.pixelOf(boat), reach + 4, 0, 2 * Math.PI);
     context.stroke();
   }
 }

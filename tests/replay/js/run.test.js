@@ -32,11 +32,11 @@ test("a tracked boat that is not there has no pose and no card, and has its own 
   run.ids = ["red", "blue"];
   assert.deepEqual(run.posesAt(0)[1], [30, 0, 1]);
   assert.deepEqual(run.posesAt(0.6)[1], [NaN, NaN, NaN]);
-  assert.equal(run.isThere(1, 1), false);
-  assert.equal(run.isThere(0, 1), true);
+  assert.equal(run.isPresent(1, 1), false);
+  assert.equal(run.isPresent(0, 1), true);
   assert.equal(run.nameOf(1), "blue");
   assert.equal(runOf().nameOf(1), "boat 1");
-  assert.equal(runOf().isThere(1, 1), true);
+  assert.equal(runOf().isPresent(1, 1), true);
 });
 
 test("contacts belong to their sample", () => {
