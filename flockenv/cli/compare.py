@@ -11,12 +11,12 @@ from flockenv._io.atomic_write import write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.cli.compare_entries import compare_entries
 from flockenv.cli.compare_plan import CompareOptions, Plan, refuse_all_but
-from flockenv.cli.console import console, echo, errors, print_json
+from flockenv.cli.console import console, echo, errors, print_json, warn
 from flockenv.cli.options import takes
 from flockenv.cli.output import prepare, printable
 from flockenv.cli.progress import progress
 from flockenv.comparison.levels import SUITE as LEVELS_SUITE
-from flockenv.comparison.report import ComparisonReport, titled
+from flockenv.comparison.report import ComparisonReport, overlap_notes, titled
 from flockenv.comparison.suite import scores_table
 
 _TRIAL_FLOCKS = 16
@@ -58,6 +58,8 @@ def compare(options: CompareOptions) -> None:
     if plan.own:
         first = plan.policies[plan.cases[0].name][plan.own[0]]
         write_text(options.out / "card.md", result.card(plan.own[0], first))
+    for line in overlap_notes(result.runs):
+        warn(line)
     tables = {"means": result.means, "differences": result.differences}
     if options.suite:
         scores = scores_table(result)

@@ -162,7 +162,7 @@ class ComparisonReport:
             f"{Line(**{name: row[name] for name in names})}"
             for row in self.lines.to_dict("records")
         ]
-        return "\n".join([*differences, *lines, *overlap_notes(self.runs)])
+        return "\n".join([*differences, *lines])
 
     def card(self, name: str, policy: Policy | Mapping[str, Policy]) -> str:
         """Return a policy's model card as Markdown: its provenance and its comparison."""
@@ -179,7 +179,8 @@ class ComparisonReport:
         printed = StringIO()
         Console(file=printed, width=120).print(self.table())
         text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
-        return "\n".join([*lines, "", "```text", text, "", self.in_words(), "```", ""])
+        words = [self.in_words(), *overlap_notes(self.runs)]
+        return "\n".join([*lines, "", "```text", text, "", *words, "```", ""])
 
 
 def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str]:

@@ -129,6 +129,18 @@ def test_a_policy_for_each_leader(cli, tmp_path: Path) -> None:
     assert (row["policy"], row["mean"]) == ("pair", pytest.approx(0.0, abs=1e-9))
 
 
+@pytest.mark.parametrize("form", [[], ["--full"], ["--json"]])
+def test_overlaps_beyond_the_tolerance_are_said_in_one_line(cli, tmp_path: Path, form) -> None:
+    """Boats as fast as bullets are more than a substep and its halves can take apart."""
+    bullets = ["--set", "speed_cm_s=5000", "--set", "dt_s=0.1", "--bw-s", "0.3"]
+    words = ["compare", *BRIEF, "--n-leaders", "0", *bullets, *form, "--out", str(tmp_path)]
+    said = cli.succeeds(*words).stderr.replace("\n", " ")
+    runs = pd.read_csv(tmp_path / "runs.csv")
+    deep = runs[runs["unsolved"] > 0]
+    assert len(deep)
+    assert said.count(f"{len(deep)} of {len(runs)} episodes left overlaps deeper than") == 1
+
+
 def test_too_short_for_a_frame_in_the_window_is_written_as_unknown(cli, tmp_path: Path) -> None:
     short = ["--episodes", "2", "--minutes", "0.01", "--set", "n_boats=8", "--pool", "narrow"]
     done = cli.succeeds("compare", *short, "--full", "--out", tmp_path)
