@@ -8,6 +8,7 @@ use crate::support::{
     OPEN_WATER, VELOCITY_SCHEMES, deepest_overlap, driven, flock_of, inert, table_3, take_substeps,
     wall,
 };
+use approx::assert_abs_diff_eq;
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Preset};
@@ -189,6 +190,32 @@ fn no_minute_of_a_crowded_cycle_overlaps_by_more_than_the_tolerance() {
             assert!(overlap <= tolerance_cm, "{dt_s} {seed}: {overlap} cm");
             assert_eq!(statistics.unsolved, 0, "{dt_s} {seed}");
         }
+    }
+}
+
+#[test]
+fn a_halved_substep_takes_both_halves() {
+    // Two boats meet so fast that a substep is halved, and a third one far away drifts on undisturbed.
+    for scheme in VELOCITY_SCHEMES {
+        let p = FlockParameters {
+            dt_s: 0.1,
+            tolerance_cm: 1e-4,
+            ..inert(scheme)
+        };
+        let mut flock = flock_of(
+            &p,
+            &[
+                ([0.0, 0.0, 0.0], [1500.0, 0.0, 0.0]),
+                ([40.0, 3.0, 2.0], [-1500.0, 0.0, 0.0]),
+                ([0.0, 400.0, 0.0], [7.0, -3.0, 0.0]),
+            ],
+        );
+        take_substeps(&mut flock, 1);
+        assert!(flock.statistics().halved_substeps > 0, "{scheme:?}");
+        assert_eq!(flock.time_s(), 0.1, "{scheme:?}");
+        let x = flock.poses()[2].position;
+        assert_abs_diff_eq!(x.x, 0.7, epsilon = 1e-9);
+        assert_abs_diff_eq!(x.y, 399.7, epsilon = 1e-9);
     }
 }
 
