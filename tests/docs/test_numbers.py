@@ -32,6 +32,8 @@ OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / 1e-4 cm", 
 MOREAU = OURS | {"setting": "moreau / block-pivoting / 1e-4 cm"}
 RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
 JAM = {"scene": "jam", "n": 27, **OURS}
+CYCLE = JAM | {"scene": "cycle"}
+LARGE_JAM = JAM | {"n": 1000}
 
 SECTION5 = "studies/section5/results/section5.csv.gz"
 WIDE = {"pool": "wide", "n_leaders": 0}
@@ -69,12 +71,11 @@ def throughput() -> list[Number]:
 def speed() -> list[Number]:
     """Times over those of other engines."""
     page, table, threads = "docs/speed_vs_error.md", f"{SPEED}speed.csv", f"{SPEED}threads.csv"
-    cycle = JAM | {"scene": "cycle"}
     found = [
         Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
-        Number(page, "and {} µs if they move", table, cycle, "us_per_step", ".1f"),
+        Number(page, "and {} µs if they move", table, CYCLE, "us_per_step", ".1f"),
         Number(page, "rapier needs {} and # times", table, JAM, "faster", ".1f"),
-        Number(page, "rapier needs # and {} times", table, cycle, "faster", ".0f"),
+        Number(page, "rapier needs # and {} times", table, CYCLE, "faster", ".0f"),
         Number(
             page,
             "10 000 boats runs {} times",
@@ -112,9 +113,16 @@ def energy() -> list[Number]:
 
     without = {"scheme": "leapfrog", "c0_per_s": 0.0}
     words = {0.01: "{}, # and # %", 0.02: "#, {} and # %", 0.1: "#, # and {} %"}
+    literal = {"scheme": "paper", "dt_s": 0.1}
     return [
-        Number(page, f"gained at most {words[dt]} in one", table, without | {"dt_s": dt}, percent)
-        for dt in words
+        *(
+            Number(
+                page, f"gained at most {words[dt]} in one", table, without | {"dt_s": dt}, percent
+            )
+            for dt in words
+        ),
+        Number(page, "`paper` gained at most {} %", table, literal | {"c0_per_s": 0.0}, percent),
+        Number(page, "in one, and {} % with drag", table, literal | {"c0_per_s": 1.0}, percent),
     ]
 
 
@@ -159,12 +167,23 @@ def levels() -> list[Number]:
     return laws
 
 
+def box2d(rows: Any) -> float:
+    """Time of Box2D's step over ours in a jam of 1000 boats."""
+    times = rows[(rows["n"] == 1000) & (rows["scene"] == "jam") & (rows["dt_s"] == 0.01)]
+    times = times.set_index(["engine", "setting"])["us_per_step"]
+    theirs = times["Box2D (f32)", "4 substeps / unit 10 cm"]
+    return theirs / times[OURS["engine"], OURS["setting"]]
+
+
 def readme() -> list[Number]:
     """Numbers of the front page."""
     page = "README.md"
     return [
         Number(page, "takes {} µs on one core", f"{SPEED}speed.csv", JAM, "us_per_step", ".1f"),
-        Number(page, "needs {} times as long", f"{SPEED}speed.csv", JAM, "faster", ".1f"),
+        Number(page, "needs {} times as long,", f"{SPEED}speed.csv", JAM, "faster", ".1f"),
+        Number(page, "{} times if the boats move", f"{SPEED}speed.csv", CYCLE, "faster", ".0f"),
+        Number(page, "{} times in a jam of 1000", f"{SPEED}speed.csv", LARGE_JAM, "faster", ".1f"),
+        Number(page, "needs {} times as long in that", f"{SPEED}speed.csv", {}, box2d, ".1f"),
         *(
             Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", ".2g")
             for words, row in (
