@@ -15,6 +15,7 @@ import gzip
 import io
 import math
 import os
+import signal
 import sys
 import tempfile
 import time
@@ -140,7 +141,7 @@ class Study:
             ]
         columns = list(rows[0])
         folder, _, name = self.name.partition("/")
-        store = _Store(existing(options.out / folder / "results" / f"{name}.csv"), columns)
+        store = Store(existing(options.out / folder / "results" / f"{name}.csv"), columns)
         keys = {store.key(row): row for row in rows}
         if not self.adaptive and (others := store.lines.keys() - keys.keys()):
             raise StudyError(
@@ -155,7 +156,7 @@ class Study:
         return store.table(keys)
 
 
-class _Store:
+class Store:
     """A file of results, by the text of the rows."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
@@ -268,9 +269,18 @@ def write_rows(path: Path, text: str, rows: int) -> Path:
     return plain
 
 
-def write_table(path: Path, table: pd.DataFrame, form: str = "%.5g") -> None:
-    """Write a table of results, with the results version of this code as its last column."""
-    versioned = table.assign(**{VERSION: RESULTS_VERSION})
+def write_table(
+    path: Path, table: pd.DataFrame, form: str = "%.5g", version: int = RESULTS_VERSION
+) -> None:
+    """Write a table of results, with the results version of its runs as its last column.
+
+    Raises
+    ------
+    StudyError
+        If a table of another version is there.
+    """
+    check_version(path, version)
+    versioned = table.assign(**{VERSION: version})
     text = versioned.to_csv(index=False, float_format=form, lineterminator="\n")
     write_rows(path, text, len(table))
 
@@ -283,19 +293,33 @@ def resumed(path: Path, **how: Any) -> pd.DataFrame:
     StudyError
         For a file that cannot be read, and for rows of another results version than this code's.
     """
+    check_version(path)
     path = existing(path)
-    if not path.exists():
-        return pd.DataFrame()
+    table = _read(path, **how) if path.exists() else pd.DataFrame()
+    return table.drop(columns=VERSION, errors="ignore")
+
+
+def check_version(path: Path, version: int = RESULTS_VERSION) -> None:
+    """Refuse to replace a table of another results version; scripts ask before they run.
+
+    Raises
+    ------
+    StudyError
+        If the table that is there cannot be read, or names another version, or none.
+    """
+    path = existing(path)
+    if path.exists() and len(_read(path)) and (found := version_of(path)) != version:
+        raise StudyError(
+            f"{path} has rows of results version {found}, and this command makes rows of version "
+            f"{version}; move it away, or write elsewhere"
+        )
+
+
+def _read(path: Path, **how: Any) -> pd.DataFrame:
     try:
-        table = pd.read_csv(path, **how)
+        return pd.read_csv(path, **how)
     except (OSError, EOFError, ValueError) as error:
         raise StudyError(f"{path} cannot be read: {error}") from error
-    if (version := version_of(path)) != RESULTS_VERSION:
-        raise StudyError(
-            f"{path} has rows of results version {version}, and this code would add rows of "
-            f"version {RESULTS_VERSION}; --out names another file"
-        )
-    return table.drop(columns=VERSION, errors="ignore")
 
 
 def version_of(path: Path) -> int:
@@ -486,11 +510,15 @@ def main(script: Callable[[Options], None], arguments: Sequence[str] | None = No
     run(lambda: script(options))
 
 
-def run(command: Callable[[], None]) -> None:
-    """Run a command, and say in a line why it ended early."""
+def run(command: Callable[[], None], resumes: bool = True) -> None:
+    """Run a command, and say in a line why it ended early; SIGTERM interrupts as Ctrl-C does."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         command()
     except KeyboardInterrupt:
-        sys.exit("Interrupted: the same command makes the runs that are missing")
+        rest = "makes the runs that are missing" if resumes else "starts from the beginning"
+        sys.exit(f"Interrupted: the same command {rest}")
     except (StudyError, flockenv.FlockError) as error:
         sys.exit(f"Error: {error}")
+    finally:
+        signal.signal(signal.SIGTERM, before)

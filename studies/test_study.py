@@ -3,6 +3,9 @@
 import csv
 import importlib
 import math
+import signal
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +54,38 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
         _counted(again).results(study.Options(workers=1, out=tmp_path))
     assert again[0] == 3
     assert not set(again) & set(there["seed"])
+
+
+@pytest.fixture
+def _ignored_sigterm() -> Iterator[None]:
+    """Where SIGTERM is not taken for Ctrl-C, it does nothing."""
+    before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    yield
+    assert signal.signal(signal.SIGTERM, before) == signal.SIG_IGN
+
+
+@pytest.mark.usefixtures("_ignored_sigterm")
+def test_a_terminated_study_keeps_its_runs(tmp_path: Path) -> None:
+    def measure(row: study.Row) -> study.Row:
+        if row["seed"] == 3:
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
+        return {"twice": 2.0 * row["seed"]}
+
+    ended = study.Study(
+        "few/ended", lambda: [{"minutes": 1.0, "seed": s} for s in range(5)], measure
+    )
+    options = study.Options(workers=1, out=tmp_path)
+    with pytest.raises(SystemExit, match="Interrupted: the same command makes the runs that are"):
+        study.run(lambda: ended.results(options))
+    there = ended.results(study.Options(out=tmp_path, runs=False))
+    assert {0.0, 1.0, 2.0, 3.0} <= set(there["seed"])
+
+
+@pytest.mark.usefixtures("_ignored_sigterm")
+def test_an_interrupted_script_says_whether_it_resumes() -> None:
+    for resumes, end in ((True, "makes the runs that are missing"), (False, "starts from the")):
+        with pytest.raises(SystemExit, match=f"Interrupted: the same command {end}"):
+            study.run(lambda: signal.raise_signal(signal.SIGTERM), resumes)
 
 
 def test_a_store_of_another_design(tmp_path: Path) -> None:
@@ -144,7 +179,11 @@ def test_a_command_goes_on_with_rows_of_its_version_alone(tmp_path: Path) -> Non
         path.write_text(text)
         with pytest.raises(study.StudyError, match=why):
             study.resumed(path)
+        with pytest.raises(study.StudyError, match=why):
+            study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
         assert path.read_text() == text
+    path.write_text("seed,results_version\n")
+    study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
     path.write_text("seed\n1\n")
     (tmp_path / "made.toml").write_text(
         f'[results_version]\n"rows.csv" = {study.RESULTS_VERSION}\n'

@@ -11,20 +11,21 @@ not taken for order; the disordered level is mean Ψ_o at the highest noise.
         --out studies/critical_noise/results/critical_noise.csv
     python -m studies.critical_noise.critical_noise --preset experiment --pool narrow \
         --out studies/critical_noise/results/critical_noise_experiment.csv
+
+Runs that stand in the file are not made again. The committed tables are of results versions 1 and
+2: a scan by other code goes to another file.
 """
 
 import argparse
+import os
 from itertools import product
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
-from rich.progress import track
 
 import flockenv
-from flockenv.runs.executors import finished
 from flockenv.statistics import critical_noise
-from studies.study import run, write_table
+from studies.study import Row, Store, existing, run
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),
@@ -34,20 +35,21 @@ NOISE_S = {
 POOLS = ("wide", "narrow")
 
 
-def order_of_run(
-    parameters: flockenv.FlockParameters, seed: int, minutes: float
-) -> dict[str, float]:
-    """Mean Ψ_o and mean |Ψ_o sin φ_o| in the analysis window after the first tenth of a run."""
-    order = flockenv.simulate(parameters, seed, minutes * 60, dtype=np.float32).analyzed().order
+def order_of_run(row: Row) -> Row:
+    """Return mean Ψ_o and mean |Ψ_o sin φ_o| after the first tenth of a run."""
+    flock = {name: row[name] for name in ("n_boats", "pool", "bw_s")}
+    parameters = flockenv.FlockParameters.preset(row["preset"]).replace(**flock)
+    made = flockenv.simulate(parameters, row["seed"], row["minutes"] * 60, dtype=np.float32)
+    order = made.analyzed().order
     return {"psi_o": order.psi_o.mean(), "rotation": abs(order.rotation()).mean()}
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the scan, write one row per run, print the critical noise of each pool."""
+    """Make the runs that are missing, and print the critical noise of each pool."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--boats", type=int, default=27)
     parser.add_argument("--seeds", type=int, default=8)
-    parser.add_argument("--minutes", type=float, default=30)
+    parser.add_argument("--minutes", type=float, default=30.0)
     parser.add_argument("--out", type=Path, default=Path("results/critical_noise.csv"))
     parser.add_argument("--preset", choices=NOISE_S, action="append")
     parser.add_argument("--pool", choices=POOLS, action="append")
@@ -55,25 +57,19 @@ def main(arguments: list[str] | None = None) -> None:
     if options.seeds < 1:
         parser.error("--seeds is at least 1")
 
-    cells = [
-        cell
+    names = ("preset", "pool", "bw_s", "seed", "n_boats", "minutes")
+    rows = [
+        dict(zip(names, (*cell, options.boats, options.minutes), strict=True))
         for preset in options.preset or ("simulation", "paper")
         for cell in product(
             [preset], options.pool or POOLS, NOISE_S[preset].tolist(), range(options.seeds)
         )
     ]
-
-    def run(cell: tuple[str, str, float, int]) -> dict[str, object]:
-        preset, pool, bw_s, seed = cell
-        parameters = flockenv.FlockParameters.preset(preset)
-        parameters = parameters.replace(n_boats=options.boats, pool=pool, bw_s=bw_s)
-        order = order_of_run(parameters, seed, options.minutes)
-        return {"preset": preset, "pool": pool, "bw_s": bw_s, "seed": seed, **order}
-
-    found = dict(track(finished(run, cells), "simulating", total=len(cells)))
-    rows = [found[place] for place in range(len(cells))]
-    runs = pd.DataFrame(rows)
-    write_table(options.out, runs.round(4))
+    store = Store(existing(options.out), names)
+    keys = {store.key(row): row for row in rows}
+    missing = {key: row for key, row in keys.items() if key not in store.lines}
+    store.fill(missing, order_of_run, os.cpu_count() or 1)
+    runs = store.table(keys)
     for (preset, pool), group in runs.groupby(["preset", "pool"], sort=False):
         levels = group.groupby("bw_s")[["psi_o", "rotation"]]
         noise, low, high = critical_noise(list(levels.groups), [runs for _, runs in levels])

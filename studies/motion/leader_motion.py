@@ -4,6 +4,7 @@ It writes motion.csv, means with 95 % intervals, and draws tracks-wide.png, from
 leaders over 64 episodes of 8 minutes, seeds 0 to 63, without the first tenth of each.
 """
 
+from collections.abc import Hashable
 from pathlib import Path
 
 import matplotlib as mpl
@@ -17,7 +18,7 @@ from docs.scripts.plots import page_style, write_png
 from flockenv import FlockParameters
 from flockenv.comparison.figure import policy_colors
 from flockenv.statistics import mean_interval
-from studies.study import run, write_table
+from studies.study import resumed, run, write_table
 
 FOLDER = Path(__file__).parent
 POOLS = ("wide", "narrow")
@@ -79,19 +80,23 @@ def _draw_tracks(figure: Figure) -> None:
 
 
 def main() -> None:
-    """Write the table and draw the tracks."""
-    rows = []
+    """Write the rows of the table that are missing, and draw the tracks."""
+    path = FOLDER / "results" / "motion.csv"
+    rows: list[dict[Hashable, object]] = resumed(path).to_dict("records")
+    done = {(row["pool"], row["policy"]) for row in rows}
     for pool in POOLS:
         outer_cm = FlockParameters(pool=pool).pool_radii_cm[0]
         for policy in POLICIES if pool == "wide" else POLICIES[:2]:
+            if (pool, policy) in done:
+                continue
             runs = (leaders(pool, policy, seed) for seed in range(EPISODES))
             found = pd.DataFrame([motion(run, outer_cm) for run in runs])
-            row: dict[str, object] = {"pool": pool, "policy": policy}
+            row: dict[Hashable, object] = {"pool": pool, "policy": policy}
             for name, values in found.items():
                 ends = (str(name), f"{name}_low", f"{name}_high")
                 row |= zip(ends, mean_interval(values), strict=True)
             rows.append(row)
-    write_table(FOLDER / "results" / "motion.csv", pd.DataFrame(rows))
+            write_table(path, pd.DataFrame(rows))
     draw()
 
 

@@ -25,3 +25,14 @@ def test_a_short_run(script, tmp_path, monkeypatch) -> None:
     assert found["policy"].tolist() == [*script.POLICIES, *script.POLICIES[:2]]
     assert found[["at_wall", "beside_wall", "beside_leader"]].stack().between(0.0, 1.0).all()
     assert (tmp_path / "pictures" / "tracks-wide.png").exists()
+    path = tmp_path / "results" / "motion.csv"
+    before = path.read_bytes()
+    path.write_bytes(b"".join(before.splitlines(keepends=True)[:-1]))
+    made = []
+    leaders = script.leaders
+    monkeypatch.setattr(script, "leaders", lambda *run: made.append(run) or leaders(*run))
+    script.main()
+    assert path.read_bytes() == before
+    assert [run for run in made if run[0] == "narrow"] == [
+        ("narrow", script.POLICIES[1], seed) for seed in range(2)
+    ]

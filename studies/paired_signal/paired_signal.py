@@ -21,7 +21,7 @@ import pandas as pd
 
 from flockenv.runs.seeds import release_seeds
 from studies.planning.plan_ahead import flocks, learned
-from studies.study import run, write_table
+from studies.study import check_version, run, write_table
 
 HORIZONS_S = (8, 16, 24, 32, 48, 64, 96, 128, 192, 240)
 LONGEST_S, WINDOW_S = 240, 8
@@ -57,6 +57,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--states", type=int, default=1024)
     parser.add_argument("--out", type=Path, default=Path("studies/paired_signal/results"))
     options = parser.parse_args(arguments)
+    check_version(options.out / "signal.csv")
     law, better = orders(options.states)
     random, rows = np.random.default_rng(0), []
     for horizon in HORIZONS_S:
@@ -76,4 +77,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)

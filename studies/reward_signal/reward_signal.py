@@ -34,7 +34,7 @@ import flockenv
 from flockenv.policies import LeaningLaw, StraightAhead
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
-from studies.study import run, write_table
+from studies.study import check_version, run, write_table
 
 REWARDS = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
 #: Rows that a baseline is fitted to, about.
@@ -168,6 +168,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if options.flocks < 4 or options.flocks % 2:
         parser.error("--flocks is even and at least 4")
+    check_version(options.out)
     leans = options.action_mode == "lean"
     options.start = options.start or ("0" if leans else "straight ahead")
     options.to = options.to or ("1" if leans else "tuned law")
@@ -180,4 +181,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)

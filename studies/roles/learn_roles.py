@@ -27,7 +27,7 @@ from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 from studies.roles.misinformed_pair import TASK, Signed
-from studies.study import run, write_table
+from studies.study import check_version, run, write_table
 from studies.tuned_laws.tune_laws import RANGES, law
 
 LEADERS, NUMBERS = 2, 1 + len(RANGES)
@@ -105,6 +105,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("results/learn_roles"))
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
+    check_version(options.out / "reached.csv")
     rows: list[dict[str, Any]] = []
 
     def judge(name: int | str, hours: float, pair: Pair) -> None:
@@ -126,4 +127,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)

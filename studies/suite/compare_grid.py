@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from studies.study import run, write_table
+from studies.study import run, version_of, write_table
 
 PERMUTATIONS = 9999
 
@@ -103,9 +103,9 @@ def main(arguments: list[str] | None = None) -> None:
     print(f"one-way F = {f:.1f}, p = {p:.4f}, {len(trainings)} trainings")
     for name, table in (("algorithms", means(trainings)), ("pairs", pairs(trainings))):
         path = options.grid.with_name(f"{options.grid.stem}-{name}.csv")
-        write_table(path, table, "%.4g")
+        write_table(path, table, "%.4g", version_of(options.grid))
         print(table.round(4).to_string(index=False))
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)

@@ -5,6 +5,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
+from studies.study import RESULTS_VERSION, version_of
+
 
 def trainings(*algorithms: float, seed: int = 0) -> pd.DataFrame:
     """Five seeds with each of three inputs; an input moves all algorithms."""
@@ -51,3 +53,14 @@ def test_equal_algorithms_are_told_apart_as_often_as_chance_says(script, monkeyp
 def test_holm_is_known_on_paper(script) -> None:
     corrected = script.holm(np.array([0.03, 0.01, 0.04]))
     assert corrected == pytest.approx([0.06, 0.03, 0.06])
+
+
+def test_tables_have_the_version_of_their_grid(script, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(script, "PERMUTATIONS", 9)
+    grid, version = tmp_path / "grid.csv", RESULTS_VERSION - 1
+    found = trainings(0.0, 0.1).assign(seed=0, results_version=version)
+    found.to_csv(grid, index=False)
+    script.main(["--grid", str(grid)])
+    assert [version_of(tmp_path / f"grid-{name}.csv") for name in ("algorithms", "pairs")] == [
+        version
+    ] * 2

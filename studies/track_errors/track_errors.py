@@ -22,7 +22,7 @@ import pandas as pd
 import flockenv
 from flockenv.statistics.structure import structure_series
 from flockenv.tracks import TrackLayout, read_tracks
-from studies.study import run, write_table
+from studies.study import check_version, run, write_table
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
 LAYOUT = TrackLayout(pool="wide", leaders=("0", "1", "2"), fps=25.0, wrapped=False)
@@ -91,6 +91,7 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=8.0)
     parser.add_argument("--out", type=Path, default=Path("results/track_errors.csv"))
     options = parser.parse_args()
+    check_version(options.out)
     bw_s = flockenv.FlockParameters.critical_bw_s("simulation", "wide")
     parameters = flockenv.FlockParameters(n_boats=27, n_leaders=3, pool="wide", bw_s=bw_s)
     rows = []
@@ -111,4 +112,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)

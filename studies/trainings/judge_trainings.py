@@ -53,7 +53,7 @@ from flockenv import FlockParameters
 from flockenv.comparison import compare_leaders, score_policies
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import two_way_interval
-from studies.study import run, write_table
+from studies.study import check_version, run, write_table
 
 LAWS = ("paper's law", "tuned law")
 
@@ -109,12 +109,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--suffix", default="", help="of the names of both tables")
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
+    tables = {"evaluation": judged, "algorithms": algorithms}
+    paths = {name: options.out / f"{name}{options.suffix}.csv" for name in tables}
+    for path in paths.values():
+        check_version(path)
     found = orders(options.folders, options.flocks)
-    tables = {"evaluation": judged(found), "algorithms": algorithms(found)}
-    for name, table in tables.items():
-        write_table(options.out / f"{name}{options.suffix}.csv", table, "%.4f")
+    for name, path in paths.items():
+        table = tables[name](found)
+        write_table(path, table, "%.4f")
         print(table.round(3).to_string(index=False))
 
 
 if __name__ == "__main__":
-    run(main)
+    run(main, resumes=False)
