@@ -44,7 +44,7 @@ class LeadersTaskClass(TaskClass):
     name
         Name of the task.
     config
-        ``state``, as of `flockenv.torchrl.LeadersEnv`, and options of the environments. With
+        ``state``, as for `flockenv.torchrl.LeadersEnv`, and options of the environments. With
         ``rudder_levels`` the task has discrete actions too, for learners that need them.
 
     Raises

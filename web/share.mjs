@@ -13,7 +13,7 @@ const SECONDS = 480;
 /**
  * The bytes of a recording of a run since it last changed, as flockenv.Recording.load reads them. `about`: the
  * format and the version of the package; `policy`: how leaders steered; `recorded`: the names of the quantities that
- * recordings hold; `statistics`: names and kinds of what is counted of substeps.
+ * recordings hold; `statistics`: names and kinds of the statistics of substeps.
  */
 export function recordingOf(run, { format, version, policy, recorded, statistics }) {
   const first = run.sampleAt(run.changedAt);

@@ -32,10 +32,10 @@ _temporary: set[Path] = set()
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """Open a temporary file for writing bytes, renamed to the path if all goes well.
 
-    It is removed however the block ends, except by a kill; at the latest when Python ends. The new
-    file keeps the old one's mode. A link stays a link, and the file that it names is replaced. If
-    the file cannot be written, an OSError is raised and the old file is still there. A
-    ParameterError refuses to replace a device, a pipe or a socket.
+    It is removed when the block ends or, at the latest, when Python ends, unless the process is
+    killed. The new file keeps the old one's mode. A link stays a link, and the file that it names
+    is replaced. If the file cannot be written, an OSError is raised and the old file is still
+    there. A ParameterError refuses to replace a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))

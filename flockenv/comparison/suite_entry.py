@@ -74,7 +74,7 @@ class SuiteEntry:
         path
             The file; names of policies in it are relative to its folder.
         trust
-            Whether code of policies may be executed, as of `flockenv.policies.policy`.
+            Whether code of policies may be executed, as for `flockenv.policies.policy`.
 
         Raises
         ------

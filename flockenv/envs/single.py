@@ -79,7 +79,8 @@ class LeadersEnv(
     or, as a list of dictionaries, for each. By default `signed_order` alone counts: the mean of the
     signed order of the normal boats, in [-1, 1], over the control step. Other terms are
     of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and, of its contacts,
-    `contact_push`. Infos have `"reward_terms"`, the last one `"episode_summary"`.
+    `contact_push`. Each info has `"reward_terms"`, and the last one of an episode also has
+    `"episode_summary"`.
 
     If `target` is a list of "cw" and "ccw", one per leader, each leader has its own target. Its
     observation, the reflection by `mirror_to_target`, its actions and its reward terms refer to

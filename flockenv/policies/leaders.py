@@ -115,7 +115,7 @@ def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat,
 
 
 class Decisions:
-    """The decisions of policies in one run, of one flock or of several similar ones.
+    """The decisions of policies in a run of one flock, or of several similar ones.
 
     Parameters
     ----------

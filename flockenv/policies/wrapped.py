@@ -39,9 +39,9 @@ class WrappedPolicy(ModelPolicy):
         A model of stable-baselines3 such as ``PPO``, or any object with its ``predict``.
     wrapper
         A function that puts an environment into the wrapper or wrappers, such as
-        ``lambda venv: VecFrameStack(venv, 4)``. Leave out a `VecNormalize` of the model's own
-        environment: observations are normalized as there. A wrapper that normalizes itself has to
-        hold the statistics of the training, which stay as they are.
+        ``lambda venv: VecFrameStack(venv, 4)``. It must not contain the `VecNormalize` of the
+        model's own environment, whose statistics are applied anyway. A wrapper that normalizes
+        itself has to hold the statistics of the training, which stay as they are.
     env
         The environment that was wrapped for the training: a `LeaderVecEnv`, or
         ``flockenv/Leaders-v0``. The model is for flocks with its options.

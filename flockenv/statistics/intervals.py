@@ -158,9 +158,10 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
 
     Trainings that are judged in the same flocks are such rows: an interval over their means ignores
     the luck of the flocks, which all of them share. Here the bootstrap draws both, rows and
-    columns, 9999 times. Deviations are stretched so that few rows or columns have Student's
-    interval, as in `mean_interval`. The residual beside both effects is counted twice, so a table
-    of pure noise gets an interval 1.4 times too wide.
+    columns, 9999 times. Deviations are scaled by the ratio of Student's interval to the
+    bootstrap's, so that few rows or columns get intervals as wide as those of `mean_interval`. The
+    residual beside both effects is counted twice, so a table of pure noise gets an interval 1.4
+    times too wide.
 
     Parameters
     ----------

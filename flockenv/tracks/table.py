@@ -344,7 +344,7 @@ def _key(name: object) -> str:
 
 
 def listed(names: list[str]) -> str:
-    """Return names with commas between them, the first ones of very many."""
+    """Return names with commas between them; of very many only the first ones."""
     more = f" and {len(names) - 40} more" if len(names) > 40 else ""
     return f"{', '.join(names[:40])}{more}"
 

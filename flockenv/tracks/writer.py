@@ -46,7 +46,7 @@ def export(
     MissingExtraError
         Without the extra.
     OSError
-        If a file cannot be written; what was there before is still there.
+        If a file cannot be written; an old one is still there.
     """
     path = Path(path)
     ending = path.suffix.lower()

@@ -132,7 +132,8 @@ impl ContactDetector {
         gap < -allowed
     }
 
-    /// Whether too many pairs of boats are nearer than `margin`. A list from a longer substep also holds farther pairs.
+    /// Whether too many pairs of boats are nearer than `margin`. The list may also hold farther pairs, from a longer
+    /// substep.
     #[cold]
     fn crowds(&mut self, boats: &[HullPose], margin: f64) -> bool {
         if self.neighbors.cutoff() > 2.0 * (2.0 * self.hull.reach() + margin + self.skin) {

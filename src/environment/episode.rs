@@ -217,8 +217,8 @@ impl Episode {
         features.observe(&self.state.view(), target, elapsed, out);
     }
 
-    /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end,
-    /// and writes the rewards, sums over them. Without actions leaders follow the steering law at every substep.
+    /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end, and
+    /// writes the sums of their rewards. Without actions leaders follow the steering law at every substep.
     ///
     /// # Errors
     /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stops in that control step, and the episode is

@@ -140,7 +140,7 @@ def resume(
 
 
 def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingSettings:
-    """Return the settings that `resume` continues with; see there."""
+    """Return the settings that `resume` continues with, and raise its errors."""
     if not (Path(folder) / CHECKPOINT).exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = TrainingSettings.from_file(Path(folder) / SETTINGS)
