@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import typer
 
 from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import echo, errors, print_json
@@ -12,7 +13,7 @@ from flockenv.cli.options import Printing
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
 from flockenv.comparison.levels import FLOCKS, LEVELS, SUITE
-from flockenv.comparison.suite_entry import SuiteEntry, scored
+from flockenv.comparison.suite_entry import Scored, SuiteEntry, scored
 from flockenv.errors import ParameterError, refuse_unknown
 
 
@@ -45,16 +46,27 @@ def compare_entries(
     hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
     kept = f"{table} holds the rows of entries that were finished."
     with progress("scoring", 3600 * hours, printing.shows_nothing, kept=kept) as advance:
-        for found, orders in scored(entries, levels, flocks, advance):
-            write_csv(table, found, float_format="%.6g")
-            write_csv(out / "orders.csv", orders, float_format="%.6g")
+        for found in scored(entries, levels, flocks, advance):
+            if len(found.rows):
+                write_csv(table, found.rows, float_format="%.6g")
+                write_csv(out / "orders.csv", found.orders, float_format="%.6g")
+    _show(found, out, printing)
+    for words in found.broken:
+        echo(f"Not scored: {words}", errors)
+    if found.broken:
+        raise typer.Exit(1)
+
+
+def _show(found: Scored, out: Path, printing: Printing) -> None:
+    """Print the rows, and where they are."""
     if printing.as_json:
-        print_json({"entries": json.loads(found.to_json(orient="records"))})
+        print_json({"entries": json.loads(found.rows.to_json(orient="records"))})
         return
-    for row in found.to_dict("records"):
+    for row in found.rows.to_dict("records"):
         ends_at = f"{row['score']:.3f} [{row['score_low']:.3f}, {row['score_high']:.3f}]"
         echo(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {ends_at}")
-    echo(f"Written to {out}")
+    if len(found.rows):
+        echo(f"Written to {out}")
 
 
 def _levels(tasks: Sequence[str]) -> list[str]:

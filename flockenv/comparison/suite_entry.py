@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +25,11 @@ from flockenv.comparison.levels import (
     budget_of,
     score,
 )
+from flockenv.envs.spaces import differing_options
 from flockenv.errors import FlockError, ParameterError, refuse_unknown, short_repr
 from flockenv.policies.base import Policy
 from flockenv.policies.registry import FILES, policy
+from flockenv.policies.wrapped import WrappedPolicy
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
 from flockenv.runs.store import RESULTS_VERSION
 
@@ -143,10 +145,7 @@ class SuiteEntry:
         """Return the row of the table for the signed orders of a level."""
         trainings = self.trainings[level]
         mean, low, high = score(orders, no_steering, reference)
-        observes = [training.policy.observation for training in trainings]
-        is_default = all(
-            dict(observation) == dict(LEVELS[level].observation) for observation in observes
-        )
+        is_default = all(_sees_as_given(training.policy, LEVELS[level]) for training in trainings)
         seconds = [float(training.provenance.get("cpu_s", "nan")) for training in trainings]
         return {
             "level": level,
@@ -167,16 +166,26 @@ class SuiteEntry:
         }
 
 
+class Scored(NamedTuple):
+    """What has been scored so far."""
+
+    #: The ranked rows of entries.
+    rows: "pd.DataFrame"
+    #: The orders of all flocks, which start with those of each level's two references.
+    orders: "pd.DataFrame"
+    #: Why other entries have no row, in a sentence each.
+    broken: tuple[str, ...]
+
+
 def scored(
     entries: Sequence[SuiteEntry],
     levels: Sequence[str],
     flocks: int = FLOCKS,
     progress: Progress = no_progress,
-) -> Iterator[tuple["pd.DataFrame", "pd.DataFrame"]]:
+) -> Iterator[Scored]:
     """Score entries one after another, each on the levels for which it has policies.
 
-    After each entry, yields the ranked rows of all entries so far, and the orders of all flocks,
-    which start with those of each level's two references. Raises the errors of `SuiteEntry.run`.
+    Yields after each entry. One that breaks on the way has no row, and the others are scored.
     """
     pandas = require("pandas", "plot")
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
@@ -186,14 +195,19 @@ def scored(
         for name, orders in ends.items()
     ]
     rows: list[dict[str, object]] = []
+    broken: list[str] = []
     for entry in entries:
         own = [name for name in named if name in entry.trainings]
-        led = {name: entry.run(name, flocks, progress) for name in own}
+        try:
+            led = {name: entry.run(name, flocks, progress) for name in own}
+        except ParameterError as error:
+            led = {}
+            broken.append(str(error))
         for name, orders in led.items():
             rows.append(entry.row(name, orders, *ends[name]))
             given = [training.given for training in entry.trainings[name]]
             parts.append(orders_table(name, entry.budget, entry.name, given, orders))
-        yield ranked(rows), pandas.concat(parts, ignore_index=True)
+        yield Scored(ranked(rows), pandas.concat(parts, ignore_index=True), tuple(broken))
 
 
 def orders_table(
@@ -211,6 +225,8 @@ def orders_table(
 def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":
     """Return rows of entries as a table: by level and budget, the best first."""
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows)
+    if table.empty:
+        return table
     order = {
         "level": table["level"].map([*LEVELS].index),
         "budget": table["budget"].map([*map(str, BUDGETS), "more"].index),
@@ -314,6 +330,15 @@ def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
             raise ParameterError(f"{given} says training_seeds = {seeds!r}, not FIRST-LAST")
         _check_seeds(int(first), int(last), f"training_seeds of {given}")
     return Training(given, found, provenance)
+
+
+def _sees_as_given(policy: Policy, level: Level) -> bool:
+    """Return whether a policy sees what the level's environment shows, without a wrapper."""
+    if isinstance(policy.source, WrappedPolicy):
+        return False
+    return not differing_options(
+        {"observation": policy.observation}, {"observation": level.observation}
+    )
 
 
 def _check_weights(source: object, given: str) -> None:

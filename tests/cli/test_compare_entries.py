@@ -16,11 +16,11 @@ from flockenv.runs.store import RESULTS_VERSION
 LEVEL = "order-easy"
 
 
-def write_entry(folder: Path, name: str, policies: list[str]) -> str:
+def write_entry(folder: Path, name: str, levels: dict[str, list[str]]) -> str:
     values = {"suite": "v3", "results_version": RESULTS_VERSION, "name": name, "class": "by hand"}
     values |= {"link": "here", "flock_hours": 30.0, "training_seeds": [2**32, 2**32]}
     path = folder / f"{name}.toml"
-    path.write_text(tomli_w.dumps({**values, "levels": {LEVEL: policies}}), "utf-8")
+    path.write_text(tomli_w.dumps({**values, "levels": levels}), "utf-8")
     return str(path)
 
 
@@ -31,7 +31,7 @@ def entry(tmp_path: Path) -> str:
     for place, seed in enumerate((0, 1)):
         weights = np.random.default_rng(seed).normal(size=(size, 1))
         NetworkPolicy([weights], [[0.1]], **layout).save(tmp_path / f"{place}.npz")
-    return write_entry(tmp_path, "mine", ["0.npz", "1.npz"])
+    return write_entry(tmp_path, "mine", {LEVEL: ["0.npz", "1.npz"]})
 
 
 def words(*entries: str, out: Path) -> list[str]:
@@ -43,7 +43,7 @@ def test_an_entry_is_scored_again_to_the_digit(cli, entry: str, tmp_path: Path) 
     done = cli.succeeds(*words(entry, out=tmp_path / "first"))
     assert done.stdout.startswith("order-easy, 30 flock-hours, mine: ")
     assert "A trial: rows of the table are of 512 flocks, not 3" in done.stderr
-    other = ["--entry", write_entry(tmp_path, "same", ["1.npz", "0.npz"])]
+    other = ["--entry", write_entry(tmp_path, "same", {LEVEL: ["1.npz", "0.npz"]})]
     cli.succeeds(*words(entry, out=tmp_path / "again"), *other)
     first, again = (pd.read_csv(tmp_path / name / "entries.csv") for name in ("first", "again"))
     assert len(again) == 2
@@ -56,17 +56,40 @@ def test_an_entry_is_scored_again_to_the_digit(cli, entry: str, tmp_path: Path) 
     assert printed["entries"][0]["entry"] == "mine"
 
 
-def test_a_broken_entry_loses_no_other_row(cli, entry: str, tmp_path: Path, monkeypatch) -> None:
-    (tmp_path / "broken_policy.py").write_text(
-        "class Broken:\n    def predict(self, seen, state=None):\n        return [0.0], state\n",
-        "utf-8",
-    )
+BROKEN = """
+class Broken:
+    def predict(self, seen, state=None):
+        return [0.0], state
+"""
+
+
+@pytest.mark.parametrize("levels", [["order-easy"], ["order-easy", "order-noisy"]])
+@pytest.mark.parametrize("comes_first", [False, True])
+def test_a_broken_entry_loses_no_other_row(
+    cli, entry: str, tmp_path: Path, monkeypatch, levels, comes_first
+) -> None:
+    """It breaks in the last of its levels, and has no row of the one before either."""
+    (tmp_path / "broken_policy.py").write_text(BROKEN, "utf-8")
     monkeypatch.chdir(tmp_path)
-    broken = write_entry(tmp_path, "broken", ["broken_policy:Broken"])
-    done = cli(*words(entry, broken, out=tmp_path / "out"), "--trust")
-    assert done.returncode == 2
-    assert "broken, order-easy, broken_policy:Broken: what a policy returns" in done.stderr
+    *good, bad = levels
+    policies = {**{level: ["0.npz"] for level in good}, bad: ["broken_policy:Broken"]}
+    broken = write_entry(tmp_path, "broken", policies)
+    named = (broken, entry) if comes_first else (entry, broken)
+    done = cli(*words(*named, out=tmp_path / "out"), "--trust")
+    assert done.returncode == 1
+    assert f"Not scored: broken, {bad}, broken_policy:Broken: what a policy re" in done.stderr
+    assert done.stdout.startswith("order-easy, 30 flock-hours, mine: ")
     assert pd.read_csv(tmp_path / "out" / "entries.csv")["entry"].tolist() == ["mine"]
+    assert set(pd.read_csv(tmp_path / "out" / "orders.csv")["entry"]) == {"reference", "mine"}
+
+
+def test_a_broken_entry_alone_writes_nothing(cli, entry: str, tmp_path: Path, monkeypatch) -> None:
+    (tmp_path / "broken_policy.py").write_text(BROKEN, "utf-8")
+    monkeypatch.chdir(tmp_path)
+    broken = write_entry(tmp_path, "broken", {LEVEL: ["broken_policy:Broken"]})
+    done = cli(*words(broken, out=tmp_path / "out"), "--trust")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert not (tmp_path / "out" / "entries.csv").exists()
 
 
 @pytest.mark.parametrize(

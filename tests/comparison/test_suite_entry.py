@@ -1,16 +1,19 @@
 """Law: an entry that cannot be scored is refused with its name, before anything is written."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 import tomli_w
 
-from flockenv.comparison.levels import LEVELS
+from flockenv.comparison.levels import LEVEL_IDS, LEVELS
 from flockenv.comparison.suite_entry import SuiteEntry, ranked, scored
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
-from flockenv.policies import NetworkPolicy
+from flockenv.policies import NetworkPolicy, WrappedPolicy
 from flockenv.runs.store import RESULTS_VERSION
 
 LEVEL = "order-easy"
@@ -165,11 +168,47 @@ def test_a_row_says_what_was_scored(entered, tmp_path: Path) -> None:
     found = entry.run(LEVEL, 2)
     assert found[0].tolist() == LEVELS[LEVEL].orders("straight ahead", 2).tolist()
     assert found[1].tolist() != found[0].tolist()
-    ((rows, orders),) = scored([entry], [*LEVELS], 2)
-    assert rows["entry"].tolist() == ["mine"]
+    ((rows, orders, broken),) = scored([entry], [*LEVELS], 2)
+    assert (rows["entry"].tolist(), broken) == (["mine"], ())
     led = orders.groupby("policy", sort=False)["signed_order"].apply(list)
     assert led.index.tolist() == ["straight ahead", "damped law", *names]
     assert led["b.npz"] == found[1].tolist()
+
+
+def trained(wrapper: Callable[[Any], Any] = lambda venv: venv, **changes: object) -> Any:
+    """A model of stable-baselines3 for the easy flock, which has learned nothing."""
+    from flockenv.sb3 import LeaderVecEnv
+
+    baselines3 = pytest.importorskip("stable_baselines3")
+    options = {**gymnasium.spec(LEVEL_IDS[LEVEL]).kwargs, **changes}
+    venv = wrapper(LeaderVecEnv(2, **options))
+    return baselines3.PPO("MlpPolicy", venv, n_steps=8, batch_size=8, seed=0, device="cpu")
+
+
+def stacked() -> WrappedPolicy:
+    """A model that sees three observations at once."""
+    from stable_baselines3.common.vec_env import VecFrameStack
+
+    model = trained(lambda venv: VecFrameStack(venv, 3))
+    return WrappedPolicy(model, lambda venv: VecFrameStack(venv, 3), model.env.unwrapped)
+
+
+def sees(path: Path) -> object:
+    """What the row of an entry says, from two flocks."""
+    entry = SuiteEntry.from_file(path, trust=True)
+    return entry.row(LEVEL, entry.run(LEVEL, 2), np.zeros(2), np.full(2, 0.4))["sees"]
+
+
+def test_a_model_is_said_to_see_what_it_sees(entered, tmp_path: Path) -> None:
+    for changes, words in (({}, "as given"), ({"observation": {"phase": False}}, "its own")):
+        trained(**changes).save(tmp_path / "model.zip")
+        assert sees(entered(levels={LEVEL: ["model.zip"]})) == words
+
+
+def test_a_model_enters_with_its_wrapper_and_sees_its_own(entered) -> None:
+    """Its environment shows the level's observation."""
+    pytest.importorskip("stable_baselines3")
+    assert sees(entered(levels={LEVEL: [f"{__name__}:stacked"]})) == "its own"
 
 
 def test_rows_are_sorted_by_level_budget_and_score() -> None:
