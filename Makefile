@@ -153,8 +153,11 @@ studies: build $(STAMPS)/studies ## make the runs of studies/ that are missing, 
 studies-trial: build $(STAMPS)/studies ## run every study in its shortest form, and judge the committed results (minutes)
 	$(PYTEST) -c studies/pyproject.toml -n $(JOBS) --max-worker-restart 0 studies $(PYTEST_ARGS)
 
-check-entries: build $(STAMPS)/studies ## score every entry of suite v3 again, and refuse a row that differs by a digit (minutes)
+check-entries: build $(STAMPS)/studies ## score every entry of suite v3 again, and refuse a row that differs by a digit (thousands of flock-hours)
 	OMP_NUM_THREADS=1 $(BIN)/python -m studies.levels.score_levels --check
+
+train-levels: build $(STAMPS)/studies env-benchmarl ## train and enter what suite v3 lacks, 1.6 hours of a core for everything
+	studies/levels/train.sh $(BIN) .venv-benchmarl/bin
 
 pretrained: $(STAMPS)/test $(CORE) ## search leaders in both pools again (an hour and a half; PRETRAINED_ARGS=--trial shortly)
 	OMP_NUM_THREADS=1 $(BIN)/python baselines/pretrained.py $(PRETRAINED_ARGS)

@@ -15,6 +15,7 @@ from docs.scripts.quoted import (
     most_of_an_offset,
     offset,
     plans,
+    ranks_of_levels,
 )
 
 
@@ -60,6 +61,12 @@ def entries() -> list[Number]:
                 ("law gains: MAPPO has {} (", "order-narrow", "MAPPO", "score"),
                 ("to #), and TRPO {} (# to", "order-narrow", "TRPO", "score"),
             )
+        ),
+        *ranks_of_levels(
+            page,
+            "flock is {} in `order-noisy`",
+            "{} in `order-wide` and",
+            "and {} in `order-narrow` (",
         ),
         Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
         Number(page, "algorithms is # ({} to #)", ranks, easy, "low"),

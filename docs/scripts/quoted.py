@@ -99,6 +99,37 @@ def plans(page: str) -> list[Number]:
     ]
 
 
+def ends_of(column: str) -> tuple[str, str, str]:
+    """Name the columns of a mean and of the ends of its interval."""
+    return column, f"{column}_low", f"{column}_high"
+
+
+def interval(
+    page: str,
+    words: str,
+    file: str,
+    row: dict[str, Any],
+    columns: tuple[str, str, str],
+    form: str = ".2f",
+) -> list[Number]:
+    """List a number and the ends of its interval, which follow in parentheses."""
+    shown = ("{} (# to #)", "# ({} to #)", "# (# to {})")
+    return [
+        Number(page, words.replace("{}", each), file, row, column, form)
+        for each, column in zip(shown, columns, strict=True)
+    ]
+
+
+def ranks_of_levels(page: str, noisy: str, wide: str, narrow: str) -> list[Number]:
+    """List how alike algorithms rank in the easy flock and in the other levels of suite v3."""
+    file, columns = "studies/levels/results/ranks.csv", ("rank_correlation", "low", "high")
+    return [
+        number
+        for level, words in (("noisy", noisy), ("wide", wide), ("narrow", narrow))
+        for number in interval(page, words, file, {"level": f"order-{level}"}, columns)
+    ]
+
+
 def offset(page: str, words: str, horizon_s: int) -> list[Number]:
     """List what one step of planning without foresight adds by a horizon, with its interval."""
     table = "studies/planning/results/best_of_offsets.csv"

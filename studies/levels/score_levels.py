@@ -1,11 +1,17 @@
 """Score all entries of suite v3, compare them in pairs, and write the table of docs/levels.md.
 
-    python -m studies.levels.score_levels            # some minutes of one core
+    python -m studies.levels.score_levels            # scores every policy in 512 flocks
     python -m studies.levels.score_levels --check    # fails if a committed row differs by a digit
+    python -m studies.levels.score_levels --no-runs  # ranks.csv and the table, from what is there
+
+The first two simulate 17 to 68 flock-hours for each policy, thousands in all, and say so first.
+Entries that the table cannot take are named, the others are scored, and the exit code is 1.
 
 The folder results has entries.csv (the rows of `flockenv compare --suite v3`), orders.csv (the
 signed order of every flock), curves.csv and areas.csv (what was learned during the trainings, as
-their files say) and pairs.csv. For each pair of entries with a level and a budget in common,
+their files say), ranks.csv and pairs.csv. ranks.csv has the rank correlation of the entries of 30
+flock-hours between the first level and each other one. Its 95 % interval are percentiles of a
+bootstrap over each entry's trainings. For each pair of entries with a level and a budget in common,
 pairs.csv has:
 
 - difference: of the mean scores, with its 95 % interval over trainings and flocks. Trainings are
@@ -19,8 +25,9 @@ pairs.csv has:
 import argparse
 import io
 import itertools
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +37,8 @@ from scipy import stats
 
 from flockenv.comparison.levels import LEVELS
 from flockenv.comparison.suite_entry import SuiteEntry, scored
-from flockenv.statistics import bootstrap_interval, two_way_interval
+from flockenv.errors import FlockError
+from flockenv.statistics import CONFIDENCE, bootstrap_interval, two_way_interval
 from studies.levels import level_curves
 from studies.study import StudyError, existing, resumed, run, write, write_table
 from studies.suite.compare_grid import holm
@@ -44,11 +52,31 @@ KEY = ["level", "budget", "entry"]
 
 
 def entries(folder: Path) -> list[SuiteEntry]:
-    """Return all entries of a folder."""
-    found = [SuiteEntry.from_file(path) for path in sorted(folder.glob("*.toml"))]
+    """Return the entries of a folder that the table takes."""
+    return [*entered(folder)[0].values()]
+
+
+def entered(folder: Path) -> tuple[dict[Path, SuiteEntry], list[str]]:
+    """Return the entries of a folder by their files, and why others are refused.
+
+    Policies that execute code when they are read are refused, too.
+    """
+    found, refused = {}, []
+    for path in sorted(folder.glob("*.toml")):
+        try:
+            found[path] = SuiteEntry.from_file(path)
+        except FlockError as error:
+            refused.append(str(error))
     if not found:
-        raise StudyError(f"{folder} holds no entry: studies.levels.train_levels makes some")
-    return found
+        words = "; ".join(refused) or "studies.levels.train_levels makes some"
+        raise StudyError(f"{folder} holds no entry: {words}")
+    return found, refused
+
+
+def named_at_the_end(refused: Sequence[str]) -> None:
+    """End with exit code 1 if entries were refused."""
+    if refused:
+        sys.exit(f"Error: not in the table: {'; '.join(refused)}")
 
 
 def rounded(rows: pd.DataFrame) -> pd.DataFrame:
@@ -136,29 +164,101 @@ def told_apart(compared: pd.DataFrame) -> list[str]:
     return []
 
 
+# --- ranks of levels ------------------------------------------------------------------------------
+
+
+def rank_correlation(first: Sequence[Any], second: Sequence[Any]) -> Any:
+    """Return the rank correlation (Spearman) of two numbers of each entry, along the first axis."""
+    places = (stats.rankdata(each, axis=0) for each in (first, second))
+    ours, theirs = (each - each.mean(axis=0) for each in places)
+    return (ours * theirs).sum(0) / np.sqrt((ours**2).sum(0) * (theirs**2).sum(0))
+
+
+def ranks(orders: pd.DataFrame, budget: str = "30") -> pd.DataFrame:
+    """Return how alike entries rank in the first level and in each other one.
+
+    Orders of a level and its scores rank alike. Trainings of two levels are drawn separately.
+    """
+    means: dict[str, dict[str, np.ndarray]] = {}
+    for (level, _, name), own in orders[orders["budget"] == budget].groupby(KEY, sort=False):
+        means.setdefault(level, {})[name] = led(own).mean(axis=1)
+    first, *others = (name for name in LEVELS if name in means)
+    rows = []
+    for level in others:
+        both = [name for name in means[first] if name in means[level]]
+        if len(both) < 3:
+            continue
+
+        def of(*drawn: np.ndarray, axis: int = -1, count: int = len(both)) -> Any:
+            found = [each.mean(axis) for each in drawn]
+            return rank_correlation(found[:count], found[count:])
+
+        drawn = [means[name][entry] for name in (first, level) for entry in both]
+        rows.append([level, first, len(both), float(of(*drawn)), *_ends(drawn, of)])
+    names = ["level", "compared_with", "entries", "rank_correlation", "low", "high"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def _ends(samples: Sequence[np.ndarray], of: Callable[..., Any]) -> tuple[float, float]:
+    """Return the percentiles of a statistic that cannot exceed 1.
+
+    Near 1 the correction of `bootstrap_interval` would move both ends up to it.
+    """
+    found = stats.bootstrap(
+        samples,
+        of,
+        confidence_level=CONFIDENCE,
+        method="percentile",
+        rng=np.random.default_rng(0),
+    )
+    return tuple(found.confidence_interval)
+
+
 # --- the table ------------------------------------------------------------------------------------
 
 
-def lines(rows: pd.DataFrame, unlike: pd.DataFrame) -> Iterator[str]:
-    """Yield the lines of the table, with the scores in unlike flocks of the same trainings."""
-    header = "level | flock-hours | entry | class | sees | score | unlike flocks | trainings"
-    header += " | processor s | files"
+def lines(rows: pd.DataFrame) -> Iterator[str]:
+    """Yield the lines of the table, of rows that `joined` returns."""
+    header = "level | flock-hours | entry | class | sees | score | unlike flocks | area"
+    header += " | trainings | processor s | files"
     yield f"| {header} |"
     yield f"|{' --- |' * (header.count('|') + 1)}"
-    for row in _with_unlike(rows, unlike).to_dict("records"):
+    for row in rows.to_dict("records"):
         seconds = "unknown" if np.isnan(row["cpu_s"]) else f"{row['cpu_s']:.0f}"
-        link = row["link"] if row["link"].startswith("http") else f"../{row['link']}"
+        area = "unknown" if np.isnan(row["area"]) else f"{row['area']:.3f}"
         cells = [row["level"], row["budget"], row["entry"], row["class"], row["sees"]]
-        cells += [_cell(row, "score"), _cell(row, "unlike"), row["trainings"], seconds]
-        yield f"| {' | '.join(map(str, cells))} | [link]({link}) |"
+        cells += [_cell(row, "score"), _cell(row, "unlike"), area, row["trainings"], seconds]
+        yield f"| {' | '.join(map(str, cells))} | {row['files']} |"
 
 
-def _with_unlike(rows: pd.DataFrame, unlike: pd.DataFrame) -> pd.DataFrame:
-    """Return rows with the scores in unlike flocks; NaN if they are of fewer trainings."""
-    if unlike.empty:
-        return rows.assign(unlike=np.nan)
+def joined(results: Path, given: Mapping[Path, SuiteEntry], page: Path) -> pd.DataFrame:
+    """Return the committed rows with all that the table says, beside their scores.
+
+    Scores in unlike flocks and areas are NaN if they are of fewer trainings. Files are linked from
+    the page.
+    """
     same = [*KEY, "trainings"]
-    return rows.astype({"budget": str}).merge(unlike.astype({"budget": str}), "left", same)
+    table = pd.read_csv(existing(results / "entries.csv"), dtype={"budget": str})
+    for name, columns in (("unlike", ["unlike", "unlike_low", "unlike_high"]), ("areas", ["area"])):
+        other = resumed(results / f"{name}.csv", dtype={"budget": str})
+        if other.empty:
+            table = table.assign(**dict.fromkeys(columns, np.nan))
+        else:
+            table = table.merge(other[[*same, *columns]], "left", same)
+    files = [
+        [level, entry.budget, entry.name, len(own), _files(path, entry, level, page)]
+        for path, entry in given.items()
+        for level, own in entry.trainings.items()
+    ]
+    return table.merge(pd.DataFrame(files, columns=[*same, "files"]), "inner", same)
+
+
+def _files(path: Path, entry: SuiteEntry, level: str, page: Path) -> str:
+    """Return links to an entry and to what made it, with the commits that its policies name."""
+    made = {each.provenance.get("commit", "unknown") for each in entry.trainings[level]}
+    link = entry.link if entry.link.startswith("http") else f"../{entry.link}"
+    toml = Path(os.path.relpath(path, page.parent)).as_posix()
+    return f"[entry]({toml}), [code]({link}) of {', '.join(sorted(made))}"
 
 
 def _cell(row: dict[str, Any], name: str) -> str:
@@ -167,11 +267,18 @@ def _cell(row: dict[str, Any], name: str) -> str:
     return f"{row[name]:.3f} ({row[f'{name}_low']:.3f} to {row[f'{name}_high']:.3f})"
 
 
-def page(rows: pd.DataFrame, text: str, unlike: pd.DataFrame) -> str:
-    """Return the text of the page with the table of these rows."""
-    before, _, rest = text.partition(BEGIN)
+def write_page(page: Path, results: Path, given: Mapping[Path, SuiteEntry]) -> None:
+    """Write the table into the page, from the committed results."""
+    before, _, rest = page.read_text("utf-8").partition(BEGIN)
     _, _, after = rest.partition(END)
-    return f"{before}{BEGIN}{chr(10).join(lines(rows, unlike))}{END}{after}"
+    table = "\n".join(lines(joined(results, given, page)))
+    write(page, f"{before}{BEGIN}{table}{END}{after}".encode())
+
+
+def flock_hours(given: Iterable[SuiteEntry]) -> tuple[int, float]:
+    """Return how many policies are scored, and what they simulate beside the references."""
+    led = [(len(own), LEVELS[name]) for each in given for name, own in each.trainings.items()]
+    return sum(count for count, _ in led), sum(count * each.flock_hours() for count, each in led)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -180,28 +287,43 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=RESULTS)
     parser.add_argument("--page", type=Path, default=PAGE)
     parser.add_argument("--check", action="store_true", help="write nothing")
+    parser.add_argument("--no-runs", action="store_true", help="score nothing")
     options = parser.parse_args(arguments)
-    given = entries(options.entries)
+    given, refused = entered(options.entries)
+    if not options.no_runs:
+        refused += score([*given.values()], options.out, is_checked=options.check)
+    if not options.check:
+        orders = pd.read_csv(existing(options.out / "orders.csv"), dtype={"budget": str})
+        write_table(options.out / "ranks.csv", ranks(orders), "%.4f")
+        write_page(options.page, options.out, given)
+    named_at_the_end(refused)
+
+
+def score(given: Sequence[SuiteEntry], out: Path, *, is_checked: bool) -> list[str]:
+    """Score entries, and write what follows or compare their rows with those that there are.
+
+    Return why entries have no row.
+    """
+    count, hours = flock_hours(given)
+    print(f"{count} policies lead {hours:.0f} flock-hours", file=sys.stderr, flush=True)
     # The last has all of them.
-    *_, (rows, orders) = scored(given, [*LEVELS])
-    if options.check:
-        committed = pd.read_csv(options.out / "entries.csv", dtype=str, keep_default_na=False)
+    *_, (rows, orders, broken) = scored(given, [*LEVELS])
+    if is_checked:
+        committed = pd.read_csv(out / "entries.csv", dtype=str, keep_default_na=False)
         if words := differing(rows, committed):
             sys.exit(f"Error: these rows are not what their entries score: {'; '.join(words)}")
-        return
-    write_table(options.out / "entries.csv", rows, FORM)
-    write_table(options.out / "orders.csv", orders, FORM)
+        return [*broken]
+    write_table(out / "entries.csv", rows, FORM)
+    write_table(out / "orders.csv", orders, FORM)
     during = level_curves.points(given, orders)
-    write_table(options.out / "curves.csv", during, FORM)
-    write_table(options.out / "areas.csv", level_curves.areas(during), "%.4g")
+    write_table(out / "curves.csv", during, FORM)
+    write_table(out / "areas.csv", level_curves.areas(during), "%.4g")
     compared = pairs(rows, orders)
-    write_table(options.out / "pairs.csv", compared, "%.4g")
-    stored = pd.read_csv(existing(options.out / "entries.csv"))
-    unlike = resumed(options.out / "unlike.csv")
-    write(options.page, page(stored, options.page.read_text("utf-8"), unlike).encode())
+    write_table(out / "pairs.csv", compared, "%.4g")
     print(compared.round(3).to_string(index=False))
     for key, own in compared.groupby(KEY[:2], sort=False) if len(compared) else ():
         print(f"{', '.join(key)}: each two differ of {', '.join(told_apart(own)) or 'none'}")
+    return [*broken]
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """Law: entries that differ are told apart, the table is that of the rows, and rows stay."""
 
+import shutil
+from collections import Counter
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -101,6 +104,13 @@ def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_p
     assert text.count("| order-easy | 30 |") == 2
     assert len(pd.read_csv(tmp_path / "out" / "pairs.csv")) == 1
     script.main([*given, "--check"])
+    entry |= {"name": "c", "levels": {"order-easy": ["module:attribute"]}}
+    (tmp_path / "a.0.toml").write_text(tomli_w.dumps(entry), "utf-8")
+    for how in ([], ["--check"], ["--no-runs"]):
+        with pytest.raises(SystemExit, match=r"not in the table: .*a\.0\.toml: .*--trust"):
+            script.main([*given, *how])
+        assert page.read_text("utf-8") == text
+    (tmp_path / "a.0.toml").unlink()
     (tmp_path / "3.npz").write_bytes((tmp_path / "2.npz").read_bytes())
     with pytest.raises(SystemExit, match="order-easy, 30, b"):
         script.main([*given, "--check"])
@@ -124,24 +134,86 @@ def test_committed_entries_are_scored_again_to_the_digit(script) -> None:
                 ]
 
 
-def test_the_table_has_scores_in_unlike_flocks_of_the_same_trainings_alone(script) -> None:
-    rows = pd.read_csv(script.RESULTS / "entries.csv")[:2]
-    name, score = rows["entry"][0], {"unlike": 0.5, "unlike_low": 0.25, "unlike_high": 0.75}
-    found = rows[["level", "budget", "entry", "trainings"]].assign(flocks=24, **score)
-    shown = [line.split(" | ")[6] for line in script.lines(rows, found)]
-    assert shown[0] == "unlike flocks"
-    assert shown[2:] == ["0.500 (0.250 to 0.750)"] * 2
-    found["trainings"] -= found["entry"] == name
-    shown = [line.split(" | ")[6] for line in script.lines(rows, found)]
-    assert shown[2:] == ["unknown", "0.500 (0.250 to 0.750)"]
-    assert [*script.lines(rows, pd.DataFrame())][2].split(" | ")[6] == "unknown"
+def test_the_table_has_what_is_known_of_the_same_trainings_alone(script, tmp_path) -> None:
+    """Scores in unlike flocks and areas."""
+    entries, given = (
+        pd.read_csv(script.RESULTS / "entries.csv")[:2],
+        script.entered(script.ENTRIES)[0],
+    )
+    entries.to_csv(tmp_path / "entries.csv", index=False)
+
+    def shown(column: str) -> list[str]:
+        header, _, *lines = script.lines(script.joined(tmp_path, given, script.PAGE))
+        at = header.split(" | ").index(column)
+        return [line.split(" | ")[at] for line in lines]
+
+    for column in ("unlike flocks", "area"):
+        assert shown(column) == ["unknown"] * 2
+    score = {"unlike": 0.5, "unlike_low": 0.25, "unlike_high": 0.75, "area": 0.5}
+    found = entries[["level", "budget", "entry", "trainings", "results_version"]].assign(**score)
+    for fewer, words in ((0, "{}"), (1, "unknown")):
+        found.loc[0, "trainings"] -= fewer
+        for name in ("unlike", "areas"):
+            found.to_csv(tmp_path / f"{name}.csv", index=False)
+        for column, full in (("unlike flocks", "0.500 (0.250 to 0.750)"), ("area", "0.500")):
+            assert shown(column) == [words.format(full), full]
 
 
-def test_the_page_has_the_committed_rows(script) -> None:
-    rows = pd.read_csv(script.RESULTS / "entries.csv")
+def test_a_row_links_its_entry_and_names_the_commits_of_its_policies(script) -> None:
+    given = script.entered(script.ENTRIES)[0]
+    rows = script.joined(script.RESULTS, given, script.PAGE)
+    (files,) = rows[(rows["entry"] == "linear evolution") & (rows["budget"] == "100")]["files"]
+    made = "[code](../studies/levels/train_levels.py) of 505508cc5d3f+"
+    assert files == f"[entry](../studies/levels/entries/evolution-100.toml), {made}"
+    commits = Counter(
+        each.provenance["commit"]
+        for entry in given.values()
+        for own in entry.trainings.values()
+        for each in own
+    )
+    named = {word for each in rows["files"] for word in each.split(" of ")[1].split(", ")}
+    assert named == {*commits}
+    lost, clean = (commits.pop(commit) for commit in ("4473632ad8c3", "505508cc5d3f+"))
+    others = clean + sum(commits.values())
+    assert all(commit.endswith("+") for commit in commits)
     text = script.PAGE.read_text("utf-8")
-    unlike = pd.read_csv(script.RESULTS / "unlike.csv")
-    assert script.page(rows, text, unlike) == text
+    assert f"{lost} policies of `order-easy` name a commit that is not in the history" in text
+    assert f"the other {others} name one with +" in text
+
+
+def test_ranks_are_known_on_paper(script) -> None:
+    """Levels in which entries rank alike, in reverse, and with two neighbors exchanged."""
+    means = {"order-easy": "abcd", "order-noisy": "abcd", "order-narrow": "dcba"}
+    means["order-wide"] = "bacd"
+    parts = []
+    for level, places in means.items():
+        for place, name in enumerate(places):
+            for policy in (0, 1):
+                own = pd.DataFrame({"flock": [0, 1], "signed_order": place + 0.1 * policy})
+                parts.append(own.assign(level=level, budget="30", entry=name, policy=policy))
+    found = script.ranks(pd.concat(parts)).set_index("level")
+    assert found["rank_correlation"].to_dict() == pytest.approx(
+        {"order-noisy": 1.0, "order-narrow": -1.0, "order-wide": 0.8}
+    )
+    # No draw of trainings that differ so little changes a rank.
+    assert found["low"].tolist() == pytest.approx(found["high"].tolist())
+
+
+def test_the_page_and_the_ranks_follow_from_the_committed_results(script, tmp_path) -> None:
+    """Without a run; no results are lost on the way."""
+    page, out = script.PAGE, tmp_path / "docs" / "levels.md"
+    out.parent.mkdir()
+    (tmp_path / "studies").symlink_to(page.parents[1] / "studies")
+    begin, end = (page.read_text("utf-8").index(mark) for mark in (script.BEGIN, script.END))
+    text = page.read_text("utf-8")
+    out.write_text(text[: begin + len(script.BEGIN)] + text[end:], "utf-8")
+    results = shutil.copytree(script.RESULTS, tmp_path / "results")
+    (results / "ranks.csv").unlink()
+    entries = tmp_path / "studies" / "levels" / "entries"
+    script.main(["--no-runs", "--out", str(results), "--page", str(out), "--entries", str(entries)])
+    assert out.read_text("utf-8") == text
+    assert (results / "ranks.csv").read_bytes() == (script.RESULTS / "ranks.csv").read_bytes()
+    rows = pd.read_csv(results / "entries.csv")
     given = {(entry.name, entry.budget) for entry in script.entries(script.ENTRIES)}
     assert given == {*zip(rows["entry"], rows["budget"].astype(str), strict=True)}
 

@@ -50,7 +50,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from flockenv import FlockParameters
 from flockenv.comparison import run_episodes
@@ -66,7 +65,7 @@ from flockenv.statistics import (
 from studies.levels import score_levels
 from studies.levels.draw import trainings
 from studies.other_flocks.beyond_one_noise import CELLS, Cell
-from studies.study import HERE, Options, Row, Study, resumed, run, write, write_table
+from studies.study import HERE, Options, Row, Study, run, write_table
 
 LAW_FLOCKS, LED_FLOCKS, MARGIN = 128, 8, 0.05
 KEY, PLACE = ["level", "budget", "entry"], ["level", "what", "value"]
@@ -232,16 +231,11 @@ def correlation(own: Sequence[np.ndarray], unlike: Sequence[np.ndarray]) -> Call
     """
 
     def of(*drawn: np.ndarray, axis: int = -1) -> Any:
-        ranks = []
-        for scores in (own, unlike):
-            means = [
-                each[indices.astype(int)].mean(axis)
-                for each, indices in zip(scores, drawn, strict=True)
-            ]
-            place = stats.rankdata(means, axis=0)
-            ranks.append(place - place.mean(axis=0))
-        first, second = ranks
-        return (first * second).sum(0) / np.sqrt((first**2).sum(0) * (second**2).sum(0))
+        means = (
+            [each[at.astype(int)].mean(axis) for each, at in zip(scores, drawn, strict=True)]
+            for scores in (own, unlike)
+        )
+        return score_levels.rank_correlation(*means)
 
     return of
 
@@ -276,20 +270,19 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--page", type=Path, default=score_levels.PAGE)
     given = parser.parse_args(arguments)
     options = Options(workers=given.workers, out=given.out, study="levels")
-    entries = score_levels.entries(given.entries)
+    entries, refused = score_levels.entered(given.entries)
     results = options.folder / "results"
     found = gains(led_by_laws(options, given.levels))
     write_table(results / "unlike_conditions.csv", found, "%.4f")
-    scores = scored(led_by_entries(options, entries, found), found)
+    scores = scored(led_by_entries(options, [*entries.values()], found), found)
     table = column(scores, found)
     write_table(results / "unlike.csv", table, score_levels.FORM)
     answer = ranks(scores, trainings(results).astype({"budget": str}))
     write_table(results / "unlike_ranks.csv", answer, "%.3f")
-    rows = pd.read_csv(results / "entries.csv")
-    text = given.page.read_text("utf-8")
-    write(given.page, score_levels.page(rows, text, resumed(results / "unlike.csv")).encode())
+    score_levels.write_page(given.page, results, entries)
     for each in (found, table, answer):
         print(each.round(3).to_string(index=False))
+    score_levels.named_at_the_end(refused)
 
 
 if __name__ == "__main__":

@@ -12,10 +12,13 @@ from docs.scripts.plots import REPOSITORY
 from docs.scripts.quoted import (
     DENSITY,
     Number,
+    ends_of,
+    interval,
     mean,
     most_of_an_offset,
     offset,
     plans,
+    ranks_of_levels,
 )
 
 
@@ -164,7 +167,35 @@ def levels() -> list[Number]:
         for policy, shown in columns.items():
             row = {"level": level, "policy": policy}
             laws.append(Number(page, f"{words} {shown} |", file, row, "signed_order"))
-    return laws
+    best = {"level": "order-narrow", "budget": 30, "entry": "MAPPO"}
+    learned = {"level": "order-wide", "policy": "learned"}
+    return [
+        *laws,
+        *interval(page, "of MAPPO, gain {} of", ENTRIES, best, ends_of("score")),
+        *interval(page, "learned leaders gain {} on it", file, learned, ends_of("gain"), ".3f"),
+        *ranks_of_levels(
+            page, "correlation of {}; in", "in `order-wide` it is {}, and", "`order-narrow` {}. In"
+        ),
+        *learned_soonest(),
+    ]
+
+
+ENTRIES = "studies/levels/results/entries.csv"
+
+
+def learned_soonest() -> list[Number]:
+    """What suite v3 says of the easy flock on the page of trainings."""
+    page, row = "docs/train.md", {"level": "order-easy", "budget": 30}
+    return [
+        Number(page, words, ENTRIES, row | {"entry": entry}, column, form)
+        for words, entry, column, form in (
+            ("it gains {} of what the damped law gains, and PPO", "TRPO", "score", ".2f"),
+            ("law gains, and PPO {}.", "PPO", "score", ".2f"),
+            ("they gain {} in # s, where", "paired branches", "score", ".2f"),
+            ("they gain # in {} s, where", "paired branches", "cpu_s", ".0f"),
+            ("where TRPO takes {} s (", "TRPO", "cpu_s", ".0f"),
+        )
+    ]
 
 
 def box2d(rows: Any) -> float:
