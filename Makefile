@@ -147,7 +147,7 @@ extend: $(STAMPS)/venv ## follow the pages of docs/extend, or PAGE=policy alone,
 test-processors: ## the tests of the same bits on aarch64, riscv64 and i686, emulated
 	tests/processors.sh
 
-studies: build $(STAMPS)/studies ## make the runs of studies/ that are missing, judge and draw them; STUDIES_ARGS=worth makes one
+studies: build $(STAMPS)/studies ## make the runs of studies/ that are missing, judge and draw them, list other scripts; STUDIES_ARGS=worth makes one
 	OMP_NUM_THREADS=1 $(BIN)/python -m studies.make $(STUDIES_ARGS)
 
 studies-trial: build $(STAMPS)/studies ## run every study in its shortest form, and judge the committed results (minutes)

@@ -1,5 +1,6 @@
 """Law: a study runs as a trial, resumes where it ended, and refuses what it cannot use."""
 
+import contextlib
 import csv
 import importlib
 import math
@@ -7,6 +8,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -208,6 +210,46 @@ def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_an_unknown_study() -> None:
     with pytest.raises(SystemExit, match="'fig99' is no study of this folder: "):
         make.main(["fig99"])
+
+
+class _Process(contextlib.AbstractContextManager):
+    """A script that ends at once, or at the second wait if the first is interrupted."""
+
+    made: ClassVar[list[str]] = []
+    waits: ClassVar[list[BaseException | None]] = []
+
+    def __init__(self, command: list[str], **_: object) -> None:
+        self.made.append(command[2].removeprefix("studies.").replace(".", "/"))
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def wait(self) -> int:
+        if self.waits and (error := self.waits.pop(0)):
+            raise error
+        return 0
+
+
+def test_what_make_does_not_run_is_listed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(make.subprocess, "Popen", _Process)
+    monkeypatch.setattr(_Process, "made", made := [])
+    make.main([])
+    listed = capsys.readouterr().out.partition("not here: ")[2].strip().split(", ")
+    assert made == make.scripts()
+    runs = [path for path in study.HERE.glob("*/*.py") if "__main__" in path.read_text("utf-8")]
+    assert sorted(made + listed) == sorted(f"{path.parent.name}/{path.stem}" for path in runs)
+    make.main(["critical_noise"])
+    assert capsys.readouterr().out.endswith("not here: critical_noise/critical_noise\n")
+
+
+def test_ctrl_c_waits_for_what_a_script_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(make.subprocess, "Popen", _Process)
+    monkeypatch.setattr(_Process, "waits", waits := [KeyboardInterrupt(), None])
+    with pytest.raises(KeyboardInterrupt):
+        make.main(["worth"])
+    assert waits == []
 
 
 @pytest.mark.parametrize(
