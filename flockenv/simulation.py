@@ -18,7 +18,7 @@ from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
 from flockenv.parameters import OBSTACLES, FlockParameters
 from flockenv.policies.leaders import Leaders
-from flockenv.policies.registry import Steering
+from flockenv.policies.registry import PolicyLike
 from flockenv.recording import PHASES, PRECISIONS, Recording, checked_functions
 
 Schedule = Iterable[tuple[float, Mapping[str, object]]]
@@ -39,7 +39,7 @@ def simulate(
     seed: int,
     duration_s: float,
     sample_hz: float = 10.0,
-    policy: Steering | Mapping[str, Steering] = None,
+    policy: PolicyLike | Mapping[str, PolicyLike] = None,
     *,
     control_hz: float | None = None,
     dtype: DTypeLike = np.float64,

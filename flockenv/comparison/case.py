@@ -9,7 +9,7 @@ from flockenv._io.extras import require
 from flockenv.comparison.comparison import Finished, compare_leaders, nothing_finished
 from flockenv.comparison.episodes import Progress, no_progress
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import Steering
+from flockenv.policies.registry import PolicyLike
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +46,7 @@ class Case:
 
     def run(
         self,
-        policies: Mapping[str, Steering | Mapping[str, Steering]],
+        policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
         progress: Progress = no_progress,
         finished: Finished = nothing_finished,
     ) -> "pd.DataFrame":

@@ -16,7 +16,7 @@ from flockenv.comparison.episodes import (
 )
 from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
-from flockenv.policies.registry import Steering
+from flockenv.policies.registry import PolicyLike
 from flockenv.runs.seeds import check_evaluation_seeds
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Comparison:
         cls,
         parameters: FlockParameters,
         leaders: Iterable[int],
-        policies: Mapping[str, Steering | Mapping[str, Steering]],
+        policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
         seeds: Iterable[int],
         duration_s: float,
         environment: Mapping[str, object],
@@ -122,8 +122,8 @@ def _evaluation_seeds(seeds: Iterable[int]) -> Sequence[int]:
 
 
 def _policies(
-    policies: Mapping[str, Steering | Mapping[str, Steering]],
-) -> dict[str, Steering | Mapping[str, Steering]]:
+    policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
+) -> dict[str, PolicyLike | Mapping[str, PolicyLike]]:
     found = by_name(policies, "policies")
     if NO_LEADERS in found:
         raise ParameterError(
@@ -156,7 +156,7 @@ def _counts(
 def compare_leaders(
     parameters: FlockParameters,
     leaders: Iterable[int],
-    policies: Mapping[str, Steering | Mapping[str, Steering]],
+    policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
     seeds: Iterable[int],
     duration_s: float,
     progress: Progress = no_progress,

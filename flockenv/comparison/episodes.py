@@ -18,7 +18,7 @@ from flockenv.flock import STEP_STATISTICS
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import CONTROL_HZ, Policy
 from flockenv.policies.leaders import Leaders
-from flockenv.policies.registry import Steering
+from flockenv.policies.registry import PolicyLike
 
 Decide = Callable[[NDArray[np.float32]], NDArray[np.float64] | None]
 
@@ -60,7 +60,7 @@ class Episodes:
     def parse(
         cls,
         parameters: FlockParameters,
-        policy: Steering | Mapping[str, Steering],
+        policy: PolicyLike | Mapping[str, PolicyLike],
         seeds: Iterable[int],
         duration_s: float,
         options: Mapping[str, object],
@@ -176,7 +176,7 @@ def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:
 
 def run_episodes(
     parameters: FlockParameters,
-    policy: Steering | Mapping[str, Steering],
+    policy: PolicyLike | Mapping[str, PolicyLike],
     seeds: Iterable[int],
     duration_s: float,
     progress: Progress = no_progress,

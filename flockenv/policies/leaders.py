@@ -14,7 +14,7 @@ from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import PAPERS_LAW
-from flockenv.policies.registry import Steering, policy
+from flockenv.policies.registry import PolicyLike, policy
 
 _FASTEST_HZ = 1000
 
@@ -44,7 +44,7 @@ class Leaders:
 
     @classmethod
     def from_policies(
-        cls, given: Steering | Mapping[str, Steering], flock: FlockParameters
+        cls, given: PolicyLike | Mapping[str, PolicyLike], flock: FlockParameters
     ) -> Self:
         """Return who steers a flock's leaders, given as a policy or as one for each leader.
 
@@ -95,7 +95,7 @@ class Leaders:
         return Decisions(self.seats, control_hz)
 
 
-def _seats(given: Mapping[str, Steering], flock: FlockParameters) -> tuple[Seat, ...]:
+def _seats(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Seat, ...]:
     names = [f"leader_{leader}" for leader in range(flock.n_leaders)]
     if given.keys() != set(names):
         accepted = ", ".join(names) or "none, since n_leaders = 0"

@@ -23,7 +23,7 @@ from flockenv.policies.names import (
 )
 from flockenv.policies.network import NetworkPolicy
 
-Steering = Policy | LeaderPolicy | str | os.PathLike[str] | Callable[[], object] | None
+PolicyLike = Policy | LeaderPolicy | str | os.PathLike[str] | Callable[[], object] | None
 """Forms in which a policy may be given; see `policy`."""
 
 FILES = (".json", ".npz", ".zip")
@@ -60,7 +60,7 @@ def _named(pool: Pool | None) -> str:
     return pool
 
 
-def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) -> Policy:
+def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) -> Policy:
     """Return the policy for a name, a file or an object: the one door for all policies.
 
     Parameters
@@ -101,7 +101,7 @@ def policy(given: Steering, pool: Pool | None = None, *, trust: bool = False) ->
     return found
 
 
-def _source(given: Steering, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
+def _source(given: PolicyLike, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
     """Return the object with ``predict`` that a value is or names."""
     made: object = given
     if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(FILES)):
