@@ -13,7 +13,7 @@ from flockenv import _core
 from flockenv.errors import ParameterError, short_repr
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy, Pool
-from flockenv.policies.names import PAPERS_LAW
+from flockenv.policies.names import EVERY_SUBSTEP, PAPERS_LAW
 from flockenv.policies.registry import PolicyLike, policy
 
 _FASTEST_HZ = 1000
@@ -58,7 +58,7 @@ class Leaders:
             for seat in found.seats:
                 seat.policy.check_action_mode("rudder", "leader by leader")
         else:
-            alone = None if isinstance(given, Mapping) else given
+            alone = EVERY_SUBSTEP if isinstance(given, Mapping) else given
             found = cls((Seat(policy(alone, flock.pool), (*range(k),)),))
         for seat in found.seats:
             if k == 0 and seat.policy.control_hz is not None:
