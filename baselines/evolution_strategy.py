@@ -179,7 +179,7 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
         reward, order = state["curve"][-1]
         done = int(state["generation"]) * hours
         print(f"{done:.2f} flock-hours: mean reward {reward:.3f}, signed order {order:.3f}")
-    rows = [(number * hours + hours, *each) for number, each in enumerate(state["curve"])]
+    rows = [(number * hours + hours, *point) for number, point in enumerate(state["curve"])]
     header = "flock_hours,mean_reward,signed_order"
     np.savetxt(options.out / "curve.csv", rows, "%.5g", ",", header=header, comments="")
     generations, decisions_hz = int(state["generation"]), env.metadata["render_fps"]
@@ -227,8 +227,8 @@ def main(arguments: list[str] | None = None) -> None:
     weights = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *given]))
     env, seeds = environment(options.task, options.episodes), list(range(options.episodes))
     orders = {}
-    for name, each in (("evolved", weights), ("no search", 0.0 * weights)):
-        steer = linear(np.tile(each, (options.episodes, 1)), env.num_leaders)
+    for name, candidate in (("evolved", weights), ("no search", 0.0 * weights)):
+        steer = linear(np.tile(candidate, (options.episodes, 1)), env.num_leaders)
         _, orders[name] = episode(env, seeds, steer)
     print(score_policies(orders, "no search").round(3).to_string(index=False))
     print(f"written to {options.out}")

@@ -97,7 +97,7 @@ def ascent(
     The decisions `chosen` were drawn from normal distributions about the leans of the weights
     `start`, with the standard deviations `spread`.
     """
-    before, now = ((chosen - features @ each) / spread for each in (start, weights))
+    before, now = ((chosen - features @ w) / spread for w in (start, weights))
     ratio = np.exp((before**2 - now**2) / 2)
     free = np.where(advantage > 0, ratio < 1 + clip_range, ratio > 1 - clip_range)
     return (advantage * ratio * free * now / spread) @ features / len(chosen)
@@ -132,9 +132,9 @@ def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray
         start, rate = weights.copy(), settings.learning_rate * (1 - number / rounds)
         for _ in range(settings.epochs):
             for part in np.array_split(random.permutation(len(chosen)), settings.parts):
-                each = (array[part] for array in (chosen, features, spread))
+                decisions = (array[part] for array in (chosen, features, spread))
                 own = (start, advantage[part], settings.clip_range)
-                gradient, steps = ascent(weights, *each, *own), steps + 1
+                gradient, steps = ascent(weights, *decisions, *own), steps + 1
                 moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient
                 moment_2 = DECAY_2 * moment_2 + (1 - DECAY_2) * gradient**2
                 step = moment_1 / (1 - DECAY_1**steps)

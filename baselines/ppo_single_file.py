@@ -100,7 +100,7 @@ class Learner:
         settings, size = self.settings, len(rollout["returns"])
         for _ in range(settings.epochs):
             for part in torch.randperm(size).chunk(settings.minibatches):
-                batch = {name: each[part] for name, each in rollout.items()}
+                batch = {name: values[part] for name, values in rollout.items()}
                 gain = batch["advantages"]
                 gain = ((gain - gain.mean()) / (gain.std() + 1e-8)).unsqueeze(-1)
                 now = self.actions(batch["observations"]).log_prob(batch["actions"])
@@ -135,7 +135,7 @@ def rollout_of(
         after = learner.values(torch.from_numpy(env.flock_features()))
         if truncated.any():
             observations, _ = env.reset(options={"reset_mask": truncated})
-        for name, each in (
+        for name, value in (
             ("observations", seen),
             ("features", features),
             ("actions", actions),
@@ -144,8 +144,8 @@ def rollout_of(
             ("next", after),
             ("goes", torch.from_numpy(~truncated).float()),
         ):
-            steps[name].append(each)
-    whole = {name: torch.stack(each) for name, each in steps.items()}
+            steps[name].append(value)
+    whole = {name: torch.stack(values) for name, values in steps.items()}
     values = learner.values(whole["features"])
     # Generalized advantage estimation (Schulman et al. 2016, eq. 16), backward in time.
     surprises = whole["rewards"] + settings.gamma * whole["next"] - values
@@ -155,7 +155,7 @@ def rollout_of(
         advantages[step] = later
     rollout = {name: whole[name] for name in ("observations", "features", "actions", "log_probs")}
     rollout |= {"advantages": advantages, "returns": advantages + values}
-    flat = {name: each.flatten(0, 1) for name, each in rollout.items()}
+    flat = {name: values.flatten(0, 1) for name, values in rollout.items()}
     return flat, observations, float(whole["rewards"].mean())
 
 

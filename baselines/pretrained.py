@@ -159,15 +159,15 @@ def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -
 
 def made_by(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]:
     """Return the provenance of a policy that follows from these laws."""
-    each = [law.provenance for law in laws]
+    provenances = [law.provenance for law in laws]
     return {
         "command": command,
         "chosen": chosen,
-        "flockenv": each[0]["flockenv"],
-        "commit": ", ".join(sorted({own["commit"] for own in each})),
-        "seed": ", ".join(own["seed"] for own in each),
+        "flockenv": provenances[0]["flockenv"],
+        "commit": ", ".join(sorted({own["commit"] for own in provenances})),
+        "seed": ", ".join(own["seed"] for own in provenances),
         **{
-            name: f"{sum(float(own[name]) for own in each):.10g}"
+            name: f"{sum(float(own[name]) for own in provenances):.10g}"
             for name in ("samples", "flock_hours", "cpu_s")
         },
     }
@@ -177,9 +177,9 @@ def mean_of(laws: list[LeaningLaw], made: dict[str, str] | None = None) -> Leani
     """Return the mean of laws of one pool, number by number, with a provenance."""
     pool = laws[0].pool
     weights = {
-        name: float(np.mean([each.weights[name] for each in laws])) for name in laws[0].weights
+        name: float(np.mean([law.weights[name] for law in laws])) for name in laws[0].weights
     }
-    bias = float(np.mean([each.bias for each in laws]))
+    bias = float(np.mean([law.bias for law in laws]))
     return LeaningLaw(pool, bias, weights, bound=BOUND[pool], provenance=made or {})
 
 

@@ -102,12 +102,12 @@ for episode in range(settings.episodes):
 
     # All agents' decisions are samples of one policy.
     batch = [
-        each.flatten(0, 1)
-        for each in (rows[:-1], torch.stack(actions), torch.stack(chances), advantages, returns)
+        tensor.flatten(0, 1)
+        for tensor in (rows[:-1], torch.stack(actions), torch.stack(chances), advantages, returns)
     ]
     for _ in range(settings.epochs):
         for part in torch.randperm(len(batch[0])).chunk(settings.minibatches):
-            states, acted, before, gain, wanted = (each[part] for each in batch)
+            states, acted, before, gain, wanted = (tensor[part] for tensor in batch)
             gain = (gain - gain.mean()) / (gain.std() + 1e-8)
             now = Normal(actor(states).squeeze(-1), log_std.exp()).log_prob(acted)
             ratio = (now - before).exp()

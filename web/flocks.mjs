@@ -56,7 +56,7 @@ function distinguished(described, copies) {
   const parts = described.map(({ name }) => name.split(", "));
   const isPair = parts.length > copies;
   const index = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
-  return described.map((each, k) => ({ ...each, name: isPair ? parts[k][index] ?? each.name : each.name }));
+  return described.map((flock, k) => ({ ...flock, name: isPair ? parts[k][index] ?? flock.name : flock.name }));
 }
 
 export class Flocks {
@@ -102,7 +102,7 @@ export class Flocks {
   /** The part of a link for the flocks at a time; changes beyond its limit are left out. */
   linked(time = 0) {
     const { first, start, changes } = this.past;
-    const isWhole = changes.length <= MOST_CHANGES && changes.every((each) => each.time <= LATEST);
+    const isWhole = changes.length <= MOST_CHANGES && changes.every((change) => change.time <= LATEST);
     const flocks = isWhole ? { ...first, changes } : this.shown;
     const latest = isWhole ? changes.at(-1)?.time ?? 0 : 0;
     const other = {
@@ -121,13 +121,13 @@ export class Flocks {
   async become(wanted, kind) {
     // Changes that are made before the answer start from this.
     this.asked = wanted;
-    const requests = requestsOf(wanted, this.kinds).map((each) =>
-      (each.leaders === TRAINED && this.trained ? { ...each, trained: this.trained } : each));
+    const requests = requestsOf(wanted, this.kinds).map((request) =>
+      (request.leaders === TRAINED && this.trained ? { ...request, trained: this.trained } : request));
     const { continues, values, taken } = await this.simulator.ask(kind, { requests }).catch((error) => {
       this.asked = this.shown;
       throw error;
     });
-    const described = distinguished(values.map((each, index) => this.#describe(each, wanted, index, requests[index].seed)), wanted.copies);
+    const described = distinguished(values.map((answer, index) => this.#describe(answer, wanted, index, requests[index].seed)), wanted.copies);
     const isSame = continues && described.every(({ boats }, index) => this.runs[index]?.boats === boats);
     const before = this.shown;
     this.shown = wanted;
@@ -138,7 +138,7 @@ export class Flocks {
     if (isSame) {
       this.runs.forEach((run, index) => { run.describe(described[index]); });
     } else {
-      this.runs = described.map((each) => new GrowingRun(each, this.series));
+      this.runs = described.map((flock) => new GrowingRun(flock, this.series));
     }
     this.append(taken);
     const end = Number(this.runs[0].end.toFixed(1));
@@ -159,8 +159,8 @@ export class Flocks {
   }
 
   append(taken, onCycle = () => {}, runs = this.runs) {
-    taken.forEach((each, index) => {
-      runs[index].append(each, index === 0 && runs[0].end > SETTLING ? (order) => onCycle(runs[0].bw_s, order) : undefined);
+    taken.forEach((samples, index) => {
+      runs[index].append(samples, index === 0 && runs[0].end > SETTLING ? (order) => onCycle(runs[0].bw_s, order) : undefined);
     });
   }
 
@@ -219,9 +219,9 @@ export class Flocks {
     const isCommon = leaders > 0 && new Set(targets).size === 1;
     return {
       ...named, lengths, leaders, boats: parameters.n_boats, bw_s: parameters.bw_s, stored: parameters,
-      parameters: Object.fromEntries(Object.keys(this.kinds).map((each) => [each, textOf(parameters[each])])),
+      parameters: Object.fromEntries(Object.keys(this.kinds).map((field) => [field, textOf(parameters[field])])),
       target: isCommon ? targets[0] : null, targets: leaders > 0 && !isCommon ? targets : undefined,
-      ...Object.fromEntries(Object.entries(parameters).filter(([each]) => this.kinds[each] === "rows")), phases: this.phases, ids: null, every: 1,
+      ...Object.fromEntries(Object.entries(parameters).filter(([field]) => this.kinds[field] === "rows")), phases: this.phases, ids: null, every: 1,
     };
   }
 

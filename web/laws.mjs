@@ -16,7 +16,7 @@ export class Laws {
   /** Choices for all leaders together: the first of laws with the same words, what was trained, and the visitor. */
   get ofAll() {
     const alike = [this.atEverySubstep, ...this.ofEach].filter((name, index, names) =>
-      names.findIndex((each) => this.words(each) === this.words(name)) === index);
+      names.findIndex((other) => this.words(other) === this.words(name)) === index);
     return [...alike, TRAINED, YOU];
   }
 

@@ -85,7 +85,7 @@ export function lessonLinks() {
 
 /** The words of a lesson by its name, those of a recording, or those of the opening. */
 export function wordsOf(name) {
-  return name === RECORDING ? RECORDING_WORDS : LESSONS.find((each) => each.name === name) ?? OPENING_WORDS;
+  return name === RECORDING ? RECORDING_WORDS : LESSONS.find((lesson) => lesson.name === name) ?? OPENING_WORDS;
 }
 
 /** Words with `[words](#link)` as links, and `[or words]` where there is more than fingers; those between braces stay on one line, so that no finger meets two of them. */

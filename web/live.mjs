@@ -94,7 +94,7 @@ export class LivePage {
 
   /** Changes one parameter, from where the flock is if that is possible. */
   set(name, value) {
-    this.wanted = [...this.wanted.filter(([each]) => each !== name), [name, value]];
+    this.wanted = [...this.wanted.filter(([other]) => other !== name), [name, value]];
     this.#change();
   }
 

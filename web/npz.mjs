@@ -172,8 +172,8 @@ function readNpy(bytes) {
   const length = bytes[6] === 1 ? view.getUint16(8, true) : view.getUint32(8, true);
   const header = new TextDecoder().decode(bytes.subarray(start, start + length));
   const descr = /'descr':\s*'([^']+)'/.exec(header)?.[1] ?? "";
-  const shape = (/'shape':\s*\(([^)]*)\)/.exec(header)?.[1] ?? "").split(",").map((each) => each.trim()).filter(Boolean).map(Number);
-  const count = shape.reduce((product, each) => product * each, 1);
+  const shape = (/'shape':\s*\(([^)]*)\)/.exec(header)?.[1] ?? "").split(",").map((size) => size.trim()).filter(Boolean).map(Number);
+  const count = shape.reduce((product, size) => product * size, 1);
   const content = bytes.slice(start + length).buffer;
   const width = /^<U(\d+)$/.exec(descr)?.[1];
   if (/'fortran_order':\s*True/.test(header) && shape.length > 1) {

@@ -23,7 +23,7 @@ export class OrderMap {
   /** Shows the order that is expected of a flock, null for none, and forgets another flock's marks. */
   expect(flock, signature) {
     const { bw_s: _, seed: __, ...rest } = flock ?? {};
-    const isOf = ({ points: _, ...each }) => Object.entries({ n_leaders: "0", ...rest }).every(([name, value]) => String(each[name]) === value);
+    const isOf = ({ points: _, ...curve }) => Object.entries({ n_leaders: "0", ...rest }).every(([name, value]) => String(curve[name]) === value);
     this.#expected = flock && "preset" in rest ? this.orders.find(isOf)?.points ?? null : null;
     if (signature !== this.#signature) {
       this.#signature = signature;

@@ -12,7 +12,7 @@ const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int3
 
 const kindOf = (descr) => KINDS[descr] ?? descr;
 const tuple = (shape) => (shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`);
-const isSame = (shape, other) => shape.length === other.length && shape.every((each, k) => each === other[k]);
+const isSame = (shape, other) => shape.length === other.length && shape.every((size, k) => size === other[k]);
 /** A bound in Python's spelling: 1e+09 or 3.14159. */
 const inShort = (bound) => (Math.abs(bound) < 1e6 ? `${Number(bound.toPrecision(6))}` : bound.toExponential().replace(/\+(\d)$/, "+0$1"));
 const quoted = (text) => `'${text}'`;
@@ -33,8 +33,8 @@ function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps =
   }
   if (hasGaps) {
     const width = shape.length === 3 ? shape[2] : 1;
-    const isWhole = array.values.every((each, k) => Number.isNaN(each) === Number.isNaN(array.values[k - (k % width)]));
-    if (!isWhole || array.values.some((each) => Math.abs(each) === Infinity)) {
+    const isWhole = array.values.every((value, k) => Number.isNaN(value) === Number.isNaN(array.values[k - (k % width)]));
+    if (!isWhole || array.values.some((value) => Math.abs(value) === Infinity)) {
       refuse(`${name} must be finite, but for boats that are not there`);
     }
   } else if (!array.values.every(isUndefined ? Number.isNaN : Number.isFinite)) {
@@ -42,14 +42,14 @@ function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps =
   }
   const [low, high] = bounds ?? [-Infinity, Infinity];
   // Sums are rounded.
-  if (array.values.some((each) => each < low - 1e-6 || each > high + 1e-6)) {
+  if (array.values.some((value) => value < low - 1e-6 || value > high + 1e-6)) {
     refuse(`${name} must be within ${inShort(low)} and ${inShort(high)}`);
   }
 }
 
 function checkTimes({ time_s: time, duration_s: duration }) {
   const [times, [end]] = [time.values, duration.values];
-  const isRising = times.every((each, k) => k === 0 || each > times[k - 1]);
+  const isRising = times.every((value, k) => k === 0 || value > times[k - 1]);
   const [first, last] = [times[0] ?? 0, times.at(-1) ?? 0];
   // Times are rounded to a nanosecond, and may lie beyond the end by that.
   if (!isRising || first < 0 || last > end + 1e-9 || !(end + 1e-9 >= 0 && end <= 1e9)) {
@@ -96,17 +96,17 @@ function checkContacts(contacts, samples, { n_boats: boats, ...others }) {
     }
   }
   const count = contacts.count.values;
-  if (count.some((each) => each < 0 || each > c) || count.reduce((sum, each) => sum + each, 0) !== c) {
+  if (count.some((number) => number < 0 || number > c) || count.reduce((sum, number) => sum + number, 0) !== c) {
     refuse(`contacts.count must add up to the ${c} contacts there are`);
   }
   const [first, second] = [contacts.i.values, contacts.j.values];
   // No other parameter is a list of lists.
   const obstacles = Object.values(others).flat().filter(Array.isArray).length;
-  const isBoat = (each) => each >= -2 - obstacles && each < boats;
-  if (!first.every((each) => each >= 0 && isBoat(each)) || !second.every(isBoat)) {
+  const isBoat = (boat) => boat >= -2 - obstacles && boat < boats;
+  if (!first.every((boat) => boat >= 0 && isBoat(boat)) || !second.every(isBoat)) {
     refuse(`contacts.i and contacts.j must be among ${boats} boats`);
   }
-  if (!contacts.force.values.every((each) => each > 0)) {
+  if (!contacts.force.values.every((force) => force > 0)) {
     refuse("contacts.force must be positive");
   }
 }

@@ -65,9 +65,9 @@ export function readLink(fragment, fields) {
 
 /** Changes with one more, in their order; those of one time are one. */
 export function withChange(changes, time, fields) {
-  const before = changes.filter((each) => each.time < time);
-  const same = changes.find((each) => each.time === time);
-  return [...before, { time, fields: { ...same?.fields, ...fields } }, ...changes.filter((each) => each.time > time)];
+  const before = changes.filter((change) => change.time < time);
+  const same = changes.find((change) => change.time === time);
+  return [...before, { time, fields: { ...same?.fields, ...fields } }, ...changes.filter((change) => change.time > time)];
 }
 
 /** The differences between two flocks, in the form of changes. */
@@ -97,8 +97,8 @@ export function linkTo({ flock, beside, changes = [], other }) {
 /** A field's value as JSON, from the text that links have: lists with commas, rows that semicolons end. */
 export function valueFrom(kind, text) {
   // Anything but a number stays text, which the simulator refuses.
-  const number = (each) => (each.trim() !== "" && Number.isFinite(Number(each)) ? Number(each) : each.trim());
-  const list = (each, read) => each.split(",").filter((item) => item.trim() !== "").map(read);
+  const number = (item) => (item.trim() !== "" && Number.isFinite(Number(item)) ? Number(item) : item.trim());
+  const list = (items, read) => items.split(",").filter((item) => item.trim() !== "").map(read);
   if (kind === "rows") {
     return text.split(";").filter(Boolean).map((row) => list(row, number));
   }
@@ -133,7 +133,7 @@ export function requestOf(flock, kinds) {
 /** The simulator's requests for the flocks that are shown: one for each seed, and then those beside them. */
 export function requestsOf({ flock, beside, copies = 1 }, kinds) {
   const kindsOfFlock = [flock, ...(beside ? [{ ...flock, ...beside }] : [])];
-  return kindsOfFlock.flatMap((each) => Array.from({ length: copies }, (_, copy) => requestOf({ ...each, ...seedOf(each, copy) }, kinds)));
+  return kindsOfFlock.flatMap((flockOfKind) => Array.from({ length: copies }, (_, copy) => requestOf({ ...flockOfKind, ...seedOf(flockOfKind, copy) }, kinds)));
 }
 
 /** The seed of a copy of a flock. Other text stays, and the simulator refuses it. */

@@ -118,9 +118,9 @@ export function showTexts(flocks, time) {
     given.push({ ...flock, ...beside });
   }
   const isTrained = given.some(({ leaders }) => leaders === TRAINED);
-  const texts = given.map((each) => (each.leaders === TRAINED ? { ...each, leaders: flocks.trained ? "policy.json" : "straight ahead" } : each));
+  const texts = given.map((fields) => (fields.leaders === TRAINED ? { ...fields, leaders: flocks.trained ? "policy.json" : "straight ahead" } : fields));
   const seconds = Math.max(SECONDS, 60 * Math.ceil((time + 1) / 60));
-  const commands = texts.map((each) => commandLine(each, seconds, schedule));
+  const commands = texts.map((fields) => commandLine(fields, seconds, schedule));
   const byId = (id) => document.getElementById(id);
   byId("command").value = commands.join("\n").trim();
   byId("python").value = pythonText(texts, seconds, flocks.kinds, schedule);

@@ -73,7 +73,7 @@ function simulation(flock, seconds, kinds, changes, name) {
 }
 
 function pythonValue(text, kind) {
-  const number = (each) => (/inf/i.test(each) ? 'float("inf")' : each.trim());
+  const number = (item) => (/inf/i.test(item) ? 'float("inf")' : item.trim());
   if (kind === "flag") {
     return text === "true" ? "True" : "False";
   }
@@ -86,5 +86,5 @@ function pythonValue(text, kind) {
   if (kind === "pool" && text.includes(",")) {
     return `(${text.split(",").map(number).join(", ")})`;
   }
-  return text.includes(",") ? `[${text.split(",").map((each) => `"${each}"`).join(", ")}]` : `"${text}"`;
+  return text.includes(",") ? `[${text.split(",").map((item) => `"${item}"`).join(", ")}]` : `"${text}"`;
 }

@@ -144,7 +144,7 @@ export class View {
   }
 
   #quantity(key) {
-    return this.#quantities.find((each) => each.key === key);
+    return this.#quantities.find((quantity) => quantity.key === key);
   }
 
   #showWords(time, rate, isPlaying) {
@@ -172,7 +172,7 @@ export class View {
     };
     const signed = (value) => fixed(value, 2, true);
     if (areYours) {
-      const [yours, law] = [runs.slice(0, besides), runs.slice(besides)].map((each) => signed(scoreOf(each)));
+      const [yours, law] = [runs.slice(0, besides), runs.slice(besides)].map((side) => signed(scoreOf(side)));
       const isGame = byId("story").dataset.lesson === "steer";
       const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
       return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
@@ -197,7 +197,7 @@ export class View {
     });
     const chosen = this.pinned === null ? [] : [chosenBoat(this.panels[0].run, time, this.pinned, this.palette)];
     // No more than is spoken before the next sentence.
-    const game = () => [clockwise(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((each) => scoreWords(each, this.rounds))];
+    const game = () => [clockwise(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.rounds))];
     const said = [...chosen, ...(areYours ? game() : told)].join(" ");
     const isDue = !isPlaying || performance.now() - this.#told > ANNOUNCE_EVERY;
     if (isDue && said !== byId("doing").textContent) {

@@ -130,7 +130,7 @@ function taken(flocks) {
 async function answer({ data: { id, kind, ...message } }) {
   try {
     const said = await ANSWERS[kind](message);
-    postMessage({ id, said }, (said.taken ?? []).flatMap((each) => Object.values(each).map(({ buffer }) => buffer)));
+    postMessage({ id, said }, (said.taken ?? []).flatMap((columns) => Object.values(columns).map(({ buffer }) => buffer)));
   } catch (error) {
     postMessage({ id, error: { refused: error instanceof Refusal, field: error.field ?? "", words: error.message } });
   }

@@ -52,7 +52,7 @@ def train_branches(
     except KeyboardInterrupt:
         raise KeyboardInterrupt(held_by(out)) from None
     compared = compare_with_laws(policy, training.parameters, flocks)
-    orders = {name: each["signed_order"] for name, each in compared.items()}
+    orders = {name: columns["signed_order"] for name, columns in compared.items()}
     _write(out, training, orders)
     gain, error = _mean(orders[TRAINED] - orders[TUNED_LAW])
     if printing.as_json:
@@ -104,7 +104,7 @@ def _mean(values: Any) -> tuple[float, float]:
 def _overlaps(compared: Mapping[str, Mapping[str, Any]]) -> tuple[int, int, float]:
     """Return the numbers of episodes and of those with overlaps, and the deepest overlap."""
     unsolved, worst_cm = (
-        np.concatenate([each[name] for each in compared.values()])
+        np.concatenate([columns[name] for columns in compared.values()])
         for name in ("unsolved", "worst_overlap_cm")
     )
     deep = unsolved > 0

@@ -320,17 +320,17 @@ def _checked_layers(
         raise ParameterError(
             f"{count} weights and {len(biases)} biases are not accepted: one of each a layer"
         )
-    each: Sequence[Norm | None] = [None] * count if norms is None else items(norms, "norms")
+    layer_norms: Sequence[Norm | None] = [None] * count if norms is None else items(norms, "norms")
     if isinstance(activation, str):
         named: Sequence[str] = [*[activation] * (count - 1), "identity"]
         refuse_unknown((activation,), ACTIVATIONS, "activation")
     else:
         named = items(activation, "activation")
         refuse_unknown(named, ACTIVATIONS, "activation")
-    if (len(each), len(named)) != (count, count):
+    if (len(layer_norms), len(named)) != (count, count):
         raise ParameterError(
-            f"{len(each)} norms and {len(named)} activations are not accepted: one of each for "
-            f"{count} layers"
+            f"{len(layer_norms)} norms and {len(named)} activations are not accepted: one of each "
+            f"for {count} layers"
         )
     layers, inputs = [], size
     for index, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
@@ -344,7 +344,7 @@ def _checked_layers(
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
             raise ParameterError(f"layer {index} holds numbers that are not finite")
-        norm = _checked_norm(each[index], wanted, f"the norm of layer {index}")
+        norm = _checked_norm(layer_norms[index], wanted, f"the norm of layer {index}")
         layers.append(_Layer(matrix, vector, norm, named[index]))
         inputs = wanted
     return layers

@@ -82,7 +82,7 @@ class WrappedPolicy(ModelPolicy):
                 f"env = {short_repr(env)} is not accepted: the model was trained in {own}, not "
                 f"{space}"
             )
-        self._wrapper, self._is_each = wrapper, is_single
+        self._wrapper, self._is_per_item = wrapper, is_single
         self._space, self._actions = space, unwrapped.action_space
         self._take(model, space, self._actions, provenance)
         made = self._made(space.low[None])
@@ -125,7 +125,7 @@ class WrappedPolicy(ModelPolicy):
 
     def _made(self, items: NDArray[np.float32]) -> Any:
         """Return the wrapper around stand-ins that give these observations."""
-        if self._is_each:
+        if self._is_per_item:
             made = self._wrapper(_stand_in(self._space, self._actions, items[0]))
         else:
             made = self._wrapper(_vector_stand_in(self._space, self._actions, items))
@@ -177,7 +177,7 @@ class _Run:
     """A run: the wrappers' memory, and the model's decisions."""
 
     def __init__(self, policy: WrappedPolicy, items: NDArray[np.float32]) -> None:
-        self.is_per_item = policy._is_each
+        self.is_per_item = policy._is_per_item
         count = len(items) if self.is_per_item else 1
         self.wrapped = [policy._made(items[index:]) for index in range(count)]
         self.state: object = None

@@ -78,9 +78,9 @@ export class Player {
 
   #fill() {
     const { speed, quantity, scrub, forces, boat } = this.controls;
-    speed.append(...SPEEDS.map((each) => new Option(`${each} ×`, each)));
+    speed.append(...SPEEDS.map((factor) => new Option(`${factor} ×`, factor)));
     speed.value = FIRST_SPEED;
-    quantity.append(...this.quantities.map((each) => new Option(caption(each), each.key)));
+    quantity.append(...this.quantities.map((series) => new Option(caption(series), series.key)));
     [scrub.min, scrub.max, scrub.value] = [this.start, this.end, this.start];
     boat.append(new Option("none", ""));
     for (let k = 0; k < this.#mostBoats(); k += 1) {
@@ -108,8 +108,8 @@ export class Player {
     forward.addEventListener("click", () => this.step(1));
     scrub.addEventListener("input", () => this.seek(Number(scrub.value)));
     help.addEventListener("click", () => keys.showModal());
-    for (const each of [trails, coloring, forces, quantity]) {
-      each.addEventListener("change", () => this.show());
+    for (const control of [trails, coloring, forces, quantity]) {
+      control.addEventListener("change", () => this.show());
     }
     speed.addEventListener("change", () => { this.#link.write(); this.show(); });
     boat.addEventListener("change", () => this.pin(boat.value === "" ? null : Number(boat.value)));
@@ -204,7 +204,7 @@ export class Player {
 
   /** The last time, up to this one, at which a run has a sample. */
   #sampled(time) {
-    return Math.max(this.start, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((each) => each <= time + 1e-9));
+    return Math.max(this.start, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((sampled) => sampled <= time + 1e-9));
   }
 
   /** One sample back or on, of whichever run has the next one. */

@@ -17,7 +17,7 @@ const MOST_SAMPLES = 20_000;
  */
 export function forceScale(runs) {
   const forces = [];
-  for (const run of runs.filter((each) => each.hasForces)) {
+  for (const run of runs.filter((candidate) => candidate.hasForces)) {
     const column = run.columns.get("contact_force");
     const every = Math.max(1, Math.ceil(column.length / MOST_SAMPLES));
     for (let k = 0; k < column.length; k += every) {

@@ -24,7 +24,7 @@ function leaderKey(run) {
   }
   return ["cw", "ccw"].map((target) => {
     const first = run.targets.indexOf(target);
-    return [run.roleOf(first), run.targets.filter((each) => each === target).length, targetWords(run, first)];
+    return [run.roleOf(first), run.targets.filter((other) => other === target).length, targetWords(run, first)];
   });
 }
 
@@ -175,8 +175,8 @@ export class Panel {
     this.scene.draw(time, options);
     this.time.textContent = `${fixed(run.time[sample], 1)} s`;
     const phase = run.phase(sample);
-    for (const each of this.phases) {
-      each.classList.toggle("now", each.dataset.phase === phase);
+    for (const phaseElement of this.phases) {
+      phaseElement.classList.toggle("now", phaseElement.dataset.phase === phase);
     }
     this.psi.textContent = fixed(run.value("psi_o", sample), 2);
     this.phi.textContent = fixed(run.value("phi_o", sample), 2, true);

@@ -16,7 +16,7 @@ export function giveColors(runs) {
     // At every substep or at every decision, it is the same law.
     const name = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
     const own = LAWS.filter((law) => law === name.replace("'s", "").replaceAll(" ", "-"));
-    run.color = [...own, ...OTHERS].find((each) => (taken.get(each) ?? run.name) === run.name);
+    run.color = [...own, ...OTHERS].find((color) => (taken.get(color) ?? run.name) === run.name);
     taken.set(run.color, run.name);
   }
 }

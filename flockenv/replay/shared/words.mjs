@@ -46,5 +46,5 @@ export function caption({ words, unit }) {
 /** The next of 1, 2, 5, 10, 20 … */
 export function roundNumber(least) {
   const decade = 10 ** Math.floor(Math.log10(least));
-  return [1, 2, 5, 10].find((each) => each * decade >= least * (1 - 1e-9)) * decade;
+  return [1, 2, 5, 10].find((step) => step * decade >= least * (1 - 1e-9)) * decade;
 }
