@@ -84,8 +84,10 @@ def grouped(
 ) -> None:
     """Draw means with intervals on a line for each name, those of a series in one color.
 
-    On a line the series stand `shift` apart, the first on top. A vertical line marks the reference.
+    On a line the series stand `shift` apart, or less so that many leave the next line free, the
+    first on top. A vertical line marks the reference.
     """
+    shift = min(shift, 0.9 / len(series))
     if reference is not None:
         axes.axvline(reference, color="0.4", lw=1)
     colors = policy_colors(series) if colors is None else colors

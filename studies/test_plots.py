@@ -20,7 +20,7 @@ from docs.scripts.plots import (
     letters_px,
 )
 from studies import make
-from studies.plots import levels
+from studies.plots import grouped, levels
 from studies.study import DENSITIES
 
 STUDIES = Path(__file__).parent
@@ -113,6 +113,21 @@ def luminance(rgb: np.ndarray) -> float:
     """Return the relative luminance of a color as WCAG 2 defines it."""
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+@pytest.mark.parametrize("count", [2, 12])
+def test_rows_of_a_name_leave_the_next_name_free(count):
+    axes = Figure().subplots()
+    names = ("first", "second", "third")
+    series = {f"{place}": dict.fromkeys(names, (0.5, 0.4, 0.6)) for place in range(count)}
+    grouped(axes, series)
+    at = np.array([each.lines[0].get_ydata() for each in axes.containers])
+    assert at.shape == (count, 3)
+    apart = np.diff(np.sort(at.ravel()))
+    assert apart.min() > 0.05
+    assert (abs(at - np.arange(3)) < 0.5 - 0.05).all()
+    if count == 2:
+        assert at[:, 0].tolist() == pytest.approx([-0.1, 0.1])
 
 
 @pytest.mark.parametrize("turned", [False, True], ids=["light", "dark"])

@@ -134,12 +134,12 @@ class Plot:
     draw
         Draws into an empty figure.
     size
-        Width and height in inches, at 150 dots each.
+        Width and height in inches, at 150 dots each, or a function that gives them from the data.
     """
 
     data: Sequence[Path]
     draw: Callable[[Figure], None]
-    size: tuple[float, float] = (6.8, 4.2)
+    size: tuple[float, float] | Callable[[], tuple[float, float]] = (6.8, 4.2)
 
     def digest(self) -> str:
         """Return the SHA-256 of the data; TableError if a file of it is missing."""
@@ -157,8 +157,9 @@ class Plot:
     def save(self, path: Path) -> None:
         """Draw into a file."""
         with mpl.rc_context(page_style()):
-            figure = Figure(figsize=self.size, layout="constrained")
             digest = self.digest()  # Before a folder is made: it names a table that is missing.
+            size = self.size() if callable(self.size) else self.size
+            figure = Figure(figsize=size, layout="constrained")
             self.draw(figure)
             path.parent.mkdir(parents=True, exist_ok=True)
             write_png(figure, path, 150, **{DATA: digest})

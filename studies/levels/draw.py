@@ -1,5 +1,6 @@
 """Draw the scores of entries, also in unlike flocks, their pairs, curves and profile."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,8 @@ UNLIKE = RESULTS / "unlike.csv"
 ENTRIES, ORDERS, LAWS = RESULTS / "entries.csv", RESULTS / "orders.csv.gz", RESULTS / "laws.csv"
 KEY = ["level", "budget", "entry"]
 SHADES = ("-", "--", ":", "-.")
+MOST_WITH_ENDS = 9
+"""Entries of a matrix whose cells have room for the ends of intervals."""
 
 
 def trainings(results: Path = RESULTS) -> pd.DataFrame:
@@ -67,6 +70,13 @@ def scores(figure: Figure) -> None:
     figure.supxlabel("score: 0 no steering, dotted the paper's law, 1 the damped law")
 
 
+def scores_size() -> tuple[float, float]:
+    """Return a size in which each entry has room in each panel."""
+    rows = pd.read_csv(ENTRIES)
+    panels = rows.groupby(["level", "budget"]).ngroups
+    return 6.8, 0.6 + 0.325 * -(-panels // 2) * rows["entry"].nunique()
+
+
 def profile(figure: Figure) -> None:
     """Draw how many of an entry's trainings reach a score, for the first level and budget."""
     axes, every = figure.subplots(), trainings()
@@ -96,9 +106,11 @@ def matrix(figure: Figure) -> None:
         # As in the table of scores the best stands first.
         above, below = names.index(row["better"]), names.index(row["worse"])
         is_told = row["difference_low"] > 0.0 or row["difference_high"] < 0.0
-        ends = f"{row['difference_low']:.2f} to\n{row['difference_high']:.2f}"
+        ends = f"\n{row['difference_low']:.2f} to\n{row['difference_high']:.2f}"
+        if len(names) > MOST_WITH_ENDS:
+            ends = ""
         improved = f"{100.0 * row['improvement']:.0f} %"
-        for at, words in (((below, above), f"{row['difference']:+.2f}\n{ends}"),
+        for at, words in (((below, above), f"{row['difference']:+.2f}{ends}"),
                           ((above, below), improved)):  # fmt: skip
             axes.add_patch(_cell(at, is_told))
             axes.text(*at, words, ha="center", va="center", fontsize=9)
@@ -114,6 +126,13 @@ def matrix(figure: Figure) -> None:
 def _cell(at: tuple[int, int], is_told: bool) -> Rectangle:
     corner = at[0] - 0.47, at[1] - 0.47
     return Rectangle(corner, 0.94, 0.94, color=OWN if is_told else "0.9", alpha=0.35, lw=0)
+
+
+def curves_size() -> tuple[float, float]:
+    """Return a size in which all rows of panels are equally high."""
+    areas = pd.read_csv(AREAS)
+    first = (areas[["level", "budget"]] == areas.loc[0, ["level", "budget"]]).all(axis=1).sum()
+    return 6.8, 0.6 + 1.8 * -(-first // 4)
 
 
 def curves(figure: Figure) -> None:
@@ -138,22 +157,31 @@ def curves(figure: Figure) -> None:
 
 
 ENDS = ("", "_low", "_high")
-MARKS = ("o", "s", "^", "D", "v", "P", "X", "p")
+_SHAPES = ("o", "s", "^", "D", "v", "P", "X", "p")
+MARKS = [
+    {"fmt": shape, **inks}
+    for inks in ({"color": OWN, "mec": "w"}, {"color": OWN, "mec": OWN, "mfc": "w"})
+    for shape in _SHAPES
+]
+"""Of the first entries; more than sixteen begin again."""
 
 
 def unlike(figure: Figure) -> None:
     """Draw scores in unlike flocks against those in a level's own, for the first budget."""
     rows = pd.read_csv(ENTRIES).merge(pd.read_csv(UNLIKE), on=[*KEY, "trainings"])
     rows = rows[rows["budget"] == rows["budget"].min()]
-    marks = dict(zip(rows["entry"].unique(), MARKS, strict=False))
+    marks = dict(zip(rows["entry"].unique(), itertools.cycle(MARKS), strict=False))
     found = list(rows.groupby("level", sort=False))
-    panels = figure.subplots(1, len(found), squeeze=False).flat
-    for axes, (level, own) in zip(panels, found, strict=True):
+    across = min(len(found), 2)
+    panels = figure.subplots(-(-len(found) // across), across, squeeze=False).flat
+    for axes in panels[len(found) :]:
+        axes.set_visible(False)
+    for axes, (level, own) in zip(panels, found, strict=False):
         axes.axline((0.0, 0.0), slope=1.0, color="0.4", lw=1)
         for row in own.to_dict("records"):
             x, y = (interval(row, *(name + end for end in ENDS)) for name in ("score", "unlike"))
             bars = (bar_lengths(*([end] for end in each)) for each in (y, x))
-            style = {"fmt": marks[row["entry"]], "ms": 9, "lw": 1, "color": OWN, "mec": "w"}
+            style = {"ms": 9, "lw": 1, **marks[row["entry"]]}
             axes.errorbar(x[0], y[0], *bars, label=row["entry"], **style)
         axes.set_title(level, loc="left")
     figure.supxlabel("score in the level's own flocks")
@@ -161,11 +189,20 @@ def unlike(figure: Figure) -> None:
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
 
+def unlike_size() -> tuple[float, float]:
+    """Return a size with room for each row of panels and of the legend."""
+    rows = pd.read_csv(UNLIKE)
+    panels, words = (rows[column].nunique() for column in ("level", "entry"))
+    across = min(panels, 2)
+    high = (4.5 if across == 1 else 3.0) * -(-panels // across)
+    return 6.8, 0.4 + high + 0.25 * -(-words // 4)
+
+
 PLOTS = {
-    "scores": Plot([ENTRIES, ORDERS, LAWS], scores, (6.8, 8.4)),
-    "unlike": Plot([ENTRIES, UNLIKE], unlike, (6.8, 5.4)),
+    "scores": Plot([ENTRIES, ORDERS, LAWS], scores, scores_size),
+    "unlike": Plot([ENTRIES, UNLIKE], unlike, unlike_size),
     "matrix": Plot([PAIRS], matrix, (6.8, 6.8)),
-    "curves": Plot([CURVES, AREAS], curves, (6.8, 4.2)),
+    "curves": Plot([CURVES, AREAS], curves, curves_size),
     "profile": Plot([ORDERS], profile, (6.8, 3.6)),
 }
 script = drawing(__name__, PLOTS)

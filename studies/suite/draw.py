@@ -46,6 +46,14 @@ def scores(figure: Figure) -> None:
     right.set(title="all tasks", xlabel=IMPROVED.replace(" of ", "\nof "))
 
 
+def scores_size() -> tuple[float, float]:
+    """Return a size in which each policy has room in each task."""
+    found = rows(SCORES)
+    tasks = {row["task"] for row in found if row["task"] != IMPROVED}
+    policies = {row["policy"] for row in found}
+    return 8.4, 0.8 + 0.15 * len(tasks) * len(policies)
+
+
 def grid(figure: Figure) -> None:
     """Draw the scores of each algorithm with each input: all seeds together, and each as a dot."""
     panels = figure.subplots(1, 2, sharey=True)
@@ -75,7 +83,7 @@ def grid(figure: Figure) -> None:
 
 
 PLOTS = {
-    "scores": Plot([SCORES], scores, (8.4, 5.0)),
+    "scores": Plot([SCORES], scores, scores_size),
     "grid": Plot([GRID], grid, (8.4, 6.4)),
 }
 script = drawing(__name__, PLOTS)
