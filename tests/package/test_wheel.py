@@ -152,6 +152,20 @@ def test_command_line_works(installed, page_runs):
     assert page_runs(installed.folder / "run.html") == [("run", "0", 121, 20)]
 
 
+def test_leaders_are_trained_compared_and_shown_without_any_extra(installed, page_runs):
+    short = ("--flock-hours", "0.3", "--set", "pairs=4", "--episodes", "2", "--out", "branches")
+    flock = ("--pool", "narrow", "--n-leaders", "3")
+    printed = installed.run("flockenv", "train", "--algorithm", "branches", *flock, *short)
+    assert "trained minus tuned law: " in printed
+    written = {path.name for path in (installed.folder / "branches").iterdir()}
+    assert {"policy.json", "curve.csv", "comparison.csv"} <= written
+    assert "curve.png" not in written
+    led = ("--policy", "branches/policy.json", "--minutes", "0.2", "--out", "led.npz", "--quiet")
+    installed.run("flockenv", "run", *flock, *led)
+    installed.run("flockenv", "replay", "led.npz", "--quiet")
+    assert page_runs(installed.folder / "led.html") == [("led", "0", 121, 20)]
+
+
 def test_missing_extra_is_named(installed):
     done = installed.attempt("flockenv", "compare", "--episodes", "2", "--minutes", "0.1")
     assert done.returncode == 2

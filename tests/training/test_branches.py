@@ -1,11 +1,14 @@
 """A training in branches goes on from its bytes to the same policy, and names what it refuses."""
 
+import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import flockenv
+from flockenv import _core
 from flockenv.errors import FlockError, ParameterError
 from flockenv.policies import load
 from flockenv.training.branches import (
@@ -39,6 +42,28 @@ def test_a_training_goes_on_from_its_bytes(mode):
     assert half.parameters == whole.parameters
     assert list(half.curve["flock_hours"]) == pytest.approx([0.0355556, 0.0711111], abs=1e-6)
     assert whole.policy().to_json() != tiny(seed=1, action_mode=mode).policy().to_json()
+
+
+RUST = Path(__file__).parents[1] / "environment" / "same_bits_of_training.rs"
+LEAN, RUDDER = re.findall(r"ActionMode::(\w+), 0x([0-9a-f_]+)\)", RUST.read_text("utf-8"))
+
+
+@pytest.mark.parametrize(("mode", "expected"), [LEAN, RUDDER])
+def test_this_build_trains_the_bits_of_the_plain_one(mode, expected):
+    """The task and the hash of Rust's test, which is built without AVX2; the page has our bits."""
+    flock = {"n_boats": 9, "n_leaders": 3, "pool": "narrow", "dt_s": 0.1}
+    parameters = flockenv.FlockParameters.preset("simulation").replace(**flock)
+    settings = {"action_mode": mode.lower(), "pairs": 6, "flock_hours": 3.0 * 12.0 * 32.0 / 3600.0}
+    settings |= {"branch_s": 32.0, "hold_s": 8.0, "seen_s": 2.0, "trial_s": 16.0}
+    trainer = _core.Trainer(parameters, settings | {"episode_s": 64.0}, 5, 1 << 40)
+    while not trainer.has_ended:
+        trainer.advance(6)
+    law = json.loads(trainer.law.to_json())
+    orders = [order for _, order in trainer.curve]
+    found = 0xCBF2_9CE4_8422_2325
+    for byte in np.array([*law["weights"].values(), law["bias"], *orders], "<f8").tobytes():
+        found = (found ^ byte) * 0x100_0000_01B3 % 2**64
+    assert found == int(expected, 16)
 
 
 def test_branches_that_left_overlaps_beyond_the_tolerance_are_counted():
