@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,10 @@ from flockenv.cli.options import Overwriting, Printing, argument, option, takes
 from flockenv.cli.output import in_words, load_recording, prepare, printable, summary_of
 from flockenv.recording import Recording
 from flockenv.rendering.palette import PALETTE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 def _pictures() -> list[str]:
@@ -87,9 +91,10 @@ def analyze(options: AnalyzeOptions) -> None:
         echo(f"Written to {' and '.join(map(printable, written))}")
 
 
-def _drawn(recording: Recording) -> Any:
+def _drawn(recording: Recording) -> "Figure":
     """Return a figure of the first frame with a boat in it, and of the order against time."""
     pyplot = require("matplotlib.pyplot", "plot")
+    figure: Figure
     figure, axes = pyplot.subplots(1, 2, figsize=(13, 6), layout="constrained")
     recording.order.plot(target=recording.parameters.target, ax=axes[1])
     if recording.has_poses:
@@ -97,7 +102,7 @@ def _drawn(recording: Recording) -> Any:
     return figure
 
 
-def _draw_frame(recording: Recording, axes: Any) -> None:
+def _draw_frame(recording: Recording, axes: "Axes") -> None:
     """Draw the boats of the first frame, with their names, to be compared with the video."""
     parameters, present = recording.parameters, ~np.isnan(recording.pose[..., 0])
     first = int(present.any(axis=1).argmax())
@@ -106,7 +111,7 @@ def _draw_frame(recording: Recording, axes: Any) -> None:
     length = 2.0 * (1.0 + parameters.boat_shape) * parameters.boat_radius_cm
     ahead = length * np.cos(heading), length * np.sin(heading)
     colors = np.where(boats < parameters.n_leaders, PALETTE["leader"], PALETTE["normal"])
-    style = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
+    style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
     axes.quiver(x, y, *ahead, color=colors, width=0.008, **style)
     names = recording.ids if recording.ids is not None else np.arange(parameters.n_boats)
     for boat, at in zip(boats, zip(x, y, strict=True), strict=True):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import echo, errors, print_json
@@ -96,7 +97,7 @@ def _lines(is_quiet: bool) -> Callable[[Progress], None]:
     return report
 
 
-def _mean(values: Any) -> tuple[float, float]:
+def _mean(values: NDArray[np.float64]) -> tuple[float, float]:
     """Return a mean and its standard error."""
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 

@@ -305,7 +305,7 @@ class Flock(HintsAtNames):
     def __copy__(self) -> Self:
         return self._from_core(self._in_core.copy())
 
-    def __deepcopy__(self, memo: Any) -> Self:
+    def __deepcopy__(self, memo: object) -> Self:
         return self.__copy__()
 
     def __reduce__(self) -> tuple[Any, ...]:

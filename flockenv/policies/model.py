@@ -22,6 +22,7 @@ from flockenv.policies.base import leaders_observed, observed
 
 if TYPE_CHECKING:
     import gymnasium
+    from torch import Tensor
 
     from flockenv.envs.spaces import ObservationSpace
 
@@ -209,7 +210,7 @@ def _mode_of(torch: Any) -> Any:
     return EachAlone
 
 
-def _linear(input: Any, weight: Any, bias: Any = None) -> Any:  # noqa: A002 - torch's names
+def _linear(input: "Tensor", weight: "Tensor", bias: "Tensor | None" = None) -> "Tensor":  # noqa: A002 - torch's names
     """Return the output of torch's linear layer, computed by the core."""
     rows = input.reshape(-1, input.shape[-1])
     added = weight.new_zeros(len(weight)) if bias is None else bias

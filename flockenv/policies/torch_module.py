@@ -3,12 +3,15 @@
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError, short_repr
+
+if TYPE_CHECKING:
+    from torch import Tensor, nn
 
 #: Torch's activations by name, with the settings that are read from each.
 _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
@@ -68,7 +71,7 @@ def read_module(module: Any, *, has_spread: bool = False) -> list[ModuleLayer]:
     return layers
 
 
-def _numbers(tensor: Any) -> NDArray[np.float32]:
+def _numbers(tensor: "Tensor") -> NDArray[np.float32]:
     found: NDArray[np.float32] = tensor.detach().cpu().numpy()
     return found
 
@@ -113,7 +116,7 @@ def _check_between(layers: list[ModuleLayer]) -> None:
             )
 
 
-def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
+def _check_computes(module: "nn.Module", layers: list[ModuleLayer]) -> None:
     """Refuse a module whose output is not that of its layers one after another."""
     import torch
 
@@ -126,7 +129,7 @@ def _check_computes(module: Any, layers: list[ModuleLayer]) -> None:
             found = module(torch.from_numpy(rows).to(next(module.parameters())))
             expected = torch.from_numpy(rows)
             for layer in layers:
-                expected = _computed(torch, layer, expected)
+                expected = _computed(layer, expected)
     except RuntimeError as error:  # The layers' shapes do not fit each other.
         raise ParameterError(
             f"a module is not accepted whose layers do not fit each other in their order: {error}"
@@ -161,14 +164,17 @@ def _tensors(found: object) -> Iterator[Any]:
         yield found
 
 
-def _computed(torch: Any, layer: ModuleLayer, values: Any) -> Any:
+def _computed(layer: ModuleLayer, values: "Tensor") -> "Tensor":
     """Return the output that torch computes of a layer."""
+    import torch
+
     functions = torch.nn.functional
     values = functions.linear(values, *map(torch.tensor, (layer.weight.T.copy(), layer.bias)))
     if layer.norm is not None:
         scale, shift, epsilon = layer.norm
-        norm = map(torch.tensor, (scale, shift))
-        values = functions.layer_norm(values, (len(scale),), *norm, epsilon)
+        weight, bias = map(torch.tensor, (scale, shift))
+        values = functions.layer_norm(values, (len(scale),), weight, bias, epsilon)
     if layer.activation == "identity":
         return values
-    return getattr(functions, layer.activation, torch.tanh)(values)
+    activated: Tensor = getattr(functions, layer.activation, torch.tanh)(values)
+    return activated

@@ -5,11 +5,11 @@ import os
 import time
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from stable_baselines3.common.monitor import Monitor, ResultsWriter
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvObs, VecEnvStepReturn
 
 from flockenv._io.arguments import items
 from flockenv.errors import ParameterError
@@ -67,11 +67,11 @@ class FlockMonitor(VecEnvWrapper):
         # The writer would start a file without a header if told to append to a missing one.
         self._writer = ResultsWriter(str(path), header, summary_keywords, started is None)
 
-    def reset(self) -> Any:
+    def reset(self) -> VecEnvObs:
         """Start episodes in all flocks."""
         return self.venv.reset()
 
-    def step_wait(self) -> Any:
+    def step_wait(self) -> VecEnvStepReturn:
         """Take the control step, and write the episodes that end with it."""
         step = self.venv.step_wait()
         for slot in np.flatnonzero(step[2]).tolist():

@@ -3,9 +3,9 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvObs, VecEnvStepReturn
 
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
@@ -40,11 +40,11 @@ class PerFlock(VecEnvWrapper):
         self.num_envs = leaders.num_flocks
         self.leaders = leaders
 
-    def reset(self) -> Any:
+    def reset(self) -> VecEnvObs:
         """Start episodes in all flocks; return observations, a row per leader."""
         return self.venv.reset()
 
-    def step_wait(self) -> tuple[Any, NDArray[Any], NDArray[Any], list[dict[str, Any]]]:
+    def step_wait(self) -> VecEnvStepReturn:
         """Return observations, a row per leader, and rewards, ends and infos, one per flock."""
         observations, rewards, dones, infos = self.venv.step_wait()
         means = np.add.reduceat(rewards, self._first) / self._leaders

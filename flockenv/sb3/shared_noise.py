@@ -10,6 +10,7 @@ from stable_baselines3.common.distributions import (
 )
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.preprocessing import get_action_dim
+from stable_baselines3.common.type_aliases import Schedule
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
@@ -194,7 +195,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
         }
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
-    def _build(self, lr_schedule: Any) -> None:
+    def _build(self, lr_schedule: Schedule) -> None:
         kind, actions = type(self.action_dist), get_action_dim(self.action_space)
         if kind is DiagGaussianDistribution:
             self.action_dist = SharedNoiseDistribution(actions, **self._shared)

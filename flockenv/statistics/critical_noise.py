@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -98,7 +97,9 @@ def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> ND
     return np.array([_middle(x, *curve) for curve in curves]).reshape(order.shape[1:])
 
 
-def _middle(x: NDArray[np.float64], psi_o: Any, rotation: Any) -> float:
+def _middle(
+    x: NDArray[np.float64], psi_o: NDArray[np.float64], rotation: NDArray[np.float64]
+) -> float:
     top = int(rotation.argmax())
     middle = (psi_o[top] + psi_o[-1]) / 2
     last = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])

@@ -199,7 +199,9 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     return float(mean), float(low), float(high)
 
 
-def _means_of_draws(values: NDArray[np.float64], random: np.random.Generator) -> Any:
+def _means_of_draws(
+    values: NDArray[np.float64], random: np.random.Generator
+) -> NDArray[np.float64]:
     count = len(values)
     return random.multinomial(count, np.full(count, 1 / count), _BCA_RESAMPLES) @ values / count
 

@@ -6,7 +6,7 @@ leave such runs out, or count them with the length of the run, all times come ou
 
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,9 @@ from flockenv._io.arguments import number, with_gaps
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
 from flockenv.statistics.intervals import CONFIDENCE
+
+if TYPE_CHECKING:
+    from scipy.stats import CensoredData
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +85,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
     )
 
 
-def _censored(times_s: ArrayLike, until_s: ArrayLike) -> Any:
+def _censored(times_s: ArrayLike, until_s: ArrayLike) -> "CensoredData":
     times = with_gaps(times_s, "times_s")
     ends = with_gaps(until_s, "until_s")
     if times.ndim != 1 or len(times) == 0:
@@ -96,5 +99,5 @@ def _censored(times_s: ArrayLike, until_s: ArrayLike) -> Any:
     if (np.isfinite(times) & (times > ends)).any():
         raise ParameterError("times_s holds events after until_s, the end of their run")
     waits = ~np.isfinite(times)
-    stats = require("scipy.stats", "plot")
-    return stats.CensoredData.right_censored(np.where(waits, ends, times), waits)
+    censored: type[CensoredData] = require("scipy.stats", "plot").CensoredData
+    return censored.right_censored(np.where(waits, ends, times), waits)

@@ -1,7 +1,7 @@
 """Datasets of the package `movement` as tables: its own form of poses and of boxes."""
 
 from dataclasses import fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,13 +11,16 @@ from flockenv.tracks.formats import CM, key_points
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.table import Table, listed
 
+if TYPE_CHECKING:
+    import xarray
 
-def is_dataset(source: Any) -> bool:
+
+def is_dataset(source: object) -> bool:
     """Return whether a source is a dataset of xarray."""
     return hasattr(source, "data_vars")
 
 
-def table_of(dataset: Any, layout: TrackLayout) -> Table:
+def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
     """Return a dataset as a table, by the layout with the dataset's own fields.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
@@ -46,7 +49,7 @@ def table_of(dataset: Any, layout: TrackLayout) -> Table:
     return Table(rows, _completed(dataset, layout, stems))
 
 
-def _standard(variable: Any, *own: str) -> Any:
+def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
     """Return a variable by time, its own dimensions, individuals and key points."""
     order = ("time", *own, "individuals", "keypoints")
     for name in order[-2:]:
@@ -62,7 +65,7 @@ def _standard(variable: Any, *own: str) -> Any:
     return variable.transpose(*order)
 
 
-def _named(position: Any, dimension: str) -> list[str]:
+def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
     """Return the names along a dimension; without them one is "0", and one key point is ""."""
     if dimension not in position.coords:
         only = dimension == "keypoints" and position.sizes[dimension] == 1
@@ -76,7 +79,9 @@ def _named(position: Any, dimension: str) -> list[str]:
     return names
 
 
-def _completed(dataset: Any, layout: TrackLayout, stems: dict[str, str]) -> TrackLayout:
+def _completed(
+    dataset: "xarray.Dataset", layout: TrackLayout, stems: dict[str, str]
+) -> TrackLayout:
     """Return a layout with missing fields taken from the dataset."""
     given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
     known, points = key_points(stems), listed([*stems])

@@ -12,7 +12,15 @@ from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, LOST, PER_S, header_of, plain, recognized, unit_of
 from flockenv.tracks.headings import FULL_TURN
 from flockenv.tracks.layout import TrackLayout, description_of, naming
-from flockenv.tracks.table import Table, check_ending, is_value, listed, read_table, spelling_of
+from flockenv.tracks.table import (
+    Floats,
+    Table,
+    check_ending,
+    is_value,
+    listed,
+    read_table,
+    spelling_of,
+)
 
 Form = dict[str, Any]
 Doubts = dict[str, tuple[Any, str]]
@@ -39,7 +47,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     return checks
 
 
-def _toml(value: Any) -> str:
+def _toml(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
@@ -127,7 +135,7 @@ def _guess_time(table: Table, form: Form, doubts: Doubts) -> None:
         doubts["fps"] = (25.0, "check: frames, or other units of this column, per second")
 
 
-def _guess_turn(heading: Any, form: Form, doubts: Doubts) -> None:
+def _guess_turn(heading: Floats, form: Form, doubts: Doubts) -> None:
     name = plain(form["heading"])[1].replace("°", "deg")
     said = next((unit for unit in ("deg", "rad") if name.startswith(unit)), None)
     # A few may be placeholders.

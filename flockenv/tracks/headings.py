@@ -4,6 +4,7 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv.errors import ParameterError
 from flockenv.tracks.layout import TrackLayout
@@ -83,7 +84,7 @@ def _check_no_part(table: Table) -> None:
             )
 
 
-def _squares(table: Table, name: str) -> Any:
+def _squares(table: Table, name: str) -> Floats | None:
     """Return the squares of a column that may be a part of turns, 0 for missing numbers."""
     try:
         values = np.nan_to_num(table.numbers(name))
@@ -97,7 +98,7 @@ def direction(x: Floats, y: Floats) -> Floats:
     return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
 
 
-def _check_largest(heading: Floats, strange: Any, layout: TrackLayout) -> None:
+def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLayout) -> None:
     """Refuse headings if many exceed a full turn; a single value may mark lost boats."""
     share = strange.sum() / max(1, np.isfinite(heading).sum())
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):

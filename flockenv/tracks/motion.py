@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,7 +90,9 @@ class Motion:
             )
 
 
-def in_water(pool: Any, positions: Floats, margin_cm: float) -> NDArray[np.bool_]:
+def in_water(
+    pool: str | tuple[float, float], positions: Floats, margin_cm: float
+) -> NDArray[np.bool_]:
     """Return whether positions are in a pool's water, or at most `margin_cm` outside of it."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
     distance = np.hypot(positions[..., 0], positions[..., 1])

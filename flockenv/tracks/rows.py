@@ -1,8 +1,9 @@
 """Rows of tracks in cm and rad, and why some of them are omitted."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
@@ -52,7 +53,7 @@ def rows_of(table: Table) -> "pd.DataFrame":
     return rows
 
 
-def _names(table: Table) -> Any:
+def _names(table: Table) -> NDArray[np.object_]:
     """Return the names as text, None for rows without a boat; whole numbers have no point."""
     layout, pandas = table.layout, require("pandas", "plot")
     if table.is_named:

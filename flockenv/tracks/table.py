@@ -300,13 +300,13 @@ def _levels(rows: list[list[str]]) -> tuple[list[int], int]:
     return [], own
 
 
-def _joined(levels: Any) -> str:
+def _joined(levels: Iterable[object]) -> str:
     """Return the name of a column that is named in levels: individual, body part, coord."""
     *individual, part, coord = map(str, levels)
     return f"{'.'.join([*individual, part])}_{coord}"
 
 
-def is_value(cell: Any) -> bool:
+def is_value(cell: object) -> bool:
     """Return whether a cell begins as a number does."""
     return str(cell).lstrip("-+.")[:1].isdigit()
 

@@ -2,13 +2,24 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
 
-def draw_curve(curve: Any, laws: Mapping[str, float], path: Path) -> None:
+
+def draw_curve(
+    curve: "pd.DataFrame | Mapping[str, NDArray[np.float64]]",
+    laws: Mapping[str, float],
+    path: Path,
+) -> None:
     """Draw a learning curve, with the laws' orders as level lines.
 
     Parameters
@@ -20,7 +31,7 @@ def draw_curve(curve: Any, laws: Mapping[str, float], path: Path) -> None:
     path
         The PNG file to write.
     """
-    figure: Any = require("matplotlib.figure", "plot").Figure((6.4, 3.6), layout="constrained")
+    figure: Figure = require("matplotlib.figure", "plot").Figure((6.4, 3.6), layout="constrained")
     axes = figure.subplots()
     axes.plot(curve["flock_hours"], curve["signed_order"], label="leaders that explore")
     for (name, order), style in zip(laws.items(), ("--", ":", "-.", "-"), strict=False):

@@ -1,6 +1,7 @@
 """`TrainingSettings`: everything that a training run depends on."""
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from inspect import signature
@@ -204,7 +205,7 @@ class TrainingSettings:
         return tomli_w.dumps(self.to_dict())
 
     @classmethod
-    def from_file(cls, path: Any) -> Self:
+    def from_file(cls, path: str | os.PathLike[str]) -> Self:
         """Return settings from a TOML file.
 
         Raises
