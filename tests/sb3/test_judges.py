@@ -380,4 +380,4 @@ def test_a_shared_noise_is_for_the_flocks_that_it_was_made_for(tmp_path):
         tmp_path / "model", env=more, device="cpu", custom_objects={"policy_kwargs": shared}
     )
     other.learn(18 * 8)
-    assert other.policy.action_dist.held._flock_of_slot.tolist() == more.flock_of_slot.tolist()
+    assert other.policy.action_dist.noise._flock_of_slot.tolist() == more.flock_of_slot.tolist()
