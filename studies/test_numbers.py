@@ -273,6 +273,78 @@ def density() -> list[Number]:
     ]
 
 
+def steps() -> list[Number]:
+    """Where the step changes order, C_v and the noise at which order is lost."""
+    page, table = "studies/step_size/README.md", "studies/step_size/claims.csv"
+
+    def quantities(rows: Any) -> Any:
+        return rows["quantity"].str.partition(" at dt")[0]
+
+    def farthest(name: str) -> Callable[[Any], float]:
+        return lambda rows: rows[quantities(rows) == name][["low", "high"]].abs().max(axis=None)
+
+    def found(answer: str) -> Callable[[Any], float]:
+        def of(rows: Any) -> float:
+            own = rows[quantities(rows) != "noise of the same Ψ_o"]
+            inside = (own["low"] >= own["least"]) & (own["high"] <= own["most"])
+            holds_none = (own["low"] <= 0) & (own["high"] >= 0)
+            answers = {"inside": inside, "undecided": ~inside & holds_none}
+            answers["bias"] = ~inside & ~holds_none
+            return answers[answer].sum()
+
+        return of
+
+    def shifts(rows: Any) -> Any:
+        return rows[quantities(rows) == "noise of the same Ψ_o"]
+
+    def most(rows: Any) -> float:
+        return shifts(rows)["high"].max()
+
+    def least(rows: Any) -> float:
+        return shifts(rows)["low"].min()
+
+    lines = [
+        ("at 0.1 s, {0} ({1} to {2}), by", "20 boats in wide, paper's law", "training", ".3f"),
+        ("at 0.01 s, {0} ({1} to {2}), and", "20 boats in wide, tuned law", "publication", ".3f"),
+        ("at 0.02 s, {0} ({1} to {2}). They", "27 boats in narrow, tuned law", "default", ".3f"),
+    ]
+    alone = {"reading": "27 boats in narrow, no leaders, physics training"}
+    cells = [
+        *(
+            (words, {"reading": f"{flock}, physics {physics}"}, form)
+            for words, flock, physics, form in lines
+        ),
+        ("by {0} ({1} to {2}) of Ψ_o", alone | {"quantity": f"Ψ_o {AT_TRAINING}"}, ".4f"),
+        ("{0} ({1} to {2}) more C_v", alone | {"quantity": f"C_v / v0² {AT_TRAINING}"}, ".4f"),
+        (
+            "{0} s ({1} to {2}) more noise",
+            alone | {"quantity": f"noise of the same Ψ_o {AT_TRAINING}"},
+            ".4f",
+        ),
+    ]
+    columns = ("measured", "low", "high")
+    return [
+        Number(page, "move it by at most {} s. They", table, {}, most, ".2f"),
+        Number(page, "leaders by at most {}, and", table, {}, farthest("Ψ_o"), ".3f"),
+        Number(page, "three leaders by at most {}.**", table, {}, farthest("signed order"), ".3f"),
+        Number(page, "Of 45 differences {} are", table, {}, found("inside"), "d"),
+        Number(page, "**Undecided** are {},", table, {}, found("undecided"), "d"),
+        Number(page, "moves by {} to # s at", table, {}, least, ".3f"),
+        Number(page, "moves by # to {} s at", table, {}, most, ".3f"),
+        *(
+            Number(page, words.format(*shown), table, row, column, form)
+            for words, row, form in cells
+            for column, shown in zip(
+                columns, (("{}", "#", "#"), ("#", "{}", "#"), ("#", "#", "{}")), strict=True
+            )
+        ),
+        Number("studies/README.md", "lost by at most {} s. #", table, {}, most, ".2f"),
+        Number("studies/README.md", "# s. {} of 45 other", table, {}, found("inside"), "d"),
+    ]
+
+
+AT_TRAINING = "at dt = 0.1 s minus that at 0.005 s"
+
 NUMBERS = [
     *entries(),
     *gradients(),
@@ -284,6 +356,7 @@ NUMBERS = [
     *current(),
     *transition(),
     *density(),
+    *steps(),
     *decided(),
 ]
 

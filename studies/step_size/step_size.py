@@ -22,12 +22,14 @@ of 0.01 s. This was written after those 110 seeds, and before a run at another n
 """
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
-from studies.claim import Claims, Interval, judging, mean
+from studies.claim import Claims, Interval, bca, mean, unknown, write_claims
 from studies.study import COLORS, Options, Row, Study, main, picture, simulated
 
 FIRST = 20_000  # Seeds that no other study of this folder has.
@@ -49,6 +51,7 @@ SLOPE_SEEDS = range(22_000, 22_600)  # No other study has these, either.
 AWAY_S = 0.04
 SHIFT_S = 0.02
 QUANTITIES = {"psi_o": "Ψ_o", "c_v": "C_v / v0²", "signed_order": "signed order"}
+LABELS = QUANTITIES | {"bw_s": "noise of the same Ψ_o"}
 SHIFT = "noise of the same Ψ_o"
 
 
@@ -90,65 +93,102 @@ STUDY = Study("step_size/step_size", design, measure)
 SLOPES = Study("step_size/slopes", slope_design, measure)
 
 
-def answer(error: Interval) -> str:
+def answer(error: Interval, bound: float = BOUND) -> str:
     """Return what the rule says of an error."""
     _, low, high = error
-    if low >= -BOUND and high <= BOUND:
+    if low >= -bound and high <= bound:
         return "inside"
     return "undecided" if low <= 0.0 <= high or np.isnan(low) else "bias"
 
 
-def errors(table: pd.DataFrame) -> Iterator[tuple[str, str, str, Interval]]:
-    """Return each quantity's name, flock and physics, and its error."""
+Errors = Iterator[tuple[str, str, str, Interval]]
+"""A quantity's name, the flock and the physics, and the error."""
+
+
+def differences(runs: pd.DataFrame, name: str) -> Iterator[tuple[str, pd.Series]]:
+    """Return each physics of a flock with its differences from the reference, by seed."""
+    found = runs.pivot(index="seed", columns="physics", values=name)
+    for physics in [each for each in PHYSICS if each in found and each != REFERENCE]:
+        yield physics, (found[physics] - found[REFERENCE]).dropna()
+
+
+def errors(table: pd.DataFrame) -> Errors:
+    """Return the error of every quantity."""
     cells = table.groupby(["pool", "n_boats", "leaders"], sort=False)
     for (pool, n_boats, leaders), runs in cells:
         for name in ("psi_o", "c_v") if leaders == NOBODY else ("signed_order",):
-            found = runs.pivot(index="seed", columns="physics", values=name)
-            for physics in [each for each in PHYSICS if each in found and each != REFERENCE]:
-                error = mean((found[physics] - found[REFERENCE]).dropna())
-                yield name, f"{n_boats:g} boats in {pool}, {leaders}", physics, error
+            for physics, found in differences(runs, name):
+                yield name, f"{n_boats:g} boats in {pool}, {leaders}", physics, mean(found)
 
 
-def judge(table: pd.DataFrame) -> Claims:
+def shifts(table: pd.DataFrame, slopes: pd.DataFrame) -> Errors:
+    """Return how far each physics moves the noise at which order is lost."""
+    alone = table[table["leaders"] == NOBODY]
+    for (pool, n_boats), runs in alone.groupby(["pool", "n_boats"], sort=False):
+        own = slopes[(slopes["pool"] == pool) & (slopes["n_boats"] == n_boats)]
+        sides = own.pivot(index="seed", columns="away_s", values="psi_o")
+        slope = ((sides[AWAY_S] - sides[-AWAY_S]) / (2 * AWAY_S)).dropna()
+        _, low, high = mean(slope)
+        for physics, found in differences(runs, "psi_o"):
+            groups = [found.to_numpy()[:, None], slope.to_numpy()[:, None]]
+            shift = unknown(len(found)) if low <= 0.0 <= high else bca(groups, _shift)
+            yield "bw_s", f"{n_boats:g} boats in {pool}, {NOBODY}", physics, shift
+
+
+def _shift(error: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    return -error[..., 0].mean(-1) / slope[..., 0].mean(-1)
+
+
+def judge(table: pd.DataFrame, slopes: pd.DataFrame) -> Claims:
     """Judge every error, and print what the rule says of it."""
     claims = Claims("beyond the paper", "", ours=True)
-    for name, flock, physics, error in errors(table):
+    for name, flock, physics, error in [*errors(table), *shifts(table, slopes)]:
         dt_s, _ = PHYSICS[physics]
         claims.reading = f"{flock}, physics {physics}"
-        quantity = f"{QUANTITIES[name]} at dt = {dt_s:g} s minus that at 0.005 s"
-        claims.add("The step changes nothing", quantity, error, least=-BOUND, most=BOUND)
+        quantity = f"{LABELS[name]} at dt = {dt_s:g} s minus that at 0.005 s"
+        bound = SHIFT_S if name == "bw_s" else BOUND
+        claims.add("The step changes nothing", quantity, error, least=-bound, most=bound)
         value, low, high = error
         print(
-            f"{answer(error):9}  {QUANTITIES[name]}, {claims.reading}: "
+            f"{answer(error, bound):9}  {LABELS[name]}, {claims.reading}: "
             f"{value:+.4f} ({low:+.4f} to {high:+.4f}), {error.runs} seeds"
         )
     return claims
 
 
-def draw(options: Options, table: pd.DataFrame) -> None:
+def draw(options: Options, table: pd.DataFrame, slopes: pd.DataFrame) -> None:
     """Draw every error with its interval, and the bound."""
-    found = list(errors(table))
+    with picture(options, "step_size", height_cm=18.0) as figure:
+        first, second = figure.subplots(2, height_ratios=(5, 1))
+        _draw(first, [*errors(table)], BOUND)
+        _draw(second, [*shifts(table, slopes)], SHIFT_S)
+        first.set_xlabel("difference from dt = 0.005 s")
+        second.set_xlabel("difference from dt = 0.005 s (s)")
+        first.legend(loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
+
+
+def _draw(axes: Axes, found: Sequence[tuple[str, str, str, Interval]], bound: float) -> None:
     lines = list(dict.fromkeys((name, flock) for name, flock, *_ in found))
     compared = [physics for physics in PHYSICS if physics != REFERENCE]
-    with picture(options, "step_size", height_cm=15.0) as figure:
-        axes = figure.subplots()
-        axes.axvspan(-BOUND, BOUND, color="0.9")
-        axes.axvline(0.0, color="0.5", linewidth=0.6)
-        for color, place, physics in zip(COLORS, (-0.25, 0.0, 0.25), compared, strict=False):
-            own = {(name, flock): error for name, flock, each, error in found if each == physics}
-            value, low, high = np.array(list(own.values())).T
-            bars = np.nan_to_num([value - low, high - value])
-            heights = [lines.index(line) + place for line in own]
-            axes.errorbar(value, heights, xerr=bars, fmt="o", color=color, label=physics)
-        names = [f"{QUANTITIES[name]}, {flock}" for name, flock in lines]
-        axes.set_yticks(range(len(lines)), names)
-        axes.invert_yaxis()
-        axes.set_xlabel("difference from dt = 0.005 s")
-        axes.locator_params("x", nbins=6)
-        axes.legend(loc="lower center", bbox_to_anchor=(0.3, 1.0), ncols=3)
+    axes.axvspan(-bound, bound, color="0.9")
+    axes.axvline(0.0, color="0.5", linewidth=0.6)
+    for color, place, physics in zip(COLORS, (-0.25, 0.0, 0.25), compared, strict=False):
+        own = {(name, flock): error for name, flock, each, error in found if each == physics}
+        value, low, high = np.array(list(own.values())).T
+        bars = np.nan_to_num([value - low, high - value])
+        heights = [lines.index(line) + place for line in own]
+        axes.errorbar(value, heights, xerr=bars, fmt="o", color=color, label=physics)
+    names = [f"{LABELS[name]}, {flock}" for name, flock in lines]
+    axes.set_yticks(range(len(lines)), names)
+    axes.set_ylim(len(lines) - 0.5, -0.5)
+    axes.locator_params("x", nbins=6)
 
 
-script = judging("step", STUDY, judge, draw)
+def script(options: Options) -> None:
+    """Make the runs that are missing, judge and draw them."""
+    table, slopes = (study.results(options) for study in (STUDY, SLOPES))
+    write_claims(options, "step", judge(table, slopes))
+    draw(options, table, slopes)
 
 
 if __name__ == "__main__":

@@ -107,6 +107,24 @@ def speed() -> list[Number]:
     return found
 
 
+def steps() -> list[Number]:
+    """What a step of 0.1 s changes, by the study of the step."""
+    page, table = "docs/speed_vs_error.md", "studies/step_size/claims.csv"
+    at = "at dt = 0.1 s minus that at 0.005 s"
+    alone = {"reading": "20 boats in wide, no leaders, physics training", "quantity": f"Ψ_o {at}"}
+
+    def farthest(rows: Any) -> float:
+        shifts = rows[rows["quantity"].str.startswith("noise of the same")]
+        return shifts[["low", "high"]].abs().max(axis=None)
+
+    return [
+        Number(page, "8 minutes have {} (# to #) at 0.1 s", table, alone, form=".3f"),
+        Number(page, "8 minutes have # ({} to #) at 0.1 s", table, alone, "low", ".3f"),
+        Number(page, "8 minutes have # (# to {}) at 0.1 s", table, alone, "high", ".3f"),
+        Number(page, "order is lost by at most {} s", table, {}, farthest),
+    ]
+
+
 def energy() -> list[Number]:
     """Numbers of what contacts seem to add to flocks without motors and rudders."""
     page, table = "docs/model.md", "docs/throughput/soak_energy.csv"
@@ -358,6 +376,7 @@ NUMBERS = [
     *speed(),
     *throughput(),
     *energy(),
+    *steps(),
     *levels(),
     *easy_branches(),
     *leaders("README.md"),
