@@ -105,7 +105,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     included.
     """
 
-    held: HeldNoise
+    noise: HeldNoise
     _deviations: torch.Tensor
 
     def __init__(
