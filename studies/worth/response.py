@@ -54,6 +54,7 @@ from matplotlib.axes import Axes
 
 import flockenv
 from docs.scripts.plots import draw_intervals, name_heights
+from flockenv.comparison.figure import policy_colors
 from studies.claim import Claims, Interval, bca, unknown, write_claims
 from studies.study import COLORS, Options, Row, Study, curve, main, picture, seed_of
 from studies.worth.worth_runs import DENSITY_BOATS, LAW, of_pool, steering
@@ -393,15 +394,15 @@ def _reading(group: Group) -> str:
 
 def draw(options: Options, table: pd.DataFrame) -> None:
     """Draw the response per leader in time, what adds up, and the factor against the noise."""
-    with picture(options, "response", height_cm=13.0) as figure:
-        (times, sums), (rests, noises) = figure.subplots(2, 2)
+    with picture(options, "response", height_cm=15.0) as figure:
+        (times, sums), (noises, rests) = figure.subplots(2, 2)
         _draw_times(times, table)
         alone = {
             _name(group, policy, many): linear(table, group, policy, many, f"m_{LAST}")
             for group in (MAIN, *SIZES)
             for policy, many in multiples(group)
         }
-        _draw_range(sums, alone, 0.8, 1.25, "response over that of the fewest\ntimes their number")
+        _draw_range(sums, alone, 0.8, 1.25, "response over that of\nthe fewest, times their number")
         against = {
             _name(group, policy, ours, theirs): rest(table, group, policy, ours, f"m_{LAST}")
             for group in (MAIN, *SIZES)
@@ -418,25 +419,31 @@ def draw(options: Options, table: pd.DataFrame) -> None:
 
 
 def _draw_times(axes: Axes, table: pd.DataFrame) -> None:
-    led = [Cell(LAW, 1), Cell(LAW, 2), Cell(LAW, 3), Cell(LAW, 6), Cell(LEARNED, 1)]
-    for place, cell in enumerate(led):
+    colors = policy_colors(POLICY_NAMES.values())
+    led = [*(Cell(LAW, k) for k in (1, 2, 3, 6)), Cell(LEARNED, 1)]
+    for place, (cell, marker) in enumerate(zip(led, "os^Dv", strict=True)):
         found = [
-            compared(
-                [of(table, MAIN, [cell], f"m_{window}")], lambda each, k=cell.leaders: each / k
-            )
-            for window in range(LAST + 1)
+            compared([of(table, MAIN, [cell], column)], lambda each, k=cell.leaders: each / k)
+            for column in _in_time()
         ]
-        at = np.array(TIMES_S) + 3.0 * (place - 2)
-        label = f"{cell.leaders}, {POLICY_NAMES[cell.policy]}"
-        curve(axes, at, found, color=COLORS[place], label=label)
+        style = {"color": colors[POLICY_NAMES[cell.policy]], "marker": marker}
+        label = f"{cell.leaders}{', learned' if cell.policy == LEARNED else ''}"
+        curve(axes, np.array(TIMES_S) + 3.0 * (place - 2), found, label=label, **style)
     scale = factor(table, MAIN, f"m_{LAST}")[0]
     free = [
-        compared([of(table, MAIN, [FREE], f"m_{window}")], lambda each: scale * each)
-        for window in range(LAST + 1)
+        compared([of(table, MAIN, [FREE], column)], lambda each: scale * each)
+        for column in _in_time()
     ]
     curve(axes, TIMES_S, free, color="0.4", linestyle="--", marker="", label="fluctuations")
-    axes.set(xlabel="time after the branch (s)", ylabel="m per leader, n = 27, bw = 0.31 s")
-    axes.legend(title="leaders")
+    axes.set(xlabel="time after the branch (s)", ylabel="m per leader")
+    axes.legend(title="leaders, by the paper's law or learned", **_ABOVE | {"ncols": 3})
+
+
+_ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": 2}
+
+
+def _in_time() -> list[str]:
+    return [f"m_{window}" for window in range(LAST + 1)]
 
 
 def _draw_range(
@@ -456,8 +463,8 @@ def _draw_noises(axes: Axes, table: pd.DataFrame) -> None:
         found = [factor(table, group, f"m_{LAST}") for group in groups]
         label = f"{groups[0].n_boats} boats"
         curve(axes, at, found, color=COLORS[place], linestyle="", label=label)
-    axes.set(xlabel="bw (s)", ylabel="factor of response and fluctuation")
-    axes.legend()
+    axes.set(xlabel="bw (s)", ylabel="factor")
+    axes.legend(**_ABOVE)
 
 
 def _name(group: Group, policy: str, many: int, against: int = 0) -> str:
