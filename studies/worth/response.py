@@ -123,13 +123,14 @@ def cells(group: Group) -> list[Cell]:
 
 
 def design() -> list[Row]:
-    """Return the runs, a share of every kind's seeds after the other."""
+    """Return the runs, a share of every kind's seeds after the other, 27 boats at 0.31 s first."""
     found = []
     for group in KINDS:
         seeds = ALONE_SEEDS if group == MAIN else group.seeds
         for seed in range(seeds):
             kept = cells(group) if seed < group.seeds else [FREE, Cell(LAW, 1)]
-            found += [(seed / seeds, group, cell, seed) for cell in kept]
+            soon = 0.25 if group == MAIN else 1.0
+            found += [(soon * seed / seeds, group, cell, seed) for cell in kept]
     return [
         {"n_boats": group.n_boats, "bw_s": group.bw_s, "dt_s": group.dt_s, **cell._asdict()}
         | {"states": group.states, "minutes": MINUTES, "seed": FIRST + seed}
