@@ -55,7 +55,7 @@ from matplotlib.axes import Axes
 import flockenv
 from docs.scripts.plots import draw_intervals, name_heights
 from flockenv.comparison.figure import policy_colors
-from studies.claim import Claims, Interval, bca, unknown, write_claims
+from studies.claim import Claims, Interval, bca, judging, unknown
 from studies.study import COLORS, Options, Row, Study, curve, main, picture, seed_of
 from studies.worth.worth_runs import DENSITY_BOATS, LAW, of_pool, steering
 
@@ -334,15 +334,24 @@ def opposed(group: Group) -> Sequence[tuple[str, int, int]]:
     return OPPOSED if group == MAIN else OPPOSED[:1]
 
 
+def known(table: pd.DataFrame, groups: Sequence[Group]) -> list[Group]:
+    """Return the main flock, and those of which three seeds have been made."""
+    return [
+        group
+        for group in groups
+        if group == MAIN or len(of(table, group, cells(group), f"m_{LAST}")) >= 3
+    ]
+
+
 def judge(table: pd.DataFrame) -> Claims:
     """Judge the four rules by m in the last two windows, and by velocities in the last."""
     claims = Claims("beyond the paper", "", ours=True)
     for name, window in (("m", LAST), ("m", LAST - 1), ("velocity", LAST)):
-        for group in (MAIN, *SIZES):
+        for group in known(table, (MAIN, *SIZES)):
             claims.reading = _reading(group)
             _judge_leaders(claims, table, group, name, window)
     for name in NAMES:
-        for group in KINDS:
+        for group in known(table, KINDS):
             claims.reading = _reading(group)
             for window in (LAST - 1, LAST - 2) if group == MAIN else (LAST,):
                 claims.add(
@@ -400,13 +409,13 @@ def draw(options: Options, table: pd.DataFrame) -> None:
         _draw_times(times, table)
         alone = {
             _name(group, policy, many): linear(table, group, policy, many, f"m_{LAST}")
-            for group in (MAIN, *SIZES)
+            for group in known(table, (MAIN, *SIZES))
             for policy, many in multiples(group)
         }
         _draw_range(sums, alone, 0.8, 1.25, "response over that of\nthe fewest, times their number")
         against = {
             _name(group, policy, ours, theirs): rest(table, group, policy, ours, f"m_{LAST}")
-            for group in (MAIN, *SIZES)
+            for group in known(table, (MAIN, *SIZES))
             for policy, ours, theirs in opposed(group)
         }
         _draw_range(
@@ -459,7 +468,8 @@ def _draw_range(
 def _draw_noises(axes: Axes, table: pd.DataFrame) -> None:
     base = factor(table, MAIN, f"m_{LAST}")
     axes.axhspan(2 / 3 * base[0], 1.5 * base[0], color="0.93", zorder=0)
-    for place, groups in enumerate(((MAIN, *NOISES), *((each,) for each in SIZES))):
+    sizes = [[group] for group in known(table, SIZES)]
+    for place, groups in enumerate([known(table, (MAIN, *NOISES)), *sizes]):
         at = [group.bw_s + 0.006 * place for group in groups]
         found = [factor(table, group, f"m_{LAST}") for group in groups]
         label = f"{groups[0].n_boats} boats"
@@ -475,12 +485,7 @@ def _name(group: Group, policy: str, many: int, against: int = 0) -> str:
     return f"{who} of {group.n_boats}{learned}"
 
 
-def script(options: Options) -> None:
-    """Make, judge and draw the runs, if there are any."""
-    table = STUDY.results(options, optional=not options.runs)
-    if len(table):
-        write_claims(options, "response", judge(table))
-        draw(options, table)
+script = judging("response", STUDY, judge, draw)
 
 
 if __name__ == "__main__":
