@@ -261,6 +261,50 @@ def transition() -> list[Number]:
     ]
 
 
+def response() -> list[Number]:
+    """What branches say of leaders as a linear response."""
+    page, claims = "studies/worth/README.md", "studies/worth/claims.csv"
+    flock, end = "simulation, n = 27, bw = {} s, dt = 0.05 s", "by m, 103 to 207 s after the branch"
+    many, less = "R of {} over {} R of 1, {}, " + end, "R of {} less the sum, in R of 1, {}, " + end
+    law, factor = "paper's law", "factor by m, {} after the branch, over that of 27 boats at 0.31 s"
+    factor += ", 103 to 207 s"
+    at_end = factor.format("103 to 207 s")
+    sentences = (
+        ("two respond as {} times twice one, three", many.format(2, 2, law), 0.31, ".2f"),
+        ("three as {} times three", many.format(3, 3, law), 0.31, ".2f"),
+        ("six as {} times six", many.format(6, 6, law), 0.31, ".2f"),
+        ("two learned ones as {} times twice one.", many.format(2, 2, "learned"), 0.31, ".2f"),
+        ("two against one give {} of one", less.format("2 against 1", law), 0.31, ".2f"),
+        ("three against one {}, and", less.format("3 against 1", law), 0.31, ".2f"),
+        ("two learned against one {}. The", less.format("2 against 1", "learned"), 0.31, ".2f"),
+        ("52 s the factor is {} times", factor.format("26 to 52 s"), 0.31, ".1f"),
+        ("from 52 to 103 s {} times", factor.format("52 to 103 s"), 0.31, ".2f"),
+        ("At 0.5 s the factor is {} times", at_end, 0.5, ".2f"),
+        (
+            "one learned leader responds as {} by",
+            f"R of 1 learned over R of 1 by the paper's law, {end}",
+            0.31,
+            ".2f",
+        ),
+    )
+    return [
+        Number(
+            page,
+            words.replace("{}", shown),
+            claims,
+            {"reading": flock.format(bw_s), "quantity": quantity},
+            column,
+            form,
+        )
+        for words, quantity, bw_s, form in sentences
+        for column, shown in (
+            ("measured", "{} (# to #)"),
+            ("low", "# ({} to #)"),
+            ("high", "# (# to {})"),
+        )
+    ]
+
+
 def density() -> list[Number]:
     page, quiet = "studies/density/README.md", "studies/density/results/quiet.csv"
     flock = {"preset": "simulation", "pool": "wide", "n_boats": 20}
@@ -355,6 +399,7 @@ NUMBERS = [
     *section_4(),
     *current(),
     *transition(),
+    *response(),
     *density(),
     *steps(),
     *decided(),

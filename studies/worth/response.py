@@ -55,6 +55,7 @@ from matplotlib.axes import Axes
 import flockenv
 from docs.scripts.plots import draw_intervals, name_heights
 from flockenv.comparison.figure import policy_colors
+from flockenv.statistics import FEW
 from studies.claim import Claims, Interval, bca, judging, unknown
 from studies.study import COLORS, Options, Row, Study, curve, main, picture, seed_of
 from studies.worth.worth_runs import DENSITY_BOATS, LAW, of_pool, steering
@@ -335,11 +336,11 @@ def opposed(group: Group) -> Sequence[tuple[str, int, int]]:
 
 
 def known(table: pd.DataFrame, groups: Sequence[Group]) -> list[Group]:
-    """Return the main flock, and those of which three seeds have been made."""
+    """Return the main flock, and those with enough seeds for a bootstrap."""
     return [
         group
         for group in groups
-        if group == MAIN or len(of(table, group, cells(group), f"m_{LAST}")) >= 3
+        if group == MAIN or len(of(table, group, cells(group), f"m_{LAST}")) >= FEW
     ]
 
 
