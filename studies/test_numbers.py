@@ -29,10 +29,9 @@ def entries() -> list[Number]:
     pairs, table = f"{folder}pairs.csv", f"{folder}entries.csv"
     few = {"level": "order-easy", "budget": 30}
     longer = {"budget": 100, "entry": "paired branches"}
-    easy, best = {"level": "order-easy"}, {"level": "order-easy", "entry": "TRPO"}
+    best = {"level": "order-easy", "entry": "TRPO"}
     unlike, ranks = f"{folder}unlike.csv", f"{folder}unlike_ranks.csv"
-    alternates = easy | {"what": "target"}
-    law = f"{folder}unlike_conditions.csv"
+    wide = {"level": "order-wide", "budget": 30, "entry": "paired branches"}
 
     def told_apart(rows: Any) -> float:
         return ((rows["difference_low"] > 0) | (rows["difference_high"] < 0)).sum()
@@ -68,17 +67,35 @@ def entries() -> list[Number]:
             "{} in `order-wide` and",
             "and {} in `order-narrow` (",
         ),
-        Number(page, "algorithms is {} (# to #)", ranks, easy, "rank_correlation"),
-        Number(page, "algorithms is # ({} to #)", ranks, easy, "low"),
-        Number(page, "algorithms is # (# to {})", ranks, easy, "high"),
-        Number(page, "mean over {} conditions, each", unlike, best, "conditions", "d"),
+        *(
+            Number(page, words.format(*shown), ranks, {"level": level}, column)
+            for words, level in (
+                ("algorithms is {0} ({1} to {2}),", "order-easy"),
+                ("(# to #), {0} ({1} to {2}), # (#", "order-noisy"),
+                ("(# to #), {0} ({1} to {2}) and", "order-narrow"),
+                ("to #) and {0} ({1} to {2}).", "order-wide"),
+            )
+            for column, shown in zip(
+                ("rank_correlation", "low", "high"),
+                (("{}", "#", "#"), ("#", "{}", "#"), ("#", "#", "{}")),
+                strict=True,
+            )
+        ),
+        Number(page, "mean over {} or # cond", unlike, {}, lambda r: r["conditions"].min(), "d"),
+        Number(page, "mean over # or {} cond", unlike, {}, lambda r: r["conditions"].max(), "d"),
+        *(
+            Number(page, words, file, wide, column)
+            for words, file, column in (
+                ("fall from {} to # (# to #)", table, "score"),
+                ("fall from # to {} (# to #)", unlike, "unlike"),
+                ("fall from # to # ({} to #)", unlike, "unlike_low"),
+                ("fall from # to # (# to {})", unlike, "unlike_high"),
+            )
+        ),
         Number(page, "falls from {} to # (# to #)", table, best, "score"),
         Number(page, "falls from # to {} (# to #)", unlike, best, "unlike"),
         Number(page, "falls from # to # ({} to #)", unlike, best, "unlike_low"),
         Number(page, "falls from # to # (# to {})", unlike, best, "unlike_high"),
-        Number(
-            page, "steering, by {} (# to #)", law, alternates, lambda rows: -rows["gain"].item()
-        ),
         *(
             Number(page, words, pairs, {"level": level}, told_apart, "d")
             for words, level in (

@@ -194,13 +194,13 @@ def ranks(orders: pd.DataFrame, budget: str = "30") -> pd.DataFrame:
             return rank_correlation(found[:count], found[count:])
 
         drawn = [means[name][entry] for name in (first, level) for entry in both]
-        rows.append([level, first, len(both), float(of(*drawn)), *_ends(drawn, of)])
+        rows.append([level, first, len(both), float(of(*drawn)), *percentiles(drawn, of)])
     names = ["level", "compared_with", "entries", "rank_correlation", "low", "high"]
     return pd.DataFrame(rows, columns=names)
 
 
-def _ends(samples: Sequence[np.ndarray], of: Callable[..., Any]) -> tuple[float, float]:
-    """Return the percentiles of a statistic that cannot exceed 1.
+def percentiles(samples: Sequence[np.ndarray], of: Callable[..., Any]) -> tuple[float, float]:
+    """Return the ends of the 95 % interval of a statistic that cannot exceed 1.
 
     Near 1 the correction of `bootstrap_interval` would move both ends up to it.
     """

@@ -33,7 +33,8 @@ Rule, fixed before any policy was judged by it:
   before anybody looked at a score.
 - Answer. What ranks best in its own flocks ranks best in unlike ones, in a level, if one entry of
   30 flock-hours has both highest scores. The rank correlation (Spearman) of the two scores of the
-  entries has a 95 % interval by bootstrap over each entry's trainings.
+  entries has a 95 % interval by bootstrap over each entry's trainings (percentiles, as the scores
+  cannot rank more alike than 1).
 
 What a policy did in a condition is stored, by the digest of its weights, and not done again. The
 folder results has the orders of laws and policies (unlike_laws.csv, unlike_orders.csv), what the
@@ -57,7 +58,6 @@ from flockenv.comparison.levels import LEVELS, NO_STEERING, REFERENCE, Level
 from flockenv.comparison.suite_entry import SuiteEntry
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import (
-    bootstrap_interval,
     mean_interval,
     paired_difference,
     two_way_interval,
@@ -254,9 +254,10 @@ def ranks(scores: Mapping[tuple[str, str, str], pd.DataFrame], own: pd.DataFrame
             continue
         sides = [*zip(*pairs.values(), strict=True)]
         drawn = [np.arange(len(each)) for each in sides[0]]
-        ends = bootstrap_interval(drawn, correlation(*sides), paired=False)
+        of = correlation(*sides)
         best = (max(pairs, key=lambda name: pairs[name][side].mean()) for side in (0, 1))
-        rows.append([level, len(pairs), *best, *ends])
+        ends = score_levels.percentiles(drawn, of)
+        rows.append([level, len(pairs), *best, float(of(*drawn)), *ends])
     names = ["entries", "best_own", "best_unlike", "rank_correlation", "low", "high"]
     return pd.DataFrame(rows, columns=["level", *names])
 
