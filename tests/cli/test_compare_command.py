@@ -190,7 +190,7 @@ def test_a_table_in_80_columns(cli, tmp_path: Path) -> None:
         (["--policy", "damped law", "--n-leaders", "0"], "nobody is steered"),
         (["--n-leaders", "3-1"], "as in 0-4 or 1,3"),
         (["--n-leaders", "0-99999999"], "at most 64"),
-        (["--n-leaders", "0,1", "--env", "dropout_rate=0.1"], "options dropout_rate"),
+        (["--n-leaders", "0,1", "--env", "dropout_rate=0.1"], "takes no dropout_rate"),
         (["--env", "dropout=0.1"], "did you mean 'dropout_rate'"),
         (["--policy", "leader_0=damped law,leader_2=learned"], "for each of leader_0, leader_1"),
         (["--policy", "leader_0:learned"], "NAME=VALUE"),

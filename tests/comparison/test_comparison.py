@@ -82,12 +82,12 @@ REFUSED = [
     (
         {"leaders": [0, 1], **options(dropout_rate=0.1)},
         ParameterError,
-        "'no leaders' .* options dropout_rate",
+        "'no leaders' .* takes no dropout_rate",
     ),
     (
         {"policies": {"every": "paper's law at every substep"}, **options(dropout_rate=0.1)},
         ParameterError,
-        "options dropout_rate",
+        "takes no dropout_rate",
     ),
     (
         {"policies": {"each": {"leader_0": "damped law"}}, **options(decision_period_s=1.0)},
