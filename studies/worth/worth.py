@@ -1,6 +1,6 @@
 """What is a leader worth? The flock's response to a few leaders, in units of the paper's law.
 
-The rule of the answer stands in worth.md and was committed before the first run.
+The rule of the answer stands in README.md and was committed before the first run.
 """
 
 from typing import Any
