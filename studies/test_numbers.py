@@ -197,6 +197,7 @@ def decided() -> list[Number]:
     """What pages quote of the runs that were added."""
     page, file = "studies/section4/README.md", "studies/decided/claims.csv"
     medium = {"claim": "Leaders increase the order at medium noise"}
+    low = {"claim": "Leaders increase the order at low noise"}
     rise = {"claim": "Velocities change more abruptly than orientations"}
     turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
     slope = {"figure": "fig12"}
@@ -204,6 +205,10 @@ def decided() -> list[Number]:
         Number(page, "at 1.4 s by {} (# to #; [# more", file, slope, form=".3f"),
         Number(page, "at 1.4 s by # ({} to #; [# more", file, slope, "low", ".3f"),
         Number(page, "at 1.4 s by # (# to {}; [# more", file, slope, "high", ".3f"),
+        Number(page, "| {} (# to #) at low,", file, low, form="+.3f"),
+        Number(page, "| # ({} to #) at low,", file, low, "low", ".3f"),
+        Number(page, "| # (# to {}) at low,", file, low, "high", ".3f"),
+        Number(page, "to 0.8 s the gain is {} (#", file, low, form=".3f"),
         Number(page, "at low, {} (# to #) at medium", file, medium, form="+.2f"),
         Number(page, "at low, # ({} to #) at medium", file, medium, "low"),
         Number(page, "at low, # (# to {}) at medium", file, medium, "high"),
