@@ -286,39 +286,53 @@ def transition() -> list[Number]:
 def response() -> list[Number]:
     """What branches say of leaders as a linear response."""
     page, claims = "studies/worth/README.md", "studies/worth/claims.csv"
-    flock, end = "simulation, n = 27, bw = {} s, dt = 0.05 s", "by m, 103 to 207 s after the branch"
+    flock, end = "simulation, n = {}, bw = {} s, dt = 0.05 s", "by m, 103 to 207 s after the branch"
     many, less = "R of {} over {} R of 1, {}, " + end, "R of {} less the sum, in R of 1, {}, " + end
     law, factor = "paper's law", "factor by m, {} after the branch, over that of 27 boats at 0.31 s"
     factor += ", 103 to 207 s"
     at_end = factor.format("103 to 207 s")
+    learned = "R of {0} learned over R of {0} by the paper's law, " + end
+    small, large = (27, 0.31), {100: (100, 0.37), 400: (400, 0.36), 1600: (1600, 0.36)}
+    share = "R of {} over 2 R of {}, paper's law, " + end
     sentences = (
-        ("two respond as {} times twice one, three", many.format(2, 2, law), 0.31, ".2f"),
-        ("three as {} times three", many.format(3, 3, law), 0.31, ".2f"),
-        ("six as {} times six", many.format(6, 6, law), 0.31, ".2f"),
-        ("two learned ones as {} times twice one.", many.format(2, 2, "learned"), 0.31, ".2f"),
-        ("two against one give {} of one", less.format("2 against 1", law), 0.31, ".2f"),
-        ("three against one {}, and", less.format("3 against 1", law), 0.31, ".2f"),
-        ("two learned against one {}. The", less.format("2 against 1", "learned"), 0.31, ".2f"),
-        ("52 s the factor is {} times", factor.format("26 to 52 s"), 0.31, ".1f"),
-        ("from 52 to 103 s {} times", factor.format("52 to 103 s"), 0.31, ".2f"),
-        ("At 0.5 s the factor is {} times", at_end, 0.5, ".2f"),
+        ("two respond as {} times twice one, three", many.format(2, 2, law), small, ".2f"),
+        ("three as {} times three", many.format(3, 3, law), small, ".2f"),
+        ("six as {} times six", many.format(6, 6, law), small, ".2f"),
+        ("two learned ones as {} times twice one.", many.format(2, 2, "learned"), small, ".2f"),
+        ("two against one give {} of one", less.format("2 against 1", law), small, ".2f"),
+        ("three against one {}, and", less.format("3 against 1", law), small, ".2f"),
+        ("two learned against one {}. The", less.format("2 against 1", "learned"), small, ".2f"),
+        ("1600 boats responds as {} times", share.format(118, 59), large[1600], ".2f"),
+        ("Of 400 boats it is {} and", share.format(30, 15), large[400], ".2f"),
+        ("and of 100 boats {}, both", share.format(8, 4), large[100], ".2f"),
         (
-            "one learned leader responds as {} by",
-            f"R of 1 learned over R of 1 by the paper's law, {end}",
-            0.31,
+            "among 400 boats, {} of the smaller",
+            f"R of 30 against 15 less the sum, in R of 15, {law}, {end}",
+            large[400],
             ".2f",
         ),
+        ("52 s the factor is {} times", factor.format("26 to 52 s"), small, ".1f"),
+        ("from 52 to 103 s {} times", factor.format("52 to 103 s"), small, ".2f"),
+        ("At 0.4 s the factor is {} times", at_end, (27, 0.4), ".2f"),
+        ("among 100 and 400 boats {} and", at_end, large[100], ".2f"),
+        ("(# to #) and {} times: these", at_end, large[400], ".2f"),
+        ("At 0.2 s it is {} and", at_end, (27, 0.2), ".2f"),
+        ("at 0.5 s {} times, both", at_end, (27, 0.5), ".2f"),
+        ("one learned leader responds as {} by", learned.format(1), small, ".2f"),
+        ("1600 boats as {}, # (", learned.format(4), large[100], ".2f"),
+        ("1600 boats as # (# to #), {} and", learned.format(15), large[400], ".2f"),
+        ("(# to #) and {}.", learned.format(59), large[1600], ".2f"),
     )
     return [
         Number(
             page,
             words.replace("{}", shown),
             claims,
-            {"reading": flock.format(bw_s), "quantity": quantity},
+            {"reading": flock.format(*of), "quantity": quantity},
             column,
             form,
         )
-        for words, quantity, bw_s, form in sentences
+        for words, quantity, of, form in sentences
         for column, shown in (
             ("measured", "{} (# to #)"),
             ("low", "# ({} to #)"),
