@@ -1,8 +1,8 @@
 """Constants of the experiment by a score card, in the reading of the pool that fits the most.
 
-Hulls of 5 × 7.5 cm in the printed pool of 180 and 97 cm. Candidates are drawn at random, then near
-the best ones, and meet one short run at each point; the best of them meet the runs of Section 4,
-and the best of these is held against the preset `experiment`. Search, choice and judgment have
+Hulls of 5 × 7.5 cm in the printed pool of 180 and 97 cm. CMA-ES (Hansen's covariance matrix
+adaptation, from the package cmaes) searches the constants, its finalists meet the runs of Section
+4, and the best of these is held against the preset `experiment`. Search, choice and judgment have
 seeds of their own. Written before any run:
 
 - a candidate replaces `experiment` if its misfit is smaller by the whole interval on the seeds of
@@ -11,11 +11,13 @@ seeds of their own. Written before any run:
 - otherwise no constants that were tried do, and `experiment` stays.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from cmaes import CMA
 
 import flockenv
 from flockenv.runs.seeds import POLICY_SEEDS
@@ -31,7 +33,7 @@ from studies.calibration.score_card import (
 )
 from studies.claim import FAILS, HOLDS, Claims, Interval, write_claims
 from studies.section4.section4 import LEVELS_S
-from studies.study import COLORS, VERSION, Options, Row, Study, main, picture
+from studies.study import COLORS, VERSION, Options, Row, Study, StudyError, main, picture
 
 FIXED: Row = {
     "boat_radius_cm": 2.5,
@@ -47,69 +49,62 @@ RANGES = {
     "c0": (0.4, 2.0),
     "c2": (0.1, 1.0),
     "c3": (0.1, 1.0),
-    "c4": (0.01, 0.15),
+    "c4": (0.01, 0.4),
     "turning_bias": (0.002, 0.06),
     "speed_spread_cm_s": (0.3, 5.0),
 }
-"""Where the others are drawn, equal ratios with equal chances. c1 follows from them: a backing boat
-turns at w = ±1 rad/s (Table 1), where c1·w² = c3·v·c0²/(c0² + w²) (eqs. 8 and 9). The speed that is
-reached in the fw phase, v0·(1 − exp(−c0·2 s)), lies in 15 ± 5 cm/s (Table 1); others are drawn
-again."""
+"""Where constants are searched, by their logarithms."""
+TURNS_RAD_S = (0.8, 1.2)
+"""The rate at which a backing boat turns, 1 rad/s in Table 1, is searched here and gives c1: at
+the rate w it is c1·w² = c3·v·c0²/(c0² + w²) (eqs. 8 and 9). The speed that is reached in the fw
+phase, v0·(1 − exp(−c0·2 s)), lies in 15 ± 5 cm/s (Table 1); others are drawn again."""
 PARTS = {
     "search": POLICY_SEEDS["calibration search"],
     "choice": POLICY_SEEDS["calibration choice"],
     "judgment": POLICY_SEEDS["calibration judgment"],
 }
-PILOTS = tuple(
-    dict(zip(RANGES, (*constants, bias, 1.0), strict=True))
-    for constants in (
-        (16.2, 5.24, 0.872, 0.288, 0.300, 0.024),
-        (17.0, 6.47, 0.609, 0.574, 0.256, 0.070),
-    )
-    for bias in (0.003, 0.01)
-)
-"""The two best of 79 random candidates of a pilot with other seeds, at two strengths of the bias:
-the first candidates here."""
-GENERATIONS, PARENTS, STEP = (60, 30, 7), 8, 0.12
-"""Candidates of a generation; how many of the best the next ones are drawn near, and how far, in
-parts of the ranges' logarithms (standard deviation)."""
-FINALISTS, CHOICE_SEEDS, JUDGMENT_SEEDS = 3, 4, 12
-"""Before any run of choice or judgment these were 5, 6 and 24, and the last generation had 20: the
-search was cut for want of processor time."""
+FIRST_SEEDS = {"search": 1000, "choice": 100, "judgment": 100}
+"""Those before had an earlier search of 97 candidates; its verdict is why this one was made."""
+EARLIER = (18.37, 5.472, 0.5676, 0.3057, 0.3708, 0.15, 0.004977, 0.4393)
+"""What that search chose, with a turn of 1 rad/s: this one starts there."""
+GENERATIONS, POPULATION, SEARCH_SEEDS, SPREAD = 40, 25, 2, 0.2
+"""Candidates of a generation share their seeds, and each generation has others. SPREAD is the first
+standard deviation, in parts of a range."""
+MARGIN = 0.5
+"""The search asks for ranges that are narrower by this many tolerances at both ends: a number at
+the end of its range is not a match but undecided."""
+OF_GENERATIONS, CHOICE_SEEDS, JUDGMENT_SEEDS = 18, 24, 48
+"""Finalists are the best of each of the last generations, so that no lucky seeds give several, the
+middle of the search, and what the earlier one chose."""
 SEARCH_LEVELS_S = (0.0, 0.4, 0.8, 1.2, 1.4, 1.6, 1.8, 2.0, 2.4)
 DT_S = 0.1
 """Step of all runs. With leapfrog and white noise statistics hardly depend on it; the headlines
 hold with it as with the preset's 0.02 s."""
-EXPERIMENT = -1
-"""The number of the preset among the candidates."""
+EXPERIMENT, MIDDLE, BEFORE = -1, -2, -3
+"""Numbers of the preset, of the middle of the search, and of what the earlier one chose."""
 NEEDED = 5
 _COUNTS = (1, 2, 4)
 
 
-def drawn(candidate: int, parents: Sequence[Row]) -> Row:
-    """Return the constants of a candidate: a pilot's, drawn in the ranges, or near a parent."""
-    if candidate < len(PILOTS):
-        return _with_c1(PILOTS[candidate])
-    random = np.random.default_rng(candidate)
-    low, high = np.log(np.array(list(RANGES.values()))).T
-    while True:
-        if parents:
-            parent = parents[random.integers(len(parents))]
-            middle = np.log([parent[name] for name in RANGES])
-            logs = np.clip(random.normal(middle, STEP * (high - low)), low, high)
-        else:
-            logs = random.uniform(low, high)
-        found = {n: float(f"{v:.4g}") for n, v in zip(RANGES, np.exp(logs), strict=True)}
-        fw_speed = found["speed_cm_s"] * (1.0 - np.exp(-2.0 * found["c0"]))
-        if 10.0 <= fw_speed <= 20.0:
-            break
-    return _with_c1(found)
-
-
-def _with_c1(found: Row) -> Row:
-    lag = found["c0"] ** 2 / (found["c0"] ** 2 + 1.0)
-    c1 = float(f"{found['c3'] * found['reverse_speed_cm_s'] * lag:.4g}")
+def constants_at(place: Sequence[float]) -> Row:
+    """Return the constants at a place in the ranges, each part of it from 0 to 1."""
+    low, high = np.log([*RANGES.values(), TURNS_RAD_S]).T
+    *constants, turn = np.exp(low + np.asarray(place) * (high - low))
+    found = {name: float(f"{v:.4g}") for name, v in zip(RANGES, constants, strict=True)}
+    lag = found["c0"] ** 2 / (found["c0"] ** 2 + turn**2)
+    c1 = float(f"{found['c3'] * found['reverse_speed_cm_s'] * lag / turn**2:.4g}")
     return FIXED | found | {"c1": c1}
+
+
+def place_of(constants: Sequence[float], turn: float = 1.0) -> list[float]:
+    """Return where constants and a turn lie in the ranges."""
+    low, high = np.log([*RANGES.values(), TURNS_RAD_S]).T
+    return list((np.log([*constants, turn]) - low) / (high - low))
+
+
+def is_fast_enough(constants: Row) -> bool:
+    """Return whether the speed that the fw phase reaches lies in 15 ± 5 cm/s."""
+    return 10.0 <= constants["speed_cm_s"] * (1.0 - np.exp(-2.0 * constants["c0"])) <= 20.0
 
 
 def preset_constants() -> Row:
@@ -119,9 +114,8 @@ def preset_constants() -> Row:
 
 
 def row(candidate: int, constants: Row, use: str, seed: int) -> Row:
-    """Return a row of the search, the choice or the judgment: all runs of one seed."""
-    # Each candidate of the search has its own seed, so that no lucky seed makes several the best.
-    first = PARTS[use].seeds(1, start=candidate if use == "search" else 0)[0]
+    """Return a row: all runs of one seed, or of a generation's seeds in the search."""
+    first = PARTS[use].seeds(1, start=FIRST_SEEDS[use])[0]
     return (
         {"preset": "experiment", "candidate": candidate}
         | constants
@@ -129,30 +123,49 @@ def row(candidate: int, constants: Row, use: str, seed: int) -> Row:
     )
 
 
-def searched(options: Options) -> pd.DataFrame:
-    """Return the candidates with their numbers, one seed each, generation by generation."""
+def searched(options: Options) -> tuple[pd.DataFrame, Row]:
+    """Return the candidates with their numbers and misfits, and the middle of the search."""
+    place = np.array(place_of(EARLIER))
+    bounds = np.tile([0.0, 1.0], (len(place), 1))
+    size = 4 if options.trial else POPULATION
+    search = CMA(mean=place, sigma=SPREAD, bounds=bounds, seed=1, population_size=size)
     rows: list[Row] = []
     table = pd.DataFrame()
-    for count in (5, 1, 1) if options.trial else GENERATIONS:
-        parents = best(table, PARENTS) if len(table) else []
-        for candidate in range(len(rows), len(rows) + count):
-            rows.append(row(candidate, drawn(candidate, parents), "search", 0))
-        table = Study("calibration/search", lambda: rows, _search, adaptive=True).results(options)
-    return table
+    for generation in range(2 if options.trial else GENERATIONS):
+        places = []
+        while len(places) < size:
+            place = search.ask()
+            if is_fast_enough(constants := constants_at(place)):
+                rows.append(row(len(rows), constants, "search", generation))
+                places.append(place)
+        study = Study("calibration/search", lambda: rows, _search, adaptive=True)
+        table = study.results(options)
+        if len(table) != len(rows):
+            raise StudyError("search.csv has other candidates: another version of cmaes drew them")
+        values = (table[number.name].to_numpy(float) for number in CARD)
+        table["misfit"] = misfit(values, MARGIN)
+        search.tell(list(zip(places, table["misfit"].tail(size), strict=True)))
+    return table, constants_at(np.clip(search.mean, 0.0, 1.0))
 
 
 def _search(row: Row) -> Row:
-    found = features(row, SEARCH_LEVELS_S, ())
-    values = values_of(Means(found, list(found.values())))
-    return {number.name: float(value) for number, value in zip(CARD, values, strict=True)}
+    """Return the numbers of a candidate by the seeds of its generation."""
+    first = SEARCH_SEEDS * row["seed"]
+    seeds = range(first, first + SEARCH_SEEDS)
+    found = [features(row | {"seed": seed}, SEARCH_LEVELS_S, ()) for seed in seeds]
+    means = Means(found[0], np.mean([list(each.values()) for each in found], axis=0))
+    return {number.name: float(value) for number, value in zip(CARD, values_of(means), strict=True)}
 
 
-def best(table: pd.DataFrame, count: int) -> list[Row]:
-    """Return the constants of the candidates with the least misfit, the best first."""
-    found = table.assign(misfit=misfit(table[number.name].to_numpy(float) for number in CARD))
-    columns = ["candidate", *FIXED, *RANGES, "c1"]
-    rows = found.sort_values("misfit", kind="stable")[columns].head(count).to_dict("records")
-    return [{**each, "candidate": int(each["candidate"])} for each in rows]
+def finalists(options: Options) -> list[Row]:
+    """Return the candidates that meet the seeds of choice, with their numbers."""
+    table, middle = searched(options)
+    last = table[table["seed"] >= table["seed"].max() + 1 - OF_GENERATIONS]
+    best = last.loc[last.groupby("seed")["misfit"].idxmin()]
+    rows = best[["candidate", *FIXED, *RANGES, "c1"]].to_dict("records")
+    rows = [each | {"candidate": int(each["candidate"])} for each in rows]
+    earlier = constants_at(place_of(EARLIER))
+    return [*rows, {"candidate": MIDDLE} | middle, {"candidate": BEFORE} | earlier]
 
 
 def measured(
@@ -172,11 +185,24 @@ def measured(
     return {int(number): each[names] for number, each in table.groupby("candidate")}
 
 
+def preset_row() -> Row:
+    """Return the preset as a candidate."""
+    return {"candidate": EXPERIMENT} | preset_constants()
+
+
 def chosen(options: Options) -> Row:
-    """Return the constants of the finalist with the least misfit on the seeds of choice."""
-    finalists = best(searched(options), 2 if options.trial else FINALISTS)
-    tables = measured(options, "choice", finalists, CHOICE_SEEDS)
-    return min(finalists, key=lambda each: float(total(tables[each["candidate"]])))
+    """Return the finalist that mends the most misses and loses no match on the seeds of choice.
+
+    Among equals the one with the least misfit; if each loses a match, all are equals.
+    """
+    rows = finalists(options)
+    tables = measured(options, "choice", [*rows, preset_row()], CHOICE_SEEDS)
+
+    def worth(candidate: int) -> tuple[float, float]:
+        found = judged(tables, candidate)
+        return -math.inf if found.lost() else len(found.mended()), -total(tables[candidate])
+
+    return max(rows, key=lambda each: worth(each["candidate"]))
 
 
 def total(table: pd.DataFrame) -> float:
@@ -281,8 +307,7 @@ def script(options: Options) -> None:
     """Search, choose and judge."""
     finalist = chosen(options)
     candidate = finalist["candidate"]
-    experiment = {"candidate": EXPERIMENT} | preset_constants()
-    tables = measured(options, "judgment", (finalist, experiment), JUDGMENT_SEEDS)
+    tables = measured(options, "judgment", (finalist, preset_row()), JUDGMENT_SEEDS)
     found = judged(tables, candidate)
     write_claims(options, "calibration", claims_of(found, candidate))
     print("Constants:", ", ".join(f"{name} {value:g}" for name, value in finalist.items()))

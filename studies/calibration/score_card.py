@@ -205,9 +205,13 @@ class Number:
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.value(means)
 
-    def away(self, value: Any) -> Any:
-        """Return how far outside of the range a value is, in tolerances, below 0 if it is small."""
-        above, below = value - self.most, value - self.least
+    def away(self, value: Any, margin: float = 0.0) -> Any:
+        """Return how far outside of the range a value is, in tolerances, below 0 if it is small.
+
+        The range is narrower by the margin at both ends, in tolerances.
+        """
+        inset = margin * self.tolerance
+        above, below = value - self.most + inset, value - self.least - inset
         return (np.maximum(above, 0.0) + np.minimum(below, 0.0)) / self.tolerance
 
     def verdict(self, found: Sequence[float]) -> str:
@@ -332,9 +336,12 @@ CARD = (
 )  # fmt: skip
 
 
-def misfit(values: Iterable[Any]) -> Any:
-    """Return the sum of squared distances from the ranges of the card, each at most `WORST`."""
-    away = (number.away(value) for number, value in zip(CARD, values, strict=True))
+def misfit(values: Iterable[Any], margin: float = 0.0) -> Any:
+    """Return the sum of squared distances from the ranges of the card, each at most `WORST`.
+
+    Ranges are narrower by the margin at both ends, in tolerances.
+    """
+    away = (number.away(value, margin) for number, value in zip(CARD, values, strict=True))
     return sum(np.nan_to_num(np.minimum(each**2, WORST), nan=WORST) for each in away)
 
 

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -12,35 +13,46 @@ from studies.calibration.score_card import CARD, Number
 from studies.claim import Interval
 
 
-def test_candidates_are_drawn_in_the_ranges(script: ModuleType) -> None:
-    pilots = len(script.PILOTS)
-    first = [script.drawn(number, []) for number in range(50)]
-    assert first == [script.drawn(number, []) for number in range(50)]
-    assert [each["c1"] for each in first[:pilots]] == pytest.approx(
-        [0.678] * 2 + [0.448] * 2, rel=0.01
-    )
-    for found in first:
-        assert all(low <= found[name] <= high for name, (low, high) in script.RANGES.items())
-        assert 10.0 <= found["speed_cm_s"] * (1 - math.exp(-2 * found["c0"])) <= 20.0
-        # At w = 1 rad/s the torque of the boat that backs up balances the drag.
-        push = found["c3"] * found["reverse_speed_cm_s"] * found["c0"] ** 2
-        assert push / (found["c0"] ** 2 + 1) == pytest.approx(found["c1"], rel=1e-3)
+def test_constants_lie_in_their_ranges_and_turn_as_they_say(script: ModuleType) -> None:
+    random = np.random.default_rng(1)
+    for place in [*random.random((50, 9)), np.zeros(9), np.ones(9)]:
+        found = script.constants_at(place)
+        low, high = np.array(list(script.RANGES.values())).T
+        constants = [found[name] for name in script.RANGES]
+        assert (low <= constants).all()
+        assert (constants <= high).all()
+        # At this rate the torque of the boat that backs up balances the drag.
+        slow, fast = script.TURNS_RAD_S
+        turn = slow * (fast / slow) ** place[-1]
+        lag = found["c0"] ** 2 / (found["c0"] ** 2 + turn**2)
+        push = found["c3"] * found["reverse_speed_cm_s"] * lag
+        assert push == pytest.approx(found["c1"] * turn**2, rel=1e-3)
+        assert script.place_of(constants, turn) == pytest.approx(list(place), abs=1e-3)
         flockenv.FlockParameters.preset("experiment").replace(**found)
-    parent = first[pilots]
-    near = [script.drawn(number, [parent]) for number in range(100, 300)]
-    ratios = [math.log(each["c2"] / parent["c2"]) for each in near]
-    assert abs(sum(ratios) / len(ratios)) < 0.1
-    assert 0.15 < (sum(r * r for r in ratios) / len(ratios)) ** 0.5 < 0.4
+    earlier = script.constants_at(script.place_of(script.EARLIER))
+    assert [earlier[name] for name in script.RANGES] == list(script.EARLIER)
+    assert earlier["c1"] == pytest.approx(0.4944, rel=1e-3)
+
+
+def test_constants_too_slow_or_too_fast_for_table_1_are_drawn_again(script: ModuleType) -> None:
+    earlier = script.constants_at(script.place_of(script.EARLIER))
+    assert script.is_fast_enough(earlier)
+    assert not script.is_fast_enough(earlier | {"speed_cm_s": 14.0})
+    assert not script.is_fast_enough(earlier | {"speed_cm_s": 22.0, "c0": 2.0})
 
 
 def test_parts_have_seeds_of_their_own(script: ModuleType) -> None:
-    seeds = {
-        use: script.row(7, {}, use, 3)["first_seed"] + script.row(7, {}, use, 3)["seed"]
-        for use in script.PARTS
+    most = {
+        "search": script.GENERATIONS * script.SEARCH_SEEDS,
+        "choice": script.CHOICE_SEEDS,
+        "judgment": script.JUDGMENT_SEEDS,
     }
-    assert all(seed in script.PARTS[use].every for use, seed in seeds.items())
-    assert script.row(8, {}, "search", 0)["first_seed"] == seeds["search"] - 3 + 1
-    assert script.row(8, {}, "judgment", 3)["first_seed"] + 3 == seeds["judgment"]
+    # The earlier search's: 97 candidates, 4 seeds of choice, 12 of judgment.
+    earlier = {"search": 97, "choice": 4, "judgment": 12}
+    for use, part in script.PARTS.items():
+        first = script.row(7, {}, use, 0)["first_seed"]
+        assert earlier[use] <= first - part.first
+        assert first + most[use] - 1 in part.every
 
 
 def inside(number: Number) -> Interval:
