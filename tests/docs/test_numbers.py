@@ -3,6 +3,7 @@
 A row below names the sentence and the cell. If one of them changes, somebody edits the other.
 """
 
+import math
 from typing import Any
 
 import pandas as pd
@@ -107,6 +108,40 @@ def speed() -> list[Number]:
     return found
 
 
+def overlap_rates() -> list[Number]:
+    """In how many runs overlaps are deep, by a tolerance and without one."""
+    page, table = "docs/speed_vs_error.md", f"{SPEED}overlap_rates.csv"
+    scenes = {
+        "cycle": "| cycle with bw = # s, a minute |",
+        "wide": "| `wide`, bw = # s, # s |",
+        "narrow": "| `narrow`, bw = # s, # s |",
+    }
+    shown = (
+        "{} | # cm | # | # cm",
+        "# | {} cm | # | # cm",
+        "# | # cm | {} | # cm",
+        "# | # cm | # | {} cm",
+    )
+    cells = ((1e-4, "beyond_0.0001_cm", "d"), (1e-4, "deepest_cm", "g"))
+    cells += ((math.inf, "beyond_0.1_cm", "d"), (math.inf, "deepest_cm", "g"))
+    return [
+        Number(page, f"{words} {place} |", table, row | {"tolerance_cm": cm}, column, form)
+        for scene, words in scenes.items()
+        for row in ({"scene": scene, "scheme": "leapfrog"},)
+        for place, (cm, column, form) in zip(shown, cells, strict=True)
+    ]
+
+
+def test_no_overlap_exceeds_the_tolerance_and_all_is_solved():
+    rates = pd.read_csv(REPOSITORY / SPEED / "overlap_rates.csv")
+    kept = rates[rates["tolerance_cm"] == 1e-4]
+    assert len(kept) == 6
+    assert (kept["runs"] == 200).all()
+    assert (kept[["beyond_0.0001_cm", "unsolved"]] == 0).all(axis=None)
+    once = rates[rates["tolerance_cm"] == math.inf]
+    assert (once["beyond_0.01_cm"] == once["runs"]).all()
+
+
 def steps() -> list[Number]:
     """What a step of 0.1 s changes, by the study of the step."""
     page, table = "docs/speed_vs_error.md", "studies/step_size/claims.csv"
@@ -118,9 +153,7 @@ def steps() -> list[Number]:
         return shifts[["low", "high"]].abs().max(axis=None)
 
     return [
-        Number(page, "8 minutes have {} (# to #) at 0.1 s", table, alone, form=".3f"),
-        Number(page, "8 minutes have # ({} to #) at 0.1 s", table, alone, "low", ".3f"),
-        Number(page, "8 minutes have # (# to {}) at 0.1 s", table, alone, "high", ".3f"),
+        *interval(page, "8 minutes have {} at 0.1 s", table, alone, form=".3f"),
         Number(page, "order is lost by at most {} s", table, {}, farthest),
     ]
 
@@ -336,20 +369,20 @@ def offsets() -> list[Number]:
 
 def trainings() -> list[Number]:
     """What the trainings of `make pretrained` reached."""
-    found = []
+    page, found = "docs/train.md", []
+    columns = ("signed_order", "lowest", "highest")
+    gains = ("gain", "gain_low", "gain_high")
     for means, words, end in ((TRAININGS, "seeds", " more than the"), (EARLY, "they", " more.")):
-        places = {
-            f"{words} reach {{}} in": "signed_order",
-            f"{words} reach # in the mean ({{}} to": "lowest",
-            f"{words} reach # in the mean (# to {{}})": "highest",
-            f"(# to #): {{}} (# to #){end}": "gain",
-            f": # ({{}} to #){end}": "gain_low",
-            f": # (# to {{}}){end}": "gain_high",
-        }
+        reached = (
+            f"{words} reach {{}} in",
+            f"{words} reach # in the mean ({{}} to",
+            f"{words} reach # in the mean (# to {{}})",
+        )
         found += [
-            Number("docs/train.md", text, means, column=column, form=".3f")
-            for text, column in places.items()
+            Number(page, text, means, column=column, form=".3f")
+            for text, column in zip(reached, columns, strict=True)
         ]
+        found += interval(page, f"(# to #): {{}}{end}", means, columns=gains, form=".3f")
     return found
 
 
@@ -376,6 +409,7 @@ NUMBERS = [
     *speed(),
     *throughput(),
     *energy(),
+    *overlap_rates(),
     *steps(),
     *levels(),
     *easy_branches(),

@@ -1,0 +1,72 @@
+"""In how many runs of 27 boats overlaps are deep: ``python benches/overlap_rates.py``.
+
+Three scenes at dt = 0.1 s, 200 seeds each, with the default tolerance and with gaps that are solved
+once. The rates go to docs/speed_vs_error/overlap_rates.csv.
+"""
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import flockenv
+from flockenv._io.atomic_write import write_text
+
+OUT = Path(__file__).parents[1] / "docs" / "speed_vs_error" / "overlap_rates.csv"
+SEEDS = range(12_000, 12_200)
+#: Seconds of a run, pool and backward duration of the scenes.
+SCENES = {
+    "cycle": (60.0, "narrow", 2.0),
+    "wide": (460.0, "wide", 0.31),
+    "narrow": (460.0, "narrow", 0.45),
+}
+DEPTHS_CM = (1e-5, 1e-4, 1e-3, 0.01, 0.1)
+
+
+def rows(seeds: Iterable[int]) -> Iterator[dict[str, object]]:
+    """Yield the rates of each scene, scheme and tolerance."""
+    for scene, (seconds, pool, bw_s) in SCENES.items():
+        for scheme in ("leapfrog", "moreau"):
+            for tolerance_cm in (1e-4, math.inf):
+                p = flockenv.FlockParameters.preset("simulation").replace(
+                    n_boats=27,
+                    pool=pool,
+                    bw_s=bw_s,
+                    scheme=scheme,
+                    dt_s=0.1,
+                    tolerance_cm=tolerance_cm,
+                )
+                found = [statistics(p, seed, seconds) for seed in seeds]
+                deepest = [each.worst_overlap_cm for each in found]
+                yield (
+                    {"scene": scene, "scheme": scheme, "tolerance_cm": tolerance_cm}
+                    | {"seconds": seconds, "bw_s": bw_s, "runs": len(found)}
+                    | {f"beyond_{cm:g}_cm": sum(d > cm for d in deepest) for cm in DEPTHS_CM}
+                    | {"deepest_cm": f"{max(deepest):.3g}"}
+                    | {"unsolved": sum(each.unsolved for each in found)}
+                    | {"halved_substeps": sum(each.halved_substeps for each in found)}
+                    | {"substeps": sum(each.substeps for each in found)}
+                )
+
+
+def statistics(p: flockenv.FlockParameters, seed: int, seconds: float) -> flockenv.Statistics:
+    """Return what a run did."""
+    flock = flockenv.Flock(p, seed)
+    flock.advance(seconds)
+    return flock.statistics
+
+
+def main() -> None:
+    """Measure, print and write."""
+    text = io.StringIO()
+    found = list(rows(SEEDS))
+    writer = csv.DictWriter(text, list(found[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(found)
+    write_text(OUT, text.getvalue())
+    print(text.getvalue(), end="")
+
+
+if __name__ == "__main__":
+    main()
