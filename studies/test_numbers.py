@@ -10,7 +10,10 @@ import pytest
 
 from docs.scripts.quoted import (
     DENSITY,
+    RANKS,
     Number,
+    ends_of,
+    interval,
     mean,
     most_of_an_offset,
     offset,
@@ -48,9 +51,7 @@ def entries() -> list[Number]:
         Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
         Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
         Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
-        Number(page, "branches have {} (# to #): one", table, longer, "score"),
-        Number(page, "branches have # ({} to #): one", table, longer, "score_low"),
-        Number(page, "branches have # (# to {}): one", table, longer, "score_high"),
+        *interval(page, "branches have {}: one", table, longer, ends_of("score")),
         *(
             Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
             for words, level, entry, column in (
@@ -68,34 +69,21 @@ def entries() -> list[Number]:
             "and {} in `order-narrow` (",
         ),
         *(
-            Number(page, words.format(*shown), ranks, {"level": level}, column)
+            number
             for words, level in (
-                ("algorithms is {0} ({1} to {2}),", "order-easy"),
-                ("(# to #), {0} ({1} to {2}), # (#", "order-noisy"),
-                ("(# to #), {0} ({1} to {2}) and", "order-narrow"),
-                ("to #) and {0} ({1} to {2}).", "order-wide"),
+                ("algorithms is {},", "order-easy"),
+                ("(# to #), {}, # (#", "order-noisy"),
+                ("(# to #), {} and", "order-narrow"),
+                ("to #) and {}.", "order-wide"),
             )
-            for column, shown in zip(
-                ("rank_correlation", "low", "high"),
-                (("{}", "#", "#"), ("#", "{}", "#"), ("#", "#", "{}")),
-                strict=True,
-            )
+            for number in interval(page, words, ranks, {"level": level}, RANKS)
         ),
         Number(page, "mean over {} or # cond", unlike, {}, lambda r: r["conditions"].min(), "d"),
         Number(page, "mean over # or {} cond", unlike, {}, lambda r: r["conditions"].max(), "d"),
-        *(
-            Number(page, words, file, wide, column)
-            for words, file, column in (
-                ("fall from {} to # (# to #)", table, "score"),
-                ("fall from # to {} (# to #)", unlike, "unlike"),
-                ("fall from # to # ({} to #)", unlike, "unlike_low"),
-                ("fall from # to # (# to {})", unlike, "unlike_high"),
-            )
-        ),
+        Number(page, "fall from {} to # (# to #)", table, wide, "score"),
+        *interval(page, "fall from # to {}", unlike, wide, ends_of("unlike")),
         Number(page, "falls from {} to # (# to #)", table, best, "score"),
-        Number(page, "falls from # to {} (# to #)", unlike, best, "unlike"),
-        Number(page, "falls from # to # ({} to #)", unlike, best, "unlike_low"),
-        Number(page, "falls from # to # (# to {})", unlike, best, "unlike_high"),
+        *interval(page, "falls from # to {}", unlike, best, ends_of("unlike")),
         *(
             Number(page, words, pairs, {"level": level}, told_apart, "d")
             for words, level in (
@@ -153,11 +141,12 @@ def trainings() -> list[Number]:
         "studies/trainings/results/algorithms/algorithms.csv",
     )
     words = {"train_leaders": "PPO's five seeds gain", "evolution": "the evolution strategy's"}
-    columns = {"gain": "{} (# to #)", "gain_low": "# ({} to #)", "gain_high": "# (# to {})"}
     return [
-        Number(page, f"{words[algorithm]} {form}", file, {"algorithm": algorithm}, column, ".3f")
-        for algorithm in words
-        for column, form in columns.items()
+        number
+        for algorithm, text in words.items()
+        for number in interval(
+            page, f"{text} {{}}", file, {"algorithm": algorithm}, ends_of("gain"), ".3f"
+        )
     ]
 
 
@@ -202,16 +191,19 @@ def decided() -> list[Number]:
     turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
     slope = {"figure": "fig12"}
     return [
-        Number(page, "at 1.4 s by {} (# to #; [# more", file, slope, form=".3f"),
-        Number(page, "at 1.4 s by # ({} to #; [# more", file, slope, "low", ".3f"),
-        Number(page, "at 1.4 s by # (# to {}; [# more", file, slope, "high", ".3f"),
+        *(
+            Number(page, words, file, slope, column, ".3f")
+            for words, column in (
+                ("at 1.4 s by {} (# to #; [# more", "measured"),
+                ("at 1.4 s by # ({} to #; [# more", "low"),
+                ("at 1.4 s by # (# to {}; [# more", "high"),
+            )
+        ),
         Number(page, "| {} (# to #) at low,", file, low, form="+.3f"),
-        Number(page, "| # ({} to #) at low,", file, low, "low", ".3f"),
-        Number(page, "| # (# to {}) at low,", file, low, "high", ".3f"),
+        *interval(page, "| {} at low,", file, low, form=".3f")[1:],
         Number(page, "to 0.8 s the gain is {} (#", file, low, form=".3f"),
         Number(page, "at low, {} (# to #) at medium", file, medium, form="+.2f"),
-        Number(page, "at low, # ({} to #) at medium", file, medium, "low"),
-        Number(page, "at low, # (# to {}) at medium", file, medium, "high"),
+        *interval(page, "at low, {} at medium", file, medium)[1:],
         Number(
             page,
             "rise shorter by {} s (#",
@@ -324,19 +316,10 @@ def response() -> list[Number]:
         ("(# to #) and {}.", learned.format(59), large[1600], ".2f"),
     )
     return [
-        Number(
-            page,
-            words.replace("{}", shown),
-            claims,
-            {"reading": flock.format(*of), "quantity": quantity},
-            column,
-            form,
-        )
+        number
         for words, quantity, of, form in sentences
-        for column, shown in (
-            ("measured", "{} (# to #)"),
-            ("low", "# ({} to #)"),
-            ("high", "# (# to {})"),
+        for number in interval(
+            page, words, claims, {"reading": flock.format(*of), "quantity": quantity}, form=form
         )
     ]
 
@@ -384,25 +367,20 @@ def steps() -> list[Number]:
         return shifts(rows)["low"].min()
 
     lines = [
-        ("at 0.1 s, {0} ({1} to {2}), by", "20 boats in wide, paper's law", "training", ".3f"),
-        ("at 0.01 s, {0} ({1} to {2}), and", "20 boats in wide, tuned law", "publication", ".3f"),
-        ("at 0.02 s, {0} ({1} to {2}). They", "27 boats in narrow, tuned law", "default", ".3f"),
+        ("at 0.1 s, {}, by", "20 boats in wide, paper's law", "training", ".3f"),
+        ("at 0.01 s, {}, and", "20 boats in wide, tuned law", "publication", ".3f"),
+        ("at 0.02 s, {}. They", "27 boats in narrow, tuned law", "default", ".3f"),
     ]
     alone = {"reading": "27 boats in narrow, no leaders, physics training"}
+    more_noise = f"noise of the same Ψ_o {AT_TRAINING}"
     cells = [
         *(
             (words, {"reading": f"{flock}, physics {physics}"}, form)
             for words, flock, physics, form in lines
         ),
-        ("by {0} ({1} to {2}) of Ψ_o", alone | {"quantity": f"Ψ_o {AT_TRAINING}"}, ".4f"),
-        ("{0} ({1} to {2}) more C_v", alone | {"quantity": f"C_v / v0² {AT_TRAINING}"}, ".4f"),
-        (
-            "{0} s ({1} to {2}) more noise",
-            alone | {"quantity": f"noise of the same Ψ_o {AT_TRAINING}"},
-            ".4f",
-        ),
+        ("by {} of Ψ_o", alone | {"quantity": f"Ψ_o {AT_TRAINING}"}, ".4f"),
+        ("{} more C_v", alone | {"quantity": f"C_v / v0² {AT_TRAINING}"}, ".4f"),
     ]
-    columns = ("measured", "low", "high")
     return [
         Number(page, "move it by at most {} s. They", table, {}, most, ".2f"),
         Number(page, "leaders by at most {}, and", table, {}, farthest("Ψ_o"), ".3f"),
@@ -412,10 +390,16 @@ def steps() -> list[Number]:
         Number(page, "moves by {} to # s at", table, {}, least, ".3f"),
         Number(page, "moves by # to {} s at", table, {}, most, ".3f"),
         *(
-            Number(page, words.format(*shown), table, row, column, form)
+            number
             for words, row, form in cells
-            for column, shown in zip(
-                columns, (("{}", "#", "#"), ("#", "{}", "#"), ("#", "#", "{}")), strict=True
+            for number in interval(page, words, table, row, form=form)
+        ),
+        *(
+            Number(page, words, table, alone | {"quantity": more_noise}, column, ".4f")
+            for words, column in (
+                ("{} s (# to #) more noise", "measured"),
+                ("# s ({} to #) more noise", "low"),
+                ("# s (# to {}) more noise", "high"),
             )
         ),
         Number("studies/README.md", "lost by at most {} s. #", table, {}, most, ".2f"),

@@ -4,7 +4,7 @@ The tests of numbers, of the product and of the studies, compare what a page say
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +18,11 @@ DENSITY = (
     "bw (s) at which the density of φ_o within 10° of the tangent falls through 3 times uniform"
 )
 """A quantity of the studies' claims, which the front page quotes too."""
+
+ENDS = ("measured", "low", "high")
+"""Columns of a claim's value and the ends of its interval."""
+RANKS = ("rank_correlation", "low", "high")
+"""The same columns of a correlation of ranks."""
 
 
 @dataclass(frozen=True)
@@ -108,37 +113,35 @@ def interval(
     page: str,
     words: str,
     file: str,
-    row: dict[str, Any],
-    columns: tuple[str, str, str],
+    row: dict[str, Any] | None = None,
+    columns: Sequence[str | Callable[[Any], float]] = ENDS,
     form: str = ".2f",
 ) -> list[Number]:
-    """List a number and the ends of its interval, which follow in parentheses."""
+    """List a number and the ends of its interval, which follow in parentheses.
+
+    ``{}`` in the words is all three of them.
+    """
     shown = ("{} (# to #)", "# ({} to #)", "# (# to {})")
     return [
-        Number(page, words.replace("{}", each), file, row, column, form)
+        Number(page, words.replace("{}", each), file, row or {}, column, form)
         for each, column in zip(shown, columns, strict=True)
     ]
 
 
 def ranks_of_levels(page: str, noisy: str, wide: str, narrow: str) -> list[Number]:
     """List how alike algorithms rank in the easy flock and in the other levels of suite v3."""
-    file, columns = "studies/levels/results/ranks.csv", ("rank_correlation", "low", "high")
+    file = "studies/levels/results/ranks.csv"
     return [
         number
         for level, words in (("noisy", noisy), ("wide", wide), ("narrow", narrow))
-        for number in interval(page, words, file, {"level": f"order-{level}"}, columns)
+        for number in interval(page, words, file, {"level": f"order-{level}"}, RANKS)
     ]
 
 
 def offset(page: str, words: str, horizon_s: int) -> list[Number]:
     """List what one step of planning without foresight adds by a horizon, with its interval."""
-    table = "studies/planning/results/best_of_offsets.csv"
-    return [
-        Number(
-            page, words.replace("{}", form), table, {"horizon_s": horizon_s}, gain_of(place), ".3f"
-        )
-        for place, form in enumerate(("{} (# to #)", "# ({} to #)", "# (# to {})"))
-    ]
+    table, gains = "studies/planning/results/best_of_offsets.csv", [*map(gain_of, range(3))]
+    return interval(page, words, table, {"horizon_s": horizon_s}, gains, ".3f")
 
 
 def most_of_an_offset(page: str, words: str) -> Number:
