@@ -1,6 +1,7 @@
 """Make studies by name, such as `worth` or `section4/fig08`, or all of them: `make studies`."""
 
 import itertools
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -28,13 +29,21 @@ def _files_with(text: str) -> list[str]:
 
 def _finished(command: list[str]) -> int:
     # On Ctrl-C, which the script receives too, `subprocess.run` would kill it before it has
-    # written the runs that were made.
+    # written the runs that were made. SIGTERM comes here alone, and is passed on.
     with subprocess.Popen(command, cwd=HERE.parent) as process:
+
+        def stop(*_: object) -> None:
+            process.terminate()
+            raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGTERM, stop)
         try:
             return process.wait()
         except KeyboardInterrupt:
             process.wait()
             raise
+        finally:
+            signal.signal(signal.SIGTERM, before)
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -216,7 +216,8 @@ class _Process(contextlib.AbstractContextManager):
     """A script that ends at once, or at the second wait if the first is interrupted."""
 
     made: ClassVar[list[str]] = []
-    waits: ClassVar[list[BaseException | None]] = []
+    waits: ClassVar[list[BaseException | signal.Signals | None]] = []
+    terminated: ClassVar[int] = 0
 
     def __init__(self, command: list[str], **_: object) -> None:
         self.made.append(command[2].removeprefix("studies.").replace(".", "/"))
@@ -225,9 +226,15 @@ class _Process(contextlib.AbstractContextManager):
         pass
 
     def wait(self) -> int:
-        if self.waits and (error := self.waits.pop(0)):
-            raise error
+        if self.waits and (happens := self.waits.pop(0)):
+            if isinstance(happens, signal.Signals):
+                signal.raise_signal(happens)
+            else:
+                raise happens
         return 0
+
+    def terminate(self) -> None:
+        type(self).terminated += 1
 
 
 def test_what_make_does_not_run_is_listed(
@@ -244,12 +251,20 @@ def test_what_make_does_not_run_is_listed(
     assert capsys.readouterr().out.endswith("not here: critical_noise/critical_noise\n")
 
 
-def test_ctrl_c_waits_for_what_a_script_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("_ignored_sigterm")
+@pytest.mark.parametrize(("happens", "passed_on"), [(KeyboardInterrupt(), 0), (signal.SIGTERM, 1)])
+def test_an_interruption_waits_for_what_a_script_writes(
+    monkeypatch: pytest.MonkeyPatch,
+    happens: BaseException | signal.Signals,
+    passed_on: int,
+) -> None:
     monkeypatch.setattr(make.subprocess, "Popen", _Process)
-    monkeypatch.setattr(_Process, "waits", waits := [KeyboardInterrupt(), None])
+    monkeypatch.setattr(_Process, "terminated", 0)
+    monkeypatch.setattr(_Process, "waits", waits := [happens, None])
     with pytest.raises(KeyboardInterrupt):
         make.main(["worth"])
     assert waits == []
+    assert _Process.terminated == passed_on
 
 
 @pytest.mark.parametrize(
