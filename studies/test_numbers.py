@@ -277,7 +277,7 @@ def transition() -> list[Number]:
 
 def response() -> list[Number]:
     """What branches say of leaders as a linear response."""
-    page, claims = "studies/worth/README.md", "studies/worth/claims.csv"
+    page, claims = "studies/response/README.md", "studies/response/claims.csv"
     flock, end = "simulation, n = {}, bw = {} s, dt = 0.05 s", "by m, 103 to 207 s after the branch"
     many, less = "R of {} over {} R of 1, {}, " + end, "R of {} less the sum, in R of 1, {}, " + end
     law, factor = "paper's law", "factor by m, {} after the branch, over that of 27 boats at 0.31 s"

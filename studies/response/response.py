@@ -12,10 +12,10 @@ a seed: the mean over its states. Intervals draw seeds, in all cells of a flock 
 
 **Fluctuations.** K(0) − K(t), where K is the correlation in time of two boats' sin φ in the same
 flocks without leaders, over all pairs and times. In linear response theory a leader that pulls at
-its own heading moves the other boats by a factor times this difference. ⟨m²⟩, which worth.py takes,
+its own heading moves the other boats by a factor times this difference. ⟨m²⟩, which the study of worth takes,
 also counts each boat with itself, which was nine tenths of it at 0.5 s in the pilot.
 
-Rules, with the bounds of worth.py. The last window answers, and the one before it varies the time.
+Rules, with the bounds of the study of worth. The last window answers, and the one before it varies the time.
 
 1. **Linear:** k leaders respond as k times one if R_k / (k R_1) has an interval within 0.8 to 1.25.
 2. **Opposed groups** add up if the interval of R less the sum of the groups' own responses lies
@@ -60,7 +60,7 @@ from studies.claim import Claims, Interval, bca, judging, unknown
 from studies.study import COLORS, Options, Row, Study, curve, main, picture, seed_of
 from studies.worth.worth_runs import DENSITY_BOATS, LAW, of_pool, steering
 
-FIRST = 200_000  # Seeds that no other study of this folder has.
+FIRST = 200_000  # Seeds that neither this study's pilot nor that of worth has.
 MINUTES, WARM_CYCLES, STRETCHES = 3.5, 112, 8
 SAMPLES, ANALYZED = 8, 3
 """Samples per cycle of the motors, and those of them in the analysis window."""
@@ -238,7 +238,7 @@ def measure(row: Row) -> Row:
     return means | settled
 
 
-STUDY = Study("worth/response", design, measure, lambda row: row["n_boats"] <= 100)
+STUDY = Study("response/response", design, measure, lambda row: row["n_boats"] <= 100)
 
 
 # --- judgment ------------------------------------------------------------------------------------
