@@ -190,6 +190,8 @@ def decided() -> list[Number]:
     rise = {"claim": "Velocities change more abruptly than orientations"}
     turns = {"claim": "The direction of a moving flock can change at bw = 1.9 s"}
     slope = {"figure": "fig12"}
+    orientations = {"claim": "Orientations signal the coming order earlier than velocities"}
+    own, table = "studies/decided/README.md", "studies/README.md"
     return [
         *(
             Number(page, words, file, slope, column, ".3f")
@@ -213,6 +215,23 @@ def decided() -> list[Number]:
             ".1f",
         ),
         Number(page, "0 of {} [more runs]", file, turns, "n_runs", "d"),
+        *(
+            number
+            for where, words in (
+                (page, "earlier than velocities | by {} | match"),
+                (own, "Ψ_o passes halfway {} before"),
+            )
+            for number in interval(where, words, file, orientations, form=".1f", unit=" s")
+        ),
+        *(
+            Number(where, words, file, column=count(verdict), form="d")
+            for where, words, verdict in (
+                (own, "statements: {} hold and", "holds"),
+                (own, "statements: # hold and {} fail.", "fails"),
+                (table, "open statements: {} hold and", "holds"),
+                (table, "open statements: # hold and {} fail", "fails"),
+            )
+        ),
         Number(
             "studies/section5/README.md",
             "of {} [more runs](../decided/README.md) in the rarer",
@@ -394,13 +413,8 @@ def steps() -> list[Number]:
             for words, row, form in cells
             for number in interval(page, words, table, row, form=form)
         ),
-        *(
-            Number(page, words, table, alone | {"quantity": more_noise}, column, ".4f")
-            for words, column in (
-                ("{} s (# to #) more noise", "measured"),
-                ("# s ({} to #) more noise", "low"),
-                ("# s (# to {}) more noise", "high"),
-            )
+        *interval(
+            page, "{} more noise", table, alone | {"quantity": more_noise}, form=".4f", unit=" s"
         ),
         Number("studies/README.md", "lost by at most {} s. #", table, {}, most, ".2f"),
         Number("studies/README.md", "# s. {} of 45 other", table, {}, found("inside"), "d"),

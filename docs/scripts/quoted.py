@@ -116,12 +116,13 @@ def interval(
     row: dict[str, Any] | None = None,
     columns: Sequence[str | Callable[[Any], float]] = ENDS,
     form: str = ".2f",
+    unit: str = "",
 ) -> list[Number]:
-    """List a number and the ends of its interval, which follow in parentheses.
+    """List a number, with its unit, and the ends of its interval, which follow in parentheses.
 
     ``{}`` in the words is all three of them.
     """
-    shown = ("{} (# to #)", "# ({} to #)", "# (# to {})")
+    shown = (f"{{}}{unit} (# to #)", f"#{unit} ({{}} to #)", f"#{unit} (# to {{}})")
     return [
         Number(page, words.replace("{}", each), file, row or {}, column, form)
         for each, column in zip(shown, columns, strict=True)
