@@ -243,6 +243,25 @@ def decided() -> list[Number]:
     ]
 
 
+def calibration() -> list[Number]:
+    """What the best candidate for the experiment's constants mends, and what it misses."""
+    page, file = "studies/calibration/README.md", "studies/calibration/claims.csv"
+    candidate = {"reading": "candidate 706, narrow, n = 27"}
+    return [
+        number
+        for words, claim, unit in (
+            ("1.4 to 2.0 s by {}, and we read", "leaders add coherence", ""),
+            ("than those by {}, and we asked", "leaders against the bias", ""),
+            ("are lost at {} without", "direction lost, no leaders", " s"),
+            ("very low noise is {} of its", "C_v at very low noise", ""),
+        )
+        for number in interval(page, words, file, candidate | {"claim": claim}, unit=unit)
+    ] + [
+        Number(page, "matches {} and misses #, `experiment`", file, candidate, count("holds"), "d"),
+        Number(page, "matches # and misses {}, `experiment`", file, candidate, count("fails"), "d"),
+    ]
+
+
 def current() -> list[Number]:
     page, preset = "studies/current/README.md", {"reading": "preset constants, narrow, n = 27"}
     return [
@@ -431,6 +450,7 @@ NUMBERS = [
     *trainings(),
     *headlines(),
     *section_4(),
+    *calibration(),
     *current(),
     *transition(),
     *response(),

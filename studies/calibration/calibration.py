@@ -31,7 +31,7 @@ from studies.calibration.score_card import (
     over_seeds,
     values_of,
 )
-from studies.claim import FAILS, HOLDS, Claims, Interval, write_claims
+from studies.claim import FAILS, HOLDS, Claims, Interval, unknown, write_claims
 from studies.section4.section4 import LEVELS_S
 from studies.study import COLORS, VERSION, Options, Row, Study, StudyError, main, picture
 
@@ -197,9 +197,10 @@ def chosen(options: Options) -> Row:
     """
     rows = finalists(options)
     tables = measured(options, "choice", [*rows, preset_row()], CHOICE_SEEDS)
+    theirs = card(tables[EXPERIMENT])
 
     def worth(candidate: int) -> tuple[float, float]:
-        found = judged(tables, candidate)
+        found = Judgment(card(tables[candidate]), theirs, unknown())
         return -math.inf if found.lost() else len(found.mended()), -total(tables[candidate])
 
     return max(rows, key=lambda each: worth(each["candidate"]))
