@@ -9,14 +9,15 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from types import ModuleType
+from typing import IO, TYPE_CHECKING
 
 from flockenv._io.plain_file import check_writable
 
 if TYPE_CHECKING:
     import pandas as pd
 
-fcntl: Any
+fcntl: ModuleType | None
 try:
     fcntl = importlib.import_module("fcntl")
 except ImportError:  # On Windows an open file can be neither renamed nor removed.
@@ -132,9 +133,12 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         file.write(text.encode())
 
 
-def write_csv(path: str | os.PathLike[str], table: "pd.DataFrame", **options: Any) -> None:
+def write_csv(
+    path: str | os.PathLike[str], table: "pd.DataFrame", *, float_format: str | None = None
+) -> None:
     """Write a table without its index to a CSV file, with the same bytes on every system.
 
-    Takes the options of ``to_csv``, and writes the file as `atomic_write` does.
+    `float_format` is that of ``to_csv``. The file is written as `atomic_write` does.
     """
-    write_text(path, table.to_csv(index=False, lineterminator="\n", **options))
+    text = table.to_csv(index=False, lineterminator="\n", float_format=float_format)
+    write_text(path, text)

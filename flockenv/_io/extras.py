@@ -1,7 +1,7 @@
 """Optional packages, imported where they are used, with an error that says what to install."""
 
 import importlib
-from typing import Any
+from types import ModuleType
 
 from flockenv.errors import FlockError
 
@@ -21,7 +21,7 @@ def install(extra: str) -> str:
     return f"pip install '.[{extra}]' in a clone of flockenv, 'FILE.whl[{extra}]' with its wheel"
 
 
-def require(module: str, extra: str) -> Any:
+def require(module: str, extra: str) -> ModuleType:
     """Import a module of an optional extra; a MissingExtraError says how to install it."""
     try:
         return importlib.import_module(module)

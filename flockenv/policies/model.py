@@ -5,10 +5,11 @@ import json
 import os
 import sys
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from flockenv.policies.base import leaders_observed, observed
 
 if TYPE_CHECKING:
     import gymnasium
+    from stable_baselines3.common.policies import BasePolicy
     from torch import Tensor
 
     from flockenv.envs.spaces import ObservationSpace
@@ -184,7 +186,7 @@ def space_under_wrappers(model: object) -> "ObservationSpace | None":
     """Return the space of the unwrapped environment in which a model learns, if known."""
     from flockenv.envs.spaces import ObservationSpace
 
-    base: Any = getattr(getattr(model, "env", None), "unwrapped", None)
+    base = getattr(getattr(model, "env", None), "unwrapped", None)
     first = getattr(base, "envs", [base])[0]
     space = getattr(getattr(first, "unwrapped", first), "observation_space", None)
     return space if isinstance(space, ObservationSpace) else None
@@ -197,14 +199,18 @@ def one_by_one() -> AbstractContextManager[object]:
 
 
 @cache
-def _mode_of(torch: Any) -> Any:
+def _mode_of(torch: ModuleType) -> type[AbstractContextManager[object]]:
     """Return the class of that context, which can only be defined once torch is imported."""
     linear = torch.nn.functional.linear
 
-    class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc]
+    class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc,name-defined]
         def __torch_function__(
-            self, function: Any, types: Any, arguments: Any = (), options: Any = None
-        ) -> Any:
+            self,
+            function: Callable[..., object],
+            types: object,
+            arguments: tuple[Any, ...] = (),
+            options: dict[str, Any] | None = None,
+        ) -> object:
             return (_linear if function is linear else function)(*arguments, **(options or {}))
 
     return EachAlone
@@ -293,12 +299,13 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
         ) from error
 
 
-def _policy_of(data: Mapping[str, Any]) -> Any:
+def _policy_of(data: Mapping[str, Any]) -> "BasePolicy":
     """Return the policy with new weights, as its algorithm would make it."""
     kind, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
     arguments = data["observation_space"], data["action_space"], lambda _: 0.0
     try:
-        return kind(*arguments, **{"use_sde": data["use_sde"], **options})
+        policy: BasePolicy = kind(*arguments, **{"use_sde": data["use_sde"], **options})
     except TypeError:  # Those of DQN and the like do not take it.
-        return kind(*arguments, **options)
+        policy = kind(*arguments, **options)
+    return policy

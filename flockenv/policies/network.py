@@ -22,6 +22,7 @@ from flockenv.policies.torch_module import read_module
 
 if TYPE_CHECKING:
     import gymnasium
+    from torch import nn
 
 FORMAT = "flockenv policy 2"
 """First entry of every network's file."""
@@ -137,7 +138,7 @@ class NetworkPolicy(RowPolicy):
     @classmethod
     def from_module(
         cls,
-        module: object,
+        module: "nn.Module",
         space: "gymnasium.Space[Any]",
         *,
         squashed: bool = False,

@@ -40,7 +40,7 @@ class ModuleLayer:
     activation: str = "identity"
 
 
-def read_module(module: Any, *, has_spread: bool = False) -> list[ModuleLayer]:
+def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[ModuleLayer]:
     """Return the layers of a ``torch.nn.Module``, or refuse other objects.
 
     With `has_spread`, or if a ``NormalParamExtractor`` ends it, the second of two outputs is

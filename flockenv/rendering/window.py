@@ -1,14 +1,14 @@
 """A window that shows a flock while it moves."""
 
 import os
-from typing import Any
+from types import ModuleType
 
 from flockenv._io.extras import require
 from flockenv.flock import Flock
 from flockenv.rendering.frames import renderer
 
 
-def require_pygame() -> Any:
+def require_pygame() -> ModuleType:
     """Return pygame, of the extra ``render``."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     return require("pygame", "render")

@@ -9,6 +9,7 @@ import itertools
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from types import ModuleType
 from typing import Any, TypeVar
 
 from flockenv._io.extras import require
@@ -52,7 +53,7 @@ class RayExecutor(Executor):
     """
 
     def __init__(self, workers: int | None = None) -> None:
-        self._ray: Any = require("ray", "ray")
+        self._ray: ModuleType = require("ray", "ray")
         self._is_ours = not self._ray.is_initialized()
         if self._is_ours:
             options: dict[str, Any] = {"log_to_driver": False}

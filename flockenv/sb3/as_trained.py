@@ -53,7 +53,7 @@ class AsTrained:
         observation: object,
         state: object = None,
         episode_start: object = None,
-        **options: object,
+        deterministic: bool = False,
     ) -> tuple[Any, Any]:
         """Return the model's actions; `episode_start` has an entry for each flock."""
         if self._normalizing is not None:
@@ -61,7 +61,7 @@ class AsTrained:
         if episode_start is not None:
             episode_start = np.asarray(episode_start)[self._flock_of_row]
         found: tuple[Any, Any] = self.model.predict(
-            observation, state=state, episode_start=episode_start, **options
+            observation, state=state, episode_start=episode_start, deterministic=deterministic
         )
         return found
 

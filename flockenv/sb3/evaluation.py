@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,7 +124,7 @@ def evaluated(
 
     with _unchanged_statistics(flocks):
         returns, lengths = evaluate_policy(
-            cast(Any, model),
+            model,
             flocks,
             episodes,
             deterministic,

@@ -40,17 +40,17 @@ class LeaderSlot:
     @property
     def bw_s(self) -> float | tuple[float, float]:
         """Backward duration in s of the flock's next episodes, or its range."""
-        upcoming: float | tuple[float, float] = self._upcoming("bw_s")
+        upcoming: float | tuple[float, float] = self._upcoming()["bw_s"]
         return upcoming
 
     @property
     def target(self) -> str | tuple[str, ...]:
         """Target of the flock's next episodes."""
-        upcoming: str | tuple[str, ...] = self._upcoming("target")
+        upcoming: str | tuple[str, ...] = self._upcoming()["target"]
         return upcoming
 
-    def _upcoming(self, name: str) -> Any:
-        return self._env._batch.core.upcoming(self.flock_index)[name]
+    def _upcoming(self) -> dict[str, Any]:
+        return self._env._batch.core.upcoming(self.flock_index)
 
     @property
     def spec(self) -> EnvSpec | None:

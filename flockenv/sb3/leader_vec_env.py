@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
+from stable_baselines3.common.vec_env.base_vec_env import VecEnv, VecEnvIndices
 
 from flockenv import _core
 from flockenv._io.arguments import as_int, items, materialized
@@ -196,10 +196,13 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     def _drawn_seed(self) -> int:
         return drawn_seed(self.np_random)
 
-    def _requests(self, options: Any) -> list[dict[str, Any]]:
+    def _requests(self, options: object) -> list[dict[str, Any]]:
         """Return the request for each flock's reset, of one dictionary for each slot."""
-        lists_slots = isinstance(options, Sequence) and len(options) == self.num_envs
-        if not lists_slots or not all(isinstance(request, Mapping) for request in options):
+        if (
+            not isinstance(options, Sequence)
+            or len(options) != self.num_envs
+            or not all(isinstance(request, Mapping) for request in options)
+        ):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
         by_flock: list[dict[str, Any] | None] = [None] * self.num_flocks
         for flock, given in zip(self.flock_of_slot.tolist(), options, strict=True):
@@ -283,13 +286,13 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
-    def get_attr(self, attr_name: str, indices: object = None) -> list[Any]:
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""
         if not hasattr(self, "slots"):
             raise AttributeError(attr_name)
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
-    def _chosen(self, indices: Any) -> list[int]:
+    def _chosen(self, indices: VecEnvIndices) -> list[int]:
         """Return the numbers of slots; an error names other values."""
         chosen = [
             as_int(index, "indices") for index in items(self._get_indices(indices), "indices")
@@ -300,7 +303,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             )
         return chosen
 
-    def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
+    def set_attr(self, attr_name: str, value: object, indices: VecEnvIndices = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
         They hold until they are set again, within `learn` too. Values are as for `reset`: bw_s is
@@ -334,14 +337,14 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         self,
         method_name: str,
         *method_args: object,
-        indices: object = None,
+        indices: VecEnvIndices = None,
         **method_kwargs: object,
     ) -> list[Any]:
         """Call a method of each slot's `LeaderSlot`."""
         methods = self.get_attr(method_name, indices)
         return [method(*method_args, **method_kwargs) for method in methods]
 
-    def env_is_wrapped(self, wrapper_class: type[Any], indices: object = None) -> list[bool]:
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: VecEnvIndices = None) -> list[bool]:
         """Return False for each slot: there are no wrappers around single slots."""
         return [False for _ in self._chosen(indices)]
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any, Self
 
+import gymnasium
 import torch
 from stable_baselines3.common.distributions import (
     DiagGaussianDistribution,
@@ -109,7 +110,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     _deviations: torch.Tensor
 
     def __init__(
-        self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int, **options: Any
+        self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int, **options: bool
     ) -> None:
         super().__init__(action_dim, **options)
         self._flock_of_slot, self._hold_steps = flock_of_slot, hold_steps
@@ -175,9 +176,9 @@ class SharedNoisePolicy(ActorCriticPolicy):
 
     def __init__(
         self,
-        observation_space: Any,
-        action_space: Any,
-        lr_schedule: Any,
+        observation_space: gymnasium.spaces.Space[Any],
+        action_space: gymnasium.spaces.Space[Any],
+        lr_schedule: Schedule,
         *,
         flock_of_slot: Sequence[int],
         hold_steps: int,

@@ -1,6 +1,7 @@
 """Times of tracks: seconds from any column of times, and frames."""
 
 import re
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +38,7 @@ def times_of(table: Table) -> Floats:
     return np.tile(times - times.min() if len(times) else times, len(table.boats))
 
 
-def _typed(pandas: Any, found: Any) -> Floats | None:
+def _typed(pandas: ModuleType, found: "pd.Series[Any]") -> Floats | None:
     """Return dates, clock times and durations in s, and None for anything else."""
     types = pandas.api.types
     if types.is_datetime64_any_dtype(found):

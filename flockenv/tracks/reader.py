@@ -115,7 +115,7 @@ def _report(
     """Return the report of used and omitted rows."""
     present = ~np.isnan(pose[..., 0])
     gaps, speed = motion.gaps(), np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
-    counts: Any = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
+    counts = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
     every = pose.shape[1] * (len(time_s) + motion.empty_frames(time_s))
     return TrackReport(
         frames=len(time_s),

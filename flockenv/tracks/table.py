@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -173,14 +174,15 @@ def _usual_separator(path: Path) -> str:
     return "\t" if ending(path).startswith(".tsv") else ","
 
 
-def _read_parquet(pandas: Any, path: Path) -> Any:
+def _read_parquet(pandas: ModuleType, path: Path) -> "pd.DataFrame":
     with open_plain(path) as file:
         size = os.fstat(file.fileno()).st_size
         held = require("pyarrow.parquet", "plot").ParquetFile(file).metadata
         cells = held.num_rows * held.num_columns
         if 8 * cells > most_held(size):
             raise ParameterError(f"it holds {cells} cells, too many for its {size} bytes")
-        return pandas.read_parquet(file)
+        rows: pd.DataFrame = pandas.read_parquet(file)
+    return rows
 
 
 def _text_of(path: Path) -> str:
@@ -228,7 +230,7 @@ def _separator_of(lines: list[str]) -> str:
     return max(counts, key=lambda mark: counts[mark])
 
 
-def _read_text(pandas: Any, text: str, layout: TrackLayout, separator: str) -> Table:
+def _read_text(pandas: ModuleType, text: str, layout: TrackLayout, separator: str) -> Table:
     rows = _cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
     first = layout.skip + height + 1

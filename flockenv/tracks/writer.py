@@ -94,7 +94,7 @@ def _layout(recording: Recording) -> dict[str, Any]:
 
 
 def _write_gsd(recording: Recording, path: Path) -> None:
-    hoomd: Any = require("gsd.hoomd", "tracks")
+    hoomd = require("gsd.hoomd", "tracks")
     parameters = recording.parameters
     reach, _ = _core.pool_radii_cm(parameters.pool)
     if math.isinf(reach):  # Open water: as far as there are boats.

@@ -1,7 +1,7 @@
 """Results of a training: its learning curve, and its leaders beside the laws."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from stable_baselines3.common.monitor import load_results
 
@@ -11,6 +11,9 @@ from flockenv.training.ppo.settings import TrainingSettings
 
 if TYPE_CHECKING:
     import pandas as pd
+    from stable_baselines3.common.base_class import BaseAlgorithm
+
+    from flockenv.policies.registry import PolicyLike
 
 _EPISODE_S = 480.0
 TRAINED = "trained"
@@ -55,7 +58,9 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     ]
 
 
-def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> "pd.DataFrame":
+def compare_with_laws(
+    model: "BaseAlgorithm", settings: TrainingSettings, episodes: int
+) -> "pd.DataFrame":
     """Return the orders that a model and the laws reach in held-out flocks of its training.
 
     Parameters
@@ -72,7 +77,7 @@ def compare_with_laws(model: Any, settings: TrainingSettings, episodes: int) -> 
     pandas.DataFrame
         As from `flockenv.comparison.compare_leaders`.
     """
-    policies = {
+    policies: dict[str, PolicyLike] = {
         PAPERS_LAW: PAPERS_LAW,
         TUNED_LAW: TUNED_LAW,
         TRAINED: model,
