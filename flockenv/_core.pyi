@@ -1,5 +1,5 @@
 from collections.abc import Mapping, Sequence
-from typing import Any, Self, TypeAlias, final
+from typing import Any, Protocol, Self, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -95,8 +95,11 @@ REWARD_TERMS: list[tuple[str, str]]
 _Floats: TypeAlias = NDArray[np.float64]
 _Singles: TypeAlias = NDArray[np.float32]
 _Columns: TypeAlias = dict[str, NDArray[Any]]
-# A `flockenv.FlockParameters`; the core reads its attribute `_in_core`.
-_Parameters: TypeAlias = Any
+
+# A `flockenv.FlockParameters`.
+class _Parameters(Protocol):
+    @property
+    def _in_core(self) -> Parameters: ...
 
 @final
 class Parameters:
@@ -218,7 +221,7 @@ class EnvBatch:
     @classmethod
     def from_bytes(cls, state: bytes) -> Self: ...
     def restore(self, state: bytes) -> None: ...
-    def __deepcopy__(self, _memo: Any) -> Self: ...
+    def __deepcopy__(self, _memo: object) -> Self: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final

@@ -2,7 +2,7 @@
 
 import difflib
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NoReturn
 
 from flockenv._core import EpisodeError, FlockError, InUseError, ParameterError, SolverError
 
@@ -70,7 +70,7 @@ class HintsAtNames:
     # Hidden from type checkers, which would accept any name as an attribute.
     if not TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> Any:
+        def __getattr__(self, name: str) -> NoReturn:
             words = f"{type(self).__name__!r} object has no attribute {name!r}"
             # Libraries look for private names; they need no suggestion.
             if not name.startswith("_"):

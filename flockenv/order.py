@@ -146,7 +146,11 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         """Return the columns, in the order of the table."""
         return tuple(getattr(self, name) for name in ORDER)
 
-    def at(self, samples: Any, time_s: NDArray[np.float64] | None = None) -> "OrderSeries":
+    def at(
+        self,
+        samples: slice | NDArray[np.bool_ | np.integer[Any]],
+        time_s: NDArray[np.float64] | None = None,
+    ) -> "OrderSeries":
         """Return the series at some of its samples, an index of NumPy, and at those times."""
         return OrderSeries(*(column[samples] for column in self.columns()), time_s=time_s)
 

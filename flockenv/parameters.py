@@ -233,7 +233,7 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
     return _core.Parameters(base, {name: _stored(value) for name, value in changes.items()})
 
 
-def _stored(value: object) -> Any:
+def _stored(value: object) -> object:
     """Return an iterator, such as a generator of discs, as a tuple; other values unchanged."""
     held = materialized(value)
     return held if held is value else tuple(materialized(name) for name in held)

@@ -1,7 +1,7 @@
 """Arguments that hold several values, also iterators."""
 
 import operator
-from collections.abc import Iterable, Iterator, Mapping, MappingView, Set
+from collections.abc import Iterable, Iterator, Mapping, MappingView, Sequence, Set
 from itertools import islice
 from numbers import Real
 from typing import Any
@@ -14,7 +14,7 @@ from flockenv.errors import ParameterError, short_repr
 _MOST_ITEMS = 1_000_000
 
 
-def items(values: object, name: str) -> Any:
+def items(values: object, name: str) -> Sequence[Any]:
     """Return the items of a sequence: a list, an array, a generator or a view of a dictionary.
 
     A range is returned unchanged. Texts, dictionaries and sets are a TypeError, and sequences
@@ -31,7 +31,7 @@ def items(values: object, name: str) -> Any:
     return found
 
 
-def _iterated(values: Any, name: str) -> Any:
+def _iterated(values: Iterable[object], name: str) -> Iterator[object]:
     try:
         return iter(values)
     except TypeError as error:  # An array of one number.
@@ -56,7 +56,7 @@ def materialized(values: object) -> Any:
     return items(values, "the argument") if isinstance(values, Iterator | MappingView) else values
 
 
-def listed(value: object) -> Any:
+def listed(value: object) -> object:
     """Return an array as a list or a number, and any other value as `materialized` does.
 
     Arrays of other libraries are arrays too. Masked arrays, tables, and arrays larger than any
@@ -97,14 +97,14 @@ def _check_no_table(values: object, name: str) -> None:
         raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
 
 
-def real_numbers(values: Any, name: str) -> Any:
+def real_numbers(values: object, name: str) -> np.ma.MaskedArray[Any, Any]:
     """Return an array, perhaps a masked one, of real numbers; a ParameterError names others.
 
     NumPy itself makes numbers of text and times, and drops imaginary parts.
     """
     _check_no_table(values, name)
     try:
-        found = np.ma.asarray(values)
+        found: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
     except Exception as error:  # Arrays of other libraries raise what they like.
         raise ParameterError(f"{name} is not accepted: real numbers") from error
     if found.dtype.kind not in "biuf":
@@ -116,12 +116,12 @@ def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """Return a copy as an array of real numbers, with NaN for masked values and None."""
     _check_no_table(values, name)
     try:
-        found: Any = np.ma.asarray(values)
+        found: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
         if found.dtype.kind == "O":
             found = np.ma.asarray(values, np.float64)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{name} is not accepted: real numbers") from error
-    return np.array(real_numbers(found, name).astype(np.float64).filled(np.nan))
+    return np.array(np.ma.filled(real_numbers(found, name).astype(np.float64), np.nan))
 
 
 def series(values: object, name: str) -> NDArray[np.float64]:

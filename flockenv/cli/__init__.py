@@ -5,7 +5,7 @@ import io
 import os
 import sys
 from collections.abc import Collection, Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -93,7 +93,7 @@ def _not_imported() -> None:
     raise NotImplementedError
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> typer.Typer:
     if name == "app":
         return _app(COMMANDS)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -11,6 +11,7 @@ import typer
 from flockenv.errors import ParameterError
 
 Options = TypeVar("Options")
+Value = TypeVar("Value")
 
 TRUST = "Read .zip files of SB3 models and import module:attribute: this executes their code."
 """Help of the option ``trust``."""
@@ -21,12 +22,12 @@ Endings = Callable[[], Iterable[str]]
 
 
 def option(
-    default: Any,
+    default: Value,
     help: str,  # noqa: A002
     *names: str,
     endings: Endings | None = None,
     **settings: Any,
-) -> Any:
+) -> Value:
     """Return a dataclass field that is an option, with the arguments of `typer.Option`.
 
     `endings` returns the accepted endings of the name of a file that the option names.

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
 from flockenv._io.arguments import as_int, listed, real_numbers
@@ -72,7 +72,7 @@ class LeaderBatch:
         self.core.set_upcoming(list(flocks), values)
 
     def step(
-        self, env: object, actions: NDArray[np.float64], precision: DTypeLike = np.float64
+        self, env: object, actions: ArrayLike, precision: DTypeLike = np.float64
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision: observations and rewards by row, and by flock whether it ended.
 

@@ -100,7 +100,7 @@ class EnvOptions:
                 f"got an unexpected keyword argument {name!r}, which is no option of the "
                 f"environment: {_instead(name, counts)}"
             )
-        given = {name: listed(value) for name, value in options.items()}
+        given: dict[str, Any] = {name: listed(value) for name, value in options.items()}
         own_reward = _pop_function(given)
         if own_reward is not None and not takes_function:
             raise ParameterError(
@@ -150,7 +150,7 @@ def _instead(name: str, counts: str | None) -> str:
     return f"the number of flocks is {counts!r} here"
 
 
-def _plain(value: object) -> Any:
+def _plain(value: object) -> object:
     """Return a mapping, or each mapping of a list, as the dictionary that the core reads."""
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]

@@ -1,7 +1,7 @@
 """Options of a reset: their names, their refusals, and the values for each flock."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -97,7 +97,7 @@ def reset_requests(
     return requests
 
 
-def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Any:
+def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Sequence[object]:
     """Return the value of an option for each flock."""
     values = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
@@ -108,7 +108,7 @@ def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Any:
         return [value] * flocks
     if len(values) != flocks:
         raise ParameterError(f"reset option {name!r} lists {len(values)} values, expected {flocks}")
-    return values
+    return list(values)
 
 
 def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:

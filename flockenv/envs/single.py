@@ -199,7 +199,7 @@ class LeadersEnv(
         EpisodeError
             Before the first reset and after the end.
         """
-        flat: Any = action
+        flat: ArrayLike = action
         if self._levels is not None or not is_plain(action, self._actions_shape):
             flat = _core.flat_actions(action, self._actions_shape, self._levels)
         rows, rewards, truncated = self._batch.step(self, flat)

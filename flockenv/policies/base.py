@@ -168,7 +168,9 @@ class Policy:
                 "leaders at once; one that is trained on LeaderVecEnv steers any number"
             )
 
-    def predict(self, observation: Any, state: Any = None, episode_start: Any = None) -> Any:
+    def predict(
+        self, observation: object, state: object = None, episode_start: object = None
+    ) -> Any:
         """Return the source's actions for observations, as `LeaderPolicy`."""
         if episode_start is None:
             return self.source.predict(observation, state)

@@ -3,7 +3,7 @@
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from hashlib import sha256
 from numbers import Real
@@ -70,7 +70,7 @@ class LawPolicy(RowPolicy):
         return self._observed.actions(rows)
 
     def __reduce__(self) -> tuple[object, ...]:
-        kind: Any = type(self)
+        kind: Callable[..., object] = type(self)
         layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
         return partial(kind, *self.gains.values(), **layout), ()
 

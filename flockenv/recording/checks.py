@@ -144,7 +144,7 @@ def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParam
     shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
     dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
     for name in CONTACTS:
-        array: Any = getattr(contacts, name)
+        array: object = getattr(contacts, name)
         shape, dtype = shapes.get(name, (c,)), dtypes.get(name, np.float32)
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             raise ParameterError(

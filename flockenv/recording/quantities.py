@@ -33,16 +33,18 @@ def check_names(quantities: object, of: str) -> None:
             )
 
 
-def checked_functions(functions: Any) -> dict[str, Callable[[Any], Any]]:
+def checked_functions(functions: Mapping[str, object]) -> dict[str, Callable[[Any], Any]]:
     """Return a user's functions by name, checked before the run that they are for."""
     check_names(functions, "functions")
+    checked: dict[str, Callable[[Any], Any]] = {}
     for name, function in functions.items():
         if not callable(function):
             raise ParameterError(
                 f"quantity {name!r} = {short_repr(function)} is not accepted: a function of a "
                 "recording"
             )
-    return dict(functions)
+        checked[name] = function
+    return checked
 
 
 def own_series(
@@ -70,7 +72,7 @@ def _series(name: str, function: Callable[[Any], object], recording: object) -> 
     return series
 
 
-def check_quantities(quantities: Any, times: tuple[int, ...]) -> None:
+def check_quantities(quantities: Mapping[str, object], times: tuple[int, ...]) -> None:
     """Refuse a user's quantities that are no series, and names that are taken."""
     check_names(quantities, "arrays")
     for name, values in quantities.items():

@@ -50,7 +50,7 @@ def save_animation(
     if write is None:
         names = ", ".join(writers)
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
-    rate: Any = fps
+    rate: object = fps
     if not isinstance(rate, int | float) or not _SLOWEST <= rate <= _FASTEST:
         accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
         raise ParameterError(f"fps = {short_repr(fps)} is not accepted: {accepted}")

@@ -213,7 +213,7 @@ def _stretch(count: int) -> float:
     return float(quantiles * math.sqrt(count / (count - 1)))
 
 
-def summarize(runs: "pd.DataFrame", by: list[str], quantities: list[str]) -> "pd.DataFrame":
+def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]) -> "pd.DataFrame":
     """Means and intervals of quantities in groups of runs.
 
     Parameters

@@ -1,6 +1,6 @@
 """Recordings of tracked boats from poses with gaps."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,15 +25,15 @@ def recording_of(
     time_s: ArrayLike,
     pose: ArrayLike,
     *,
-    pool: Any,
+    pool: str | tuple[float, float],
     hull: tuple[float, float] = (5.0, 0.5),
     velocity: ArrayLike | None = None,
     phase: ArrayLike | None = None,
     ids: Sequence[str] | None = None,
     leaders: Sequence[str] = (),
     target: str | Sequence[str] = "cw",
-    discs: Any = (),
-    walls: Any = (),
+    discs: Iterable[Sequence[float]] = (),
+    walls: Iterable[Sequence[float]] = (),
 ) -> Recording:
     """Return tracks of real boats, or of anything else with a heading, as a recording.
 
@@ -83,7 +83,8 @@ def recording_of(
     motion = with_gaps(own, "velocity")
     check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
     poses, motion = poses[:, order], motion[:, order]
-    fields = {**_hull(hull), "target": materialized(target), "discs": discs, "walls": walls}
+    fields = _hull(hull)
+    fields |= {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)

@@ -1,7 +1,6 @@
 """Headings in rad of columns in any convention; columns and units that cannot be are refused."""
 
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ _MOST_STRANGE = 0.01
 _AXIS_JUMP = 0.8
 
 
-def headings_of(table: Table) -> tuple[Floats, Any]:
+def headings_of(table: Table) -> tuple[Floats, NDArray[np.bool_]]:
     """Return headings in rad from x, y up, 0 without a column, and which exceed a full turn."""
     layout, columns = table.layout, table.layout.columns["heading"]
     strange = np.zeros(len(table.index), bool)

@@ -56,7 +56,7 @@ def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
     return isinstance(value, kind) and (kind is not str or inside or bool(value.strip()))
 
 
-def _check(name: str, kind: Any, value: Any) -> None:
+def _check(name: str, kind: object, value: object) -> None:
     """Refuse a value that is not of the annotated kind of a field."""
     if kind is Any or _is_of(kind, value):
         return
@@ -68,7 +68,7 @@ def _check(name: str, kind: Any, value: Any) -> None:
     raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {accepted}")
 
 
-def _plain(name: str, value: Any) -> Any:
+def _plain(name: str, value: object) -> object:
     """Return lists as tuples. Names of boats and of missing values may be written as numbers."""
     if not isinstance(value, list | tuple):
         return value

@@ -82,7 +82,7 @@ class BranchTraining:
         For unknown options and values that are not accepted.
     """
 
-    def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: Any) -> None:
+    def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: object) -> None:
         refuse_unknown(options, OPTIONS, "option of the training")
         first = branch_seed(as_int(seed, "seed"))
         self._core = _core.Trainer(parameters, options, seed, first)

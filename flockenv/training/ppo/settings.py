@@ -81,7 +81,7 @@ class TrainingSettings:
     def __post_init__(self) -> None:
         if self.pool not in [*_TIMES_S]:
             raise ParameterError(f"pool = {short_repr(self.pool)} is not accepted: wide or narrow")
-        hours: Any = self.flock_hours
+        hours: object = self.flock_hours
         if (
             isinstance(hours, bool)
             or not isinstance(hours, int | float)
@@ -179,7 +179,7 @@ class TrainingSettings:
         decisions = self.flock_hours * 3600.0 * venv.decisions_hz / venv.num_flocks
         return math.ceil(round(decisions, 6)) * venv.num_envs
 
-    def replace(self, **changes: Any) -> Self:
+    def replace(self, **changes: object) -> Self:
         """Return these settings with some fields changed."""
         return type(self).from_dict({**self.to_dict(), **changes})
 
