@@ -1,19 +1,20 @@
 """In how many runs of 27 boats overlaps are deep: ``python benches/overlap_rates.py``.
 
 Three scenes at dt = 0.1 s, 200 seeds each, with the default tolerance and with gaps that are solved
-once. The rates go to docs/speed_vs_error/overlap_rates.csv.
+once. The rates go to docs/speed_vs_error/overlap_rates.csv, or into another folder that is named.
 """
 
 import csv
 import io
 import math
+import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import flockenv
 from flockenv._io.atomic_write import write_text
 
-OUT = Path(__file__).parents[1] / "docs" / "speed_vs_error" / "overlap_rates.csv"
+OUT = Path(__file__).parents[1] / "docs" / "speed_vs_error"
 SEEDS = range(12_000, 12_200)
 #: Seconds of a run, pool and backward duration of the scenes.
 SCENES = {
@@ -59,12 +60,13 @@ def statistics(p: flockenv.FlockParameters, seed: int, seconds: float) -> flocke
 
 def main() -> None:
     """Measure, print and write."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUT
     text = io.StringIO()
     found = list(rows(SEEDS))
     writer = csv.DictWriter(text, list(found[0]), lineterminator="\n")
     writer.writeheader()
     writer.writerows(found)
-    write_text(OUT, text.getvalue())
+    write_text(folder / "overlap_rates.csv", text.getvalue())
     print(text.getvalue(), end="")
 
 

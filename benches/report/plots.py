@@ -29,6 +29,7 @@ SERIES = {
     "Box2D": (BOX2D, OKABE_ITO["black"], "v", True),
     "pymunk (Chipmunk)": (("pymunk", "10 iterations"), "#999999", "P", True),
     "MuJoCo": (("MuJoCo", "Newton"), "#B8A400", "X", True),
+    "Drake": (("Drake", "SAP"), "#7A4B2A", "p", True),
 }
 
 
@@ -130,7 +131,7 @@ def _order_of_schemes(m: Measurements) -> plt.Figure:
             label={"paper": "paper's scheme"}.get(scheme, scheme),
             **_line(*style, True),
         )
-    for name in ("rapier2d-f64", "Box2D", "pymunk (Chipmunk)", "MuJoCo"):
+    for name in ("rapier2d-f64", "Box2D", "pymunk (Chipmunk)", "MuJoCo", "Drake"):
         who, *style = SERIES[name]
         rows = _rows(m.slide, who)
         axis.plot(rows.dt_s, rows.slide_median_cm, label=name, **_line(*style))

@@ -23,6 +23,7 @@ SHOWN = {
     "Box2D": "Box2D (f32) 4 substeps / unit 10 cm",
     "pymunk": "pymunk 10 iterations",
     "MuJoCo": "MuJoCo Newton",
+    "Drake": "Drake SAP",
 }
 OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
 N_OURS = 6

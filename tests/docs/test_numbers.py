@@ -97,6 +97,14 @@ def speed() -> list[Number]:
             ".0f",
         ),
     ]
+    drake = {"engine, setting": "Drake SAP"}
+    found += [
+        Number(page, words, f"{SPEED}short_engines.csv", drake, column, "g")
+        for words, column in (
+            ("takes them: a step takes {} µs", "jam, µs"),
+            ("in the jam and {} µs in the cycle", "cycle, µs"),
+        )
+    ]
     engines = {"rapier2d-f64, `parallel`": "rapier2d-f64", "Box2D": "Box2D (f32)"}
     scenes = (("jam", 27, ".1f"), ("cycle", 27, ".0f"), ("jam", 1000, ".1f"))
     for words, engine in engines.items():
