@@ -28,7 +28,7 @@ NAME = "Drake"
 SETTINGS = {"SAP": None}
 # Thickness of the wall's boxes and height of everything, in cm.
 WALL_CM, HEIGHT_CM = 10.0, 4.0
-# Length of a box over that of its chord: the rest lies behind others. Boats catch on ends of shorter ones.
+# Length of a box over that of its chord: the rest lies behind others. Boats catch on shorter ones.
 CHORDS_LONG = 3.0
 # With 1 kg a boat and centimeters for meters; SAP takes stiffer contacts as rigid as it can solve.
 STIFFNESS = 1e12
