@@ -168,7 +168,16 @@ LOST_BELOW = "bw (s) at which mean Ψ_o falls through 0.3, "
 
 def section_4() -> list[Number]:
     page = "studies/section4/README.md"
+    bias = {"reading": "experiment, narrow, n = 27", "claim": "leaders against the bias"}
     return [
+        *interval(
+            page,
+            "2.0 s higher by {} with counter",
+            "studies/calibration/claims.csv",
+            bias,
+            form=".3f",
+        ),
+    ] + [
         Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
         for words, quantity in (
             ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),

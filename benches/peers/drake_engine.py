@@ -1,6 +1,6 @@
 """The scene in Drake: capsules on planar joints, boxes behind the outer wall's chords, a cylinder
-for the obstacle, point contacts without friction. The solver is SAP, stiff enough to regularize
-contacts by its own near-rigid limit."""
+for the obstacle, point contacts without friction. They are so stiff that the solver SAP falls
+back to its near-rigid limit."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SETTINGS = {"SAP": None}
 WALL_CM, HEIGHT_CM = 10.0, 4.0
 # Length of a box over that of its chord: the rest lies behind others. Boats catch on shorter ones.
 CHORDS_LONG = 3.0
-# With 1 kg a boat and centimeters for meters; SAP takes stiffer contacts as rigid as it can solve.
+# With 1 kg a boat and centimeters for meters: beyond what SAP takes as rigid.
 STIFFNESS = 1e12
 
 

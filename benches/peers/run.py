@@ -23,7 +23,7 @@ import pymunk_engine
 
 ENGINES = {module.NAME: module for module in (pymunk_engine, mujoco_engine, drake_engine)}
 STEP_S = 0.01
-# Twenty minutes of motion in twelve seeds would take it an hour of each core.
+# Twelve seeds of twenty minutes are 1.4 million steps of a millisecond: longer than all the rest.
 LEAVES_ORDER_OUT = {drake_engine.NAME}
 
 

@@ -1,6 +1,7 @@
-"""Constants of the experiment by a score card, in the reading of the pool that fits the most.
+"""Search constants of the experiment, and judge them by a score card.
 
-Hulls of 5 × 7.5 cm in the printed pool of 180 and 97 cm. CMA-ES (Hansen's covariance matrix
+The hulls of 5 × 7.5 cm in the printed pool of 180 and 97 cm fit most of what the paper says of
+its pool. CMA-ES (Hansen's covariance matrix
 adaptation, from the package cmaes) searches the constants, its finalists meet the runs of Section
 4, and the best of these is held against the preset `experiment`. Search, choice and judgment have
 seeds of their own. Written before any run:
@@ -41,8 +42,8 @@ FIXED: Row = {
     "current_gain": 0.0,
     "leader_speed_factor": 1.0,
 }
-"""Half the size in all directions; no current, as the one that was measured has inertia, which the
-model's has not; leaders as fast as the others (Section 2.6)."""
+"""Half the size in all directions; no current, whose inertia would be one more constant; leaders as
+fast as the others (Section 2.6)."""
 RANGES = {
     "speed_cm_s": (13.0, 22.0),
     "reverse_speed_cm_s": (3.0, 15.0),
@@ -131,14 +132,15 @@ def searched(options: Options) -> tuple[pd.DataFrame, Row]:
     search = CMA(mean=place, sigma=SPREAD, bounds=bounds, seed=1, population_size=size)
     rows: list[Row] = []
     table = pd.DataFrame()
-    for generation in range(2 if options.trial else GENERATIONS):
+    last = (2 if options.trial else GENERATIONS) - 1
+    for generation in range(last + 1):
         places = []
         while len(places) < size:
             place = search.ask()
             if is_fast_enough(constants := constants_at(place)):
                 rows.append(row(len(rows), constants, "search", generation))
                 places.append(place)
-        study = Study("calibration/search", lambda: rows, _search, adaptive=True)
+        study = Study("calibration/search", lambda: rows, _search, adaptive=generation < last)
         table = study.results(options)
         if len(table) != len(rows):
             raise StudyError("search.csv has other candidates: another version of cmaes drew them")

@@ -11,9 +11,9 @@ the time.
 2. **Opposed groups** add up if the interval of R less the sum of the groups' own responses lies
    within half of the response of the smaller group.
 3. **Response and fluctuation:** the factor is R of three leaders (of one in 27 in larger flocks)
-   per leader, over K(0) − K(t). It does not hang on the time (from 26 s on), the noise, the size or
-   the step if its ratio to that of 27 boats at 0.31 s and 0.05 s in the last window has an interval
-   within 2/3 to 3/2.
+   per leader, over K(0) − K(t). It does not depend on the time (from 26 s on), the noise, the size
+   or the step if its ratio to that of 27 boats at 0.31 s and 0.05 s in the last window has an
+   interval within 2/3 to 3/2.
 4. **Worth:** a learned leader moves more than one by the paper's law if R by the learned over R by
    the law is above 1.
 
