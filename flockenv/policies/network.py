@@ -22,7 +22,7 @@ from flockenv.policies.torch_module import read_module
 
 if TYPE_CHECKING:
     import gymnasium
-    from torch import nn
+    import torch
 
 FORMAT = "flockenv policy 2"
 """First entry of every network's file."""
@@ -138,7 +138,7 @@ class NetworkPolicy(RowPolicy):
     @classmethod
     def from_module(
         cls,
-        module: "nn.Module",
+        module: "torch.nn.Module",
         space: "gymnasium.Space[Any]",
         *,
         squashed: bool = False,
