@@ -112,6 +112,9 @@ class Study:
         Which rows a trial has, of those with two seeds.
     adaptive
         Whether rows follow from earlier results, so that the file may hold runs of other rows.
+    numbered
+        A column that numbers such rows: the file may hold other numbers, but not other rows of
+        these.
     """
 
     name: str
@@ -119,6 +122,7 @@ class Study:
     measure: Callable[[Row], Row]
     in_trial: Callable[[Row], bool] = lambda row: True
     adaptive: bool = False
+    numbered: str = ""
 
     def results(self, options: Options, optional: bool = False) -> pd.DataFrame:
         """Return one line per run of the design that has been made, in the design's order.
@@ -143,7 +147,12 @@ class Study:
         folder, _, name = self.name.partition("/")
         store = Store(existing(options.out / folder / "results" / f"{name}.csv"), columns)
         keys = {store.key(row): row for row in rows}
-        if not self.adaptive and (others := store.lines.keys() - keys.keys()):
+        others = store.lines.keys() - keys.keys()
+        if self.numbered:
+            place = columns.index(self.numbered)
+            numbers = {key[place] for key in keys}
+            others = {each for each in others if each[place] in numbers}
+        if others and (self.numbered or not self.adaptive):
             raise StudyError(
                 f"{store.path} is a store of another design: {len(others)} of its runs are not in "
                 f"this one, such as {', '.join(min(others))}; was it changed after its runs?"

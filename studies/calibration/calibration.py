@@ -1,10 +1,9 @@
 """Search constants of the experiment, and judge them by a score card.
 
 The hulls of 5 × 7.5 cm in the printed pool of 180 and 97 cm fit most of what the paper says of
-its pool. CMA-ES (Hansen's covariance matrix
-adaptation, from the package cmaes) searches the constants, its finalists meet the runs of Section
-4, and the best of these is held against the preset `experiment`. Search, choice and judgment have
-seeds of their own. Written before any run:
+its pool. CMA-ES (Hansen's covariance matrix adaptation, from the package cmaes) searches the
+constants, its finalists meet the runs of Section 4, and the best of these is held against the
+preset `experiment`. Search, choice and judgment have seeds of their own. Written before any run:
 
 - a candidate replaces `experiment` if its misfit is smaller by the whole interval on the seeds of
   judgment, at least five of the ten numbers that `experiment` misses are matched, and no number
@@ -15,6 +14,7 @@ seeds of their own. Written before any run:
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -85,6 +85,8 @@ EXPERIMENT, MIDDLE, BEFORE = -1, -2, -3
 """Numbers of the preset, of the middle of the search, and of what the earlier one chose."""
 NEEDED = 5
 _COUNTS = (1, 2, 4)
+_NUMBERED: Any = {"adaptive": True, "numbered": "candidate"}
+"""Another version of cmaes may draw other candidates, which must not take the place of these."""
 
 
 def constants_at(place: Sequence[float]) -> Row:
@@ -132,18 +134,17 @@ def searched(options: Options) -> tuple[pd.DataFrame, Row]:
     search = CMA(mean=place, sigma=SPREAD, bounds=bounds, seed=1, population_size=size)
     rows: list[Row] = []
     table = pd.DataFrame()
-    last = (2 if options.trial else GENERATIONS) - 1
-    for generation in range(last + 1):
+    for generation in range(2 if options.trial else GENERATIONS):
         places = []
         while len(places) < size:
             place = search.ask()
             if is_fast_enough(constants := constants_at(place)):
                 rows.append(row(len(rows), constants, "search", generation))
                 places.append(place)
-        study = Study("calibration/search", lambda: rows, _search, adaptive=generation < last)
+        study = Study("calibration/search", lambda: rows, _search, **_NUMBERED)
         table = study.results(options)
         if len(table) != len(rows):
-            raise StudyError("search.csv has other candidates: another version of cmaes drew them")
+            raise StudyError("search.csv lacks runs; without --no-runs they are made")
         values = (table[number.name].to_numpy(float) for number in CARD)
         table["misfit"] = misfit(values, MARGIN)
         search.tell(list(zip(places, table["misfit"].tail(size), strict=True)))
@@ -180,7 +181,7 @@ def measured(
         for seed in range(2 if options.trial else seeds)
     ]
     study = Study(
-        f"calibration/{use}", lambda: rows, lambda r: features(r, LEVELS_S, _COUNTS), adaptive=True
+        f"calibration/{use}", lambda: rows, lambda r: features(r, LEVELS_S, _COUNTS), **_NUMBERED
     )
     table = study.results(options)
     names = [name for name in table if name not in (*rows[0], VERSION)]
@@ -193,19 +194,24 @@ def preset_row() -> Row:
 
 
 def chosen(options: Options) -> Row:
-    """Return the finalist that mends the most misses and loses no match on the seeds of choice.
-
-    Among equals the one with the least misfit; if each loses a match, all are equals.
-    """
+    """Return the finalist that is worth the most on the seeds of choice."""
     rows = finalists(options)
     tables = measured(options, "choice", [*rows, preset_row()], CHOICE_SEEDS)
     theirs = card(tables[EXPERIMENT])
 
-    def worth(candidate: int) -> tuple[float, float]:
-        found = Judgment(card(tables[candidate]), theirs, unknown())
-        return -math.inf if found.lost() else len(found.mended()), -total(tables[candidate])
+    def of(candidate: Row) -> tuple[float, float]:
+        table = tables[candidate["candidate"]]
+        return worth(Judgment(card(table), theirs, unknown()), total(table))
 
-    return max(rows, key=lambda each: worth(each["candidate"]))
+    return max(rows, key=of)
+
+
+def worth(found: "Judgment", misfit: float) -> tuple[float, float]:
+    """Return how many misses a candidate mends, and its misfit, so that the larger is better.
+
+    One that loses a match comes after all others.
+    """
+    return -math.inf if found.lost() else len(found.mended()), -misfit
 
 
 def total(table: pd.DataFrame) -> float:

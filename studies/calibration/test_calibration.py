@@ -11,6 +11,7 @@ import pytest
 import flockenv
 from studies.calibration.score_card import CARD, Number
 from studies.claim import Interval
+from studies.study import Options, Row, StudyError
 
 
 def test_constants_lie_in_their_ranges_and_turn_as_they_say(script: ModuleType) -> None:
@@ -86,6 +87,72 @@ def test_the_rule_needs_all_three(script: ModuleType) -> None:
     assert not judgment(script, 10, lost=True).replaces()
     assert not judgment(script, 10, high=0.1).replaces()
     assert judgment(script, 10, lost=True).lost() == ["jams at 0 s"]
+
+
+def test_a_finalist_is_chosen_by_what_it_loses_mends_and_misfits(script: ModuleType) -> None:
+    best = script.worth(judgment(script, 5), 20.0)
+    assert best > script.worth(judgment(script, 5), 21.0)
+    assert best > script.worth(judgment(script, 4), 1.0)
+    assert best > script.worth(judgment(script, 9, lost=True), 1.0)
+    assert script.worth(judgment(script, 0), 99.0) > script.worth(judgment(script, 9, lost=True), 1)
+
+
+@pytest.fixture
+def short_search(
+    script: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> tuple[Options, list[int]]:
+    """A search of eight generations in which c0 alone counts, best at 1, and its runs so far."""
+    made = []
+
+    def away(row: Row) -> Row:
+        made.append(row["candidate"])
+        values = {number.name: inside(number)[0] for number in CARD}
+        return values | {"jams at 0 s": 0.55 - abs(math.log(row["c0"]))}
+
+    monkeypatch.setattr(script, "_search", away)
+    monkeypatch.setattr(script, "GENERATIONS", 8)
+    return Options(workers=1, out=tmp_path), made
+
+
+def test_a_search_comes_nearer_and_goes_on_where_it_was_stopped(
+    script: ModuleType, short_search: tuple[Options, list[int]]
+) -> None:
+    options, made = short_search
+    table, middle = script.searched(options)
+    assert abs(math.log(middle["c0"])) < 0.5 * abs(math.log(script.EARLIER[2]))
+    assert table.groupby("seed").size().tolist() == [script.POPULATION] * 8
+    assert sorted(made) == list(range(8 * script.POPULATION))
+    path = options.out / "calibration" / "results" / "search.csv"
+    lines = path.read_text("utf-8").splitlines(keepends=True)
+    path.write_text("".join(lines[:60]), "utf-8")
+    made.clear()
+    pd.testing.assert_frame_equal(script.searched(options)[0], table)
+    assert sorted(made) == list(range(59, 8 * script.POPULATION))
+
+
+def test_candidates_of_another_search_are_refused(
+    script: ModuleType, short_search: tuple[Options, list[int]]
+) -> None:
+    options, _ = short_search
+    script.searched(options)
+    path = options.out / "calibration" / "results" / "search.csv"
+    other = path.read_text("utf-8").replace(",2.5,2.37,", ",2.5,2.38,", 1)
+    path.write_text(other, "utf-8")
+    for runs in (True, False):
+        with pytest.raises(StudyError, match="a store of another design: 1 of its runs"):
+            script.searched(Options(workers=1, out=options.out, runs=runs))
+    assert path.read_text("utf-8") == other
+
+
+def test_a_search_without_all_of_its_runs_is_not_judged(
+    script: ModuleType, short_search: tuple[Options, list[int]]
+) -> None:
+    options, _ = short_search
+    script.searched(options)
+    path = options.out / "calibration" / "results" / "search.csv"
+    path.write_text("".join(path.read_text("utf-8").splitlines(keepends=True)[:60]), "utf-8")
+    with pytest.raises(StudyError, match="lacks runs"):
+        script.searched(Options(out=options.out, runs=False))
 
 
 def test_the_page_has_the_numbers_of_both_cards() -> None:

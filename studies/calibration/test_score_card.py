@@ -90,10 +90,17 @@ def test_a_misfit_counts_tolerances_outside_of_the_range(script: ModuleType) -> 
     for value, expected in ((0.5, 4.0), (0.3, 0.0), (0.01, 0.01), (0.9, script.WORST)):
         changed = [*inside[:place], value, *inside[place + 1 :]]
         assert script.misfit(changed) == pytest.approx(expected)
-        # Half a tolerance inside of the ends of its range, 0.02 to 0.3, all is well.
-        away = BY_NAME["jams at 0.4 s"].away(value, 0.5)
-        assert away == pytest.approx({0.5: 2.5, 0.3: 0.5, 0.01: -0.6, 0.9: 6.5}[value])
     assert script.misfit([math.nan, *inside[1:]]) == script.WORST
+
+
+@pytest.mark.parametrize(("value", "expected"), [(0.5, 6.25), (0.3, 0.25), (0.01, 0.36), (0.25, 0)])
+def test_a_margin_narrows_the_range_at_both_ends(
+    script: ModuleType, value: float, expected: float
+) -> None:
+    values = [max(number.least, min(number.most, 1.0)) for number in CARD]
+    place = list(BY_NAME).index("jams at 0.4 s")
+    within, moved = ([*values[:place], each, *values[place + 1 :]] for each in (0.16, value))
+    assert script.misfit(moved, 0.5) - script.misfit(within, 0.5) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
