@@ -224,8 +224,8 @@ ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -l
 .PHONY: $(CORE)
 endif
 
-# This crate compiles in four parts here, on all cores: two thirds of the time, 3 % more instructions, the same bits. Wheels
-# and measurements have one part.
+# This crate compiles in four parts here, on all cores: two thirds of the time, 3 % more instructions, the same bits. Wheels,
+# pinned counts and the comparison with engines have one part.
 $(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/venv
 	VIRTUAL_ENV="$(CURDIR)/.venv" PATH="$(CURDIR)/$(BIN):$$PATH" CARGO_PROFILE_RELEASE_CODEGEN_UNITS=4 \
 		maturin develop --release --locked --uv $(CODEGEN)
