@@ -96,6 +96,11 @@ _STARTS = {"one-jam": one_jam, "rotating": rotating, HALF: half_and_half}
 
 def measure(row: Row) -> Row:
     """Follow a flock, and return the means of each hour: shares in jams, |m|, jams."""
+    return hours(follow(row)[:, :5], row["start"] == "rotating")
+
+
+def follow(row: Row) -> np.ndarray:
+    """Return samples of a run, shape (t, 6): `NAMES`."""
     outer = outer_radius_cm(row["n_boats"], row["coverage"])
     parameters = flock(row, bw_s=0.0, pool=(outer, outer - row["width_cm"]))
     boats = _STARTS[row["start"]](parameters, FIRST_SEED + row["seed"])
@@ -106,11 +111,17 @@ def measure(row: Row) -> Row:
         sizes = jam_sizes(parameters, pose[None])[0]
         # The hull has two equal ends: turned around, a boat that faces inward faces outward.
         inward = jam_sizes(parameters, (pose + _TURNED)[None])[0].sum()
+        slow = (np.hypot(*boats.velocity[:, :2].T) < parameters.speed_cm_s / 2.0).sum()
         m = abs(order.psi_o * math.sin(order.phi_o))
-        counts = np.array([sizes.sum(), sizes.max(initial=0), inward]) / row["n_boats"]
-        samples.append((m, *counts, len(sizes)))
+        counts = np.array([sizes.sum(), sizes.max(initial=0), inward, slow]) / row["n_boats"]
+        samples.append((m, *counts[:3], len(sizes), counts[3]))
         boats.advance(EVERY_S)
-    return hours(np.array(samples), row["start"] == "rotating")
+    return np.array(samples)
+
+
+NAMES = ("abs_m", "in_jams", "largest", "inward", "jams", "slow")
+"""Columns of the samples: |m|, shares of the boats, the number of jams, and the share of boats
+slower than half of their full speed."""
 
 
 def hours(samples: np.ndarray, rotates: bool) -> Row:
@@ -119,9 +130,8 @@ def hours(samples: np.ndarray, rotates: bool) -> Row:
     per_hour = round(3600.0 / EVERY_S)
     for hour in range(HOURS):
         own = samples[hour * per_hour : (hour + 1) * per_hour]
-        means = own.mean(axis=0) if len(own) else np.full(5, math.nan)
-        names = ("abs_m", "in_jams", "largest", "inward", "jams")
-        found |= {f"{name}_{hour + 1}": each for name, each in zip(names, means, strict=True)}
+        means = own.mean(axis=0) if len(own) else np.full(samples.shape[1], math.nan)
+        found |= {f"{name}_{hour + 1}": each for name, each in zip(NAMES, means, strict=False)}
     minutes = round(600.0 / EVERY_S)
     if len(samples) < minutes:
         return found | {"changed_min": math.nan}
@@ -154,13 +164,20 @@ def outside(table: pd.DataFrame, hour: int = HOURS) -> pd.Series:
 def judge(table: pd.DataFrame) -> Claims:
     """Judge the rule at each noise and size."""
     claims = Claims("5.2, left open", "", ours=True)
-    found = table.assign(outside=outside(table), before=outside(table, HOURS - 1))
-    found = found[found["coverage"].isin(DENSE)].dropna(subset="outside")
-    for c4, noise in found.groupby("c4", sort=False):
+    for c4, noise in table.groupby("c4", sort=False):
         claims.reading = f"leapfrog, white c4 = {c4:g}, dt = 0.1 s, bw = 0, ring of {WIDTH_CM:g} cm"
-        sizes = dict(iter(noise.groupby("n_boats")))
-        for n, runs in sizes.items():
-            dense = [runs.loc[runs["coverage"] == each, ["outside"]] for each in DENSE]
+        judge_noise(claims, noise)
+    return claims
+
+
+def judge_noise(claims: Claims, noise: pd.DataFrame) -> None:
+    """Judge the rule at each size of a noise."""
+    found = noise.assign(outside=outside(noise), before=outside(noise, HOURS - 1))
+    found = found[found["coverage"].isin(DENSE)].dropna(subset="outside")
+    sizes = dict(iter(found.groupby("n_boats")))
+    for n, runs in sizes.items():
+        dense = [runs.loc[runs["coverage"] == each, ["outside"]] for each in DENSE]
+        if all(map(len, dense)):
             claims.add(
                 "Boats that are added join the jams",
                 f"boats outside of jams per boat added, coverage {DENSE[0]:g} to {DENSE[1]:g}",
@@ -169,37 +186,34 @@ def judge(table: pd.DataFrame) -> Claims:
                 most=ADDED,
                 n=f"{n:g}",
             )
-            for coverage, own in runs.groupby("coverage"):
-                starts = dict(iter(own.groupby("start")))
-                for start in ("rotating", HALF):
-                    pair = [
-                        starts[each][["outside"]] for each in ("one-jam", start) if each in starts
-                    ]
-                    _agree(
-                        claims,
-                        "All starts end with as many boats outside of jams",
-                        f"{start} minus one-jam, coverage {coverage:g}",
-                        pair,
-                        n,
-                    )
-                claims.add(
-                    "The boats outside of jams do not change any more",
-                    f"coverage outside, last hour minus the one before, coverage {coverage:g}",
-                    mean(own["outside"] - own["before"]),
-                    least=-AGREE,
-                    most=AGREE,
-                    n=f"{n:g}",
-                )
-                twice = sizes.get(2.0 * n, runs.iloc[:0])
-                larger = twice[twice["coverage"] == coverage]
+        for coverage, own in runs.groupby("coverage"):
+            starts = dict(iter(own.groupby("start")))
+            for start in ("rotating", HALF):
+                pair = [starts[each][["outside"]] for each in ("one-jam", start) if each in starts]
                 _agree(
                     claims,
-                    "Flocks of twice the size have as many boats outside of jams",
-                    f"{2 * n:g} minus {n:g} boats, coverage {coverage:g}",
-                    [own[["outside"]], larger[["outside"]]],
+                    "All starts end with as many boats outside of jams",
+                    f"{start} minus one-jam, coverage {coverage:g}",
+                    pair,
                     n,
                 )
-    return claims
+            claims.add(
+                "The boats outside of jams do not change any more",
+                f"coverage outside, last hour minus the one before, coverage {coverage:g}",
+                mean(own["outside"] - own["before"]),
+                least=-AGREE,
+                most=AGREE,
+                n=f"{n:g}",
+            )
+            twice = sizes.get(2.0 * n, runs.iloc[:0])
+            larger = twice[twice["coverage"] == coverage]
+            _agree(
+                claims,
+                "Flocks of twice the size have as many boats outside of jams",
+                f"{2 * n:g} minus {n:g} boats, coverage {coverage:g}",
+                [own[["outside"]], larger[["outside"]]],
+                n,
+            )
 
 
 def _agree(claims: Claims, claim: str, quantity: str, pair: list[pd.DataFrame], n: float) -> None:
