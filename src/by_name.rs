@@ -40,12 +40,12 @@ impl<'de, T: ByName> Visitor<'de> for Fields<T> {
     }
 }
 
-/// A struct from its fields by name.
+/// Deserializes a struct from its fields by name.
 pub(crate) fn fields<'de, T: ByName, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
     from.deserialize_map(Fields(PhantomData))
 }
 
-/// Writes values by name.
+/// Serializes pairs of a name and a value as a map.
 pub(crate) fn write<S: Serializer, T: Serialize>(
     values: impl IntoIterator<Item = (&'static str, T)>,
     to: S,

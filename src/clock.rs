@@ -21,12 +21,12 @@ pub fn seconds(ticks: Ticks) -> f64 {
     ticks as f64 / TICKS_PER_SECOND
 }
 
-/// Number of steps in a duration (s), which must be a whole number of them.
+/// Number of steps in a duration (s). The duration must be a whole number of steps.
 ///
 /// `rate_hz`: steps per second; `steps`: their name in the message.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] that names the durations nearest to a `duration_s` that is no whole number of steps.
+/// [`FlockError::Parameter`] if `duration_s` is not a whole number of steps. It names the nearest durations that are.
 pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &str) -> Result<u32> {
     let refuse = |but: String| {
         let accepted = format!("a whole number of {steps} of {} s{but}", 1.0 / rate_hz);

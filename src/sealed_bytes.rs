@@ -1,7 +1,7 @@
-//! States as bytes that reveal damage: 8 bytes magic, the last of which is the format's version, 8 bytes checksum
-//! (CRC-32, little-endian), then the state in postcard encoding. Parameters, options, reward terms, blocks and
-//! quantities, which tables declare, are stored by name. The rest is stored by position, so that the version rises with
-//! every change of it.
+//! States as bytes with a checksum: 8 bytes magic, the last of which is the format's version, 8 bytes checksum (CRC-32,
+//! little-endian), then the state in postcard encoding. Parameters, options, reward terms, blocks and quantities, which
+//! tables declare, are stored by name. The rest is stored by position, so that the version rises with every change of
+//! it.
 
 use crate::error::{FlockError, Result};
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
 /// The state in bytes that [`seal`] made.
 ///
 /// # Errors
-/// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed state of this kind.
+/// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged state of this kind.
 pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result<T> {
     let refuse = |why: &str| Err(FlockError::Snapshot(why.to_owned()));
     let Some((found, rest)) = bytes.split_first_chunk::<8>() else {
@@ -68,7 +68,7 @@ pub(crate) fn refused<E: serde::de::Error>(why: String) -> E {
     error
 }
 
-/// It detects damage, but is no protection against intent.
+/// The CRC-32 checksum. It detects accidental damage, but not tampering.
 fn crc_32(bytes: &[u8]) -> u64 {
     u64::from(crc32fast::hash(bytes))
 }

@@ -26,10 +26,10 @@ named_choice! {
 pub(crate) const HIGH_ORDER: f64 = 0.8;
 /// Ψ_o below this is low: about the middle between an ordered and a disordered flock of 27.
 pub(crate) const LOW_ORDER: f64 = 0.5;
-/// Mean velocities above this share of the preferred forward speed count as collective motion. In the analysis window a
-/// boat that started from rest moves at 0.5 to 0.9 of that speed, a jammed one below 0.1.
+/// Mean velocities above this fraction of the preferred forward speed count as collective motion. In the analysis
+/// window a boat that started from rest moves at 0.5 to 0.9 of that speed, a jammed one below 0.1.
 pub(crate) const MOVING: f64 = 0.25;
-/// A cluster that holds at least this part of the boats is the flock.
+/// Fraction of the boats that a cluster must hold to count as the whole flock.
 pub(crate) const CLUSTERED: f64 = 0.75;
 
 impl CollectiveState {

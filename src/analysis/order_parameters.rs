@@ -34,7 +34,7 @@ impl OrderParameters {
         Self::from_hulls(&hulls, velocities)
     }
 
-    /// The same for poses with known direction vectors.
+    /// Order parameters of boats whose direction vectors are known (two slices of equal length).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.

@@ -1,6 +1,6 @@
-//! The table of quantities: all that is measured of a flock at one time, each with its name, unit, meaning
-//! and formula. Recordings, tables of sweeps, the command line, episode summaries and the replay page
-//! iterate over it.
+//! The table of the quantities that are measured at one time, each with its name, unit, meaning and
+//! formula. Recordings, tables of sweeps, the command line, episode summaries and the replay page iterate
+//! over it.
 
 use super::OrderParameters;
 use super::structure::{largest_cluster, on_outer_wall, polarization};
@@ -9,14 +9,14 @@ use crate::geometry::{HullPose, LapFrame, Pose, Vec2, Velocity, cross};
 use crate::parameters::{FlockParameters, Target, Value, named_fields};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Boats at one time, with the sums that several quantities share.
+/// Boats at one time, with the order parameters that several quantities share.
 #[derive(Debug, Clone, Copy)]
 pub struct Boats<'a> {
     /// Their hulls.
     pub hulls: &'a [HullPose],
     /// Their velocities.
     pub velocities: &'a [Velocity],
-    /// Section 3.2's order parameters of them.
+    /// Their order parameters (Section 3.2).
     pub order: OrderParameters,
 }
 
@@ -167,7 +167,7 @@ pub const QUANTITIES: &[Quantity] = &[
 ];
 
 impl Quantity {
-    /// Its declaration by name.
+    /// The fields of the declaration by name.
     pub fn named(&self) -> Value {
         let kind = match self.formula {
             Formula::Recorded(_) => "recorded",
@@ -254,7 +254,7 @@ pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded>
     Ok(values)
 }
 
-/// The entry of a name.
+/// The quantity with this name.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] lists the known names.

@@ -4,8 +4,8 @@ use super::quantities::{RECORDED, Recorded, recorded};
 use crate::error::Result;
 use crate::geometry::{HullPose, Pose, Velocity};
 
-/// Rows of three numbers, poses or velocities, of equally many boats at each time. Rows with a number that is not
-/// finite stand for missing boats.
+/// Poses or velocities of the same boats at many times. Each row has three numbers. A row with a number that is not
+/// finite stands for a missing boat.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
     rows: Vec<Pose>,
@@ -13,7 +13,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// From rows [x, y, heading], or [x velocity, y velocity, angular velocity], time after time.
+    /// Samples from rows of [x, y, heading] or [x velocity, y velocity, angular velocity], in order of time.
     pub fn new(rows: Vec<Pose>, boats: usize) -> Self {
         Self {
             rows,
@@ -31,19 +31,19 @@ impl Samples {
         &self.rows
     }
 
-    /// The rows of one time after another.
+    /// The rows of each time, in order of time.
     pub fn by_time(&self) -> impl Iterator<Item = &[Pose]> {
         self.rows.chunks_exact(self.boats)
     }
 
-    /// The boats that are present, one time after another.
+    /// The rows of the boats that are present at each time, in order of time.
     pub fn present(&self) -> impl Iterator<Item = Vec<Pose>> {
         self.by_time()
             .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())
     }
 
-    /// The recorded quantities, at each time, of the boats that have both a pose and a velocity; NaN if no boat
-    /// has.
+    /// The recorded quantities at each time, over the boats that have both a pose and a velocity; NaN if there are
+    /// none.
     ///
     /// # Errors
     /// Those of [`recorded`].
@@ -66,12 +66,13 @@ impl Samples {
             .collect()
     }
 
-    /// Velocities from poses, and the number of steps that were too fast. `times_s` holds the time of each row: boats
-    /// may have clocks of their own.
+    /// Velocities from poses, and the number of steps that were too fast. `times_s` holds the time of each row: each
+    /// boat may have its own clock.
     ///
-    /// If a boat is seen before and after a time, both differences are weighted by each other's step, which is exact
-    /// for a constant acceleration. At the ends of a track differences are one-sided. Steps longer than `longest_s` or
-    /// faster than `fastest_cm_s` give no difference; the fast ones are counted. Rows without a difference are NaN.
+    /// If a boat is seen before and after a time, its velocity is the mean of both differences, each weighted by the
+    /// other one's time step. This is exact for a constant acceleration. At the ends of a track differences are
+    /// one-sided. Steps longer than `longest_s` or faster than `fastest_cm_s` give no difference; the fast ones are
+    /// counted. Rows without a difference are NaN.
     pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
         let (mut broken, rows) = (0, &self.rows);
         let mut step = |row: usize| {

@@ -15,14 +15,15 @@ pub const JAM_BOATS: usize = 3;
 /// Largest angle in rad between a jammed boat's heading and the outward direction.
 pub const JAM_ANGLE: f64 = PI / 3.0;
 
-/// Part of the boats that the largest cluster holds: boats joined by gaps below [`IN_TOUCH_CM`]; NaN without boats.
+/// Fraction of the boats in the largest cluster; NaN without boats. Boats with a gap below [`IN_TOUCH_CM`] are in
+/// the same cluster.
 pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let largest = cluster_sizes(poses, parameters).into_iter().max();
     largest.unwrap_or(0) as f64 / poses.len() as f64
 }
 
-/// Sizes of the jams, in no particular order. A jam has at least [`JAM_BOATS`], which face outward
-/// within [`JAM_ANGLE`] and are joined by gaps below [`IN_TOUCH_CM`].
+/// Sizes of the jams, in no particular order. A jam has at least [`JAM_BOATS`] boats that face outward within
+/// [`JAM_ANGLE`] and are joined by gaps below [`IN_TOUCH_CM`].
 pub fn jam_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     let outward = |pose: &&Pose| orientation(pose).abs() <= JAM_ANGLE;
     let facing: Vec<Pose> = poses.iter().filter(outward).copied().collect();
@@ -50,7 +51,7 @@ fn cluster_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
     sizes
 }
 
-/// Part of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN without boats.
+/// Fraction of the boats within [`IN_TOUCH_CM`] of the outer wall; NaN without boats.
 pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     let hull = Hull::new(parameters);
     let radius = parameters.pool.outer_radius_cm;

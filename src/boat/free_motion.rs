@@ -133,10 +133,10 @@ impl FreeMotion {
         driven.clamp(-most, most)
     }
 
-    /// Second order over `dt` with drag, heading drive and angular damping centered in the substep:
-    /// Crank–Nicolson, linearized once for the angular velocity. `contact_change` is the change of
-    /// velocity that persistent contacts are expected to make in the substep, so that the heading's drive u·ẋ is
-    /// centered, too, while a boat presses against something.
+    /// The velocity after `dt`, to second order: drag, heading drive and angular damping are centered in the substep
+    /// (Crank–Nicolson, linearized once for the angular velocity). `contact_change` is the change of velocity that
+    /// persistent contacts are expected to make in the substep. It keeps the heading drive u·ẋ centered while a boat
+    /// presses against something.
     ///
     /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
     /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive

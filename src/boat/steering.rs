@@ -21,9 +21,9 @@ pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
 /// State of a leader that a steering law reads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
-    /// Angle in rad, not wrapped, by which the leader must turn counter-clockwise to reach its desired heading.
+    /// Angle in rad by which the leader must turn counter-clockwise to reach its desired heading; not wrapped.
     pub misalignment: f64,
-    /// Velocity along the heading, in any unit: its sign counts.
+    /// Velocity along the heading, in any unit: only its sign matters.
     pub forward: f64,
     /// Angular velocity in rad/s, counter-clockwise.
     pub angular: f64,
@@ -81,10 +81,10 @@ impl DampedLaw {
         ),
     ];
 
-    /// The tuned law of a pool, for a setting that needs it.
+    /// The tuned law of a pool. The error names `setting` and its `value`, which need the law.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] names setting and value if the law has not been tuned in the pool.
+    /// [`FlockError::Parameter`] if the law has not been tuned in the pool.
     pub fn tuned(setting: &'static str, value: &str, pool: Option<&str>) -> Result<Self> {
         let mut tuned = Self::TUNED.into_iter();
         let found = tuned.find(|(name, _)| Some(*name) == pool);

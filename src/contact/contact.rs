@@ -54,7 +54,8 @@ impl Contact {
         }
     }
 
-    /// Whether the other side has ends. Then a contact may pass from one end of the boat to the other without moving.
+    /// Whether the other side has ends. If it has, a contact may pass from one end of the boat to the other although
+    /// the point of contact does not move.
     #[inline]
     pub(super) fn has_ends(&self) -> bool {
         matches!(self.partner, Partner::Boat(_) | Partner::Obstacle(_))

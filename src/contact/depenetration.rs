@@ -57,8 +57,8 @@ impl Depenetration {
     }
 
     /// Displaces poses until no overlap exceeds `allowed` (cm, positive), then fills `found` with the contacts nearer
-    /// than `margin`. The caller knows of an overlap that exceeds it. Contacts include all overlaps, which decide whether
-    /// another pass is needed.
+    /// than `margin`. At least one overlap exceeds `allowed` at first. The contacts include all overlaps, so they show
+    /// whether another pass is needed.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -85,7 +85,7 @@ impl Depenetration {
         }
     }
 
-    /// One pass over the present contacts.
+    /// Moves poses once, to open the overlaps of the present contacts.
     fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
         self.rest.resize(poses.len(), Velocity::default());
@@ -117,12 +117,12 @@ impl Depenetration {
     }
 }
 
-/// Distance in cm within which hulls take part, so that they are not pushed into each other.
+/// Gaps below this, in cm, take part in a pass, so that it pushes no hull into another one.
 fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }
 
-/// The smallest gap in cm, infinite for none.
+/// The smallest gap in cm; infinite without contacts.
 pub(super) fn smallest_gap(contacts: &[Contact]) -> f64 {
     contacts.iter().fold(f64::INFINITY, |smallest, contact| {
         smaller(smallest, contact.gap.gap)

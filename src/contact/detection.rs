@@ -10,13 +10,14 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
-/// If the fastest boat moves by more than this part of a radius in a substep, finding the contacts that close saves work.
+/// If the fastest boat moves by more than this fraction of a radius in a substep, it saves work to skip the contacts
+/// that stay open.
 const LONG: f64 = 0.1;
-/// Most pairs per boat in a substep in which boats move by more than half their length: enough for all within a few
-/// lengths in the densest flock. With more, linearized gaps mean nothing, and memory and time grow with the square of
-/// the number of boats.
+/// Largest number of pairs per boat in a substep in which boats move by more than half their length. It is enough for
+/// all boats within a few lengths in the densest flock. With more pairs, linearized gaps mean nothing, and memory and
+/// time grow with the square of the number of boats.
 const MOST_PAIRS_A_BOAT: usize = 32;
-/// Substeps are not cut below this part of `dt_s` because too many boats are within reach.
+/// A substep in which too many boats are within reach is cut, but not below this fraction of `dt_s`.
 const SHORTEST_SHARE: f64 = 1e-3;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
@@ -28,11 +29,11 @@ pub struct ContactDetector {
     pub(crate) neighbors: NeighborList,
     pub(super) obstacles: NearObstacles,
     skin: f64,
-    /// Substeps below this length, in s, are not cut because of what boats can reach in them.
+    /// A substep in which too many boats are within reach is cut, but not below this length in s.
     shortest_s: f64,
     /// Whether detection stopped because boats reach too many others in this substep.
     is_crowded: bool,
-    /// Reach of each boat in cm: two boats count if they are nearer than the sum of theirs.
+    /// Reach of each boat in cm. Two boats may touch if their gap is smaller than the sum of their reaches.
     reaches: Vec<f64>,
     /// Distance that the fastest boat moves in this substep, in cm.
     pub(super) farthest: f64,
@@ -58,7 +59,7 @@ impl ContactDetector {
         }
     }
 
-    /// Sets the length of a whole substep in s, for which contacts are found from now on.
+    /// Sets the length in s of a whole substep, one that is not cut.
     pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
         self.shortest_s = SHORTEST_SHARE * dt_s;
     }
@@ -81,8 +82,8 @@ impl ContactDetector {
         fastest
     }
 
-    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, even if contacts add the
-    /// speed of the fastest boat to theirs. Returns a margin that includes all of them.
+    /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, even if contacts speed
+    /// up each boat by the speed of the fastest one. Returns a margin that includes all these contacts.
     pub fn detect_moving(
         &mut self,
         boats: &[HullPose],
@@ -117,7 +118,7 @@ impl ContactDetector {
         margin
     }
 
-    /// Whether boats moved far enough in the last detected substep for skipping contacts to pay.
+    /// Whether boats move so far in this substep that it saves work to skip contacts.
     pub(super) fn is_far(&self) -> bool {
         self.farthest > LONG * self.hull.radius
     }
@@ -155,7 +156,7 @@ impl ContactDetector {
         self.detect_within_reach(boats, margin, contacts);
     }
 
-    /// The same with known reaches, each at most half the margin.
+    /// As [`Self::detect`], with the reaches that `self.reaches` holds, each at most half the margin.
     fn detect_within_reach(
         &mut self,
         boats: &[HullPose],
@@ -200,15 +201,15 @@ impl ContactDetector {
     }
 
     /// Whether boats move too far for one substep of `dt` at these velocities: they reach too many others, or might
-    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot; once through, no gap
-    /// would show on which side it was.
+    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot; once it is through,
+    /// no gap shows which side it came from.
     pub(crate) fn moves_too_far(&self, velocities: &[Velocity], dt: f64) -> bool {
         let farthest = 0.5 * self.hull.radius;
         self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
-    /// Squared distances from the pool's center at which no wall is nearer than `margin`: none if the walls' margins
-    /// meet.
+    /// Squared distances from the pool's center at which no wall is nearer than `margin`; an empty range if the margins
+    /// of the two walls meet.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
         let square = |distance: f64| distance.max(0.0) * distance;
         let reach = self.hull.reach() + margin;
@@ -280,7 +281,7 @@ impl ContactDetector {
         }
     }
 
-    /// The smaller gap of a contact's boat and another boat or an obstacle at other poses.
+    /// The smaller of the two gaps between a contact's boat and its partner, a boat or an obstacle, at other poses.
     #[inline]
     pub(super) fn smallest_gap_at(&self, contact: &Contact, boats: &[HullPose]) -> f64 {
         let boat = &boats[contact.boat as usize];
@@ -293,8 +294,8 @@ impl ContactDetector {
         }
     }
 
-    /// The touches of a contact's boat with another boat or an obstacle at other poses, at its stern's and at its bow's
-    /// group of ends. Crossed cores count for both.
+    /// The two touches between a contact's boat and its partner, a boat or an obstacle, at other poses: first that of
+    /// the stern's group of ends, then that of the bow's. Crossed cores count for both.
     #[inline]
     pub(super) fn touches_at(&self, contact: &Contact, boats: &[HullPose]) -> [EndTouch; 2] {
         let boat = &boats[contact.boat as usize];

@@ -1,4 +1,4 @@
-//! Islands: boats joined by contacts. Each is a contact problem of its own.
+//! Islands: boats joined by contacts. Each is a separate contact problem.
 
 use super::{Contact, Partner};
 
@@ -19,7 +19,8 @@ pub struct Islands {
 const NONE: u32 = u32::MAX;
 
 impl Islands {
-    /// Finds the islands of a flock of `boats` boats, numbered in the order of detection. Walls join nothing.
+    /// Finds the islands of a flock of `boats` boats, numbered in the order of detection. Two boats at the
+    /// same wall are not joined.
     pub fn find(&mut self, boats: usize, contacts: &[Contact]) {
         self.join(boats, contacts);
         // First the sizes, then the members: a counting sort by island.
@@ -78,10 +79,10 @@ impl Islands {
     }
 }
 
-/// Joins the sets of two boats. A set's first boat is the last of its parents.
+/// Joins the sets of two boats. The root of a set is its first boat.
 #[inline]
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
-    // For example for the second touch of two boats.
+    // This happens, for example, if two boats touch twice.
     if parent[a as usize] == parent[b as usize] {
         return;
     }

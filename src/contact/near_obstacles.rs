@@ -11,7 +11,7 @@ pub(super) struct NearObstacles {
     /// Start of each boat's obstacles in `near`.
     starts: Vec<u32>,
     near: Vec<u32>,
-    /// Number of the neighbor list's build from which it was made.
+    /// The neighbor list's count of builds when these lists were made.
     build: u64,
 }
 
@@ -25,8 +25,8 @@ impl NearObstacles {
         }
     }
 
-    /// Follows a neighbor list. The neighbor list holds all pairs of centers up to its cutoff apart. An obstacle does
-    /// not move, so half the cutoff is enough for it.
+    /// Rebuilds the lists if the neighbor list was rebuilt. Two moving boats are listed within its cutoff. An obstacle
+    /// does not move, so half the cutoff is enough for it.
     pub(super) fn update(&mut self, neighbors: &NeighborList) {
         if self.obstacles.is_empty() || self.build == neighbors.builds() {
             return;

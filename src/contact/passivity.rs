@@ -1,16 +1,16 @@
 //! Frictionless plastic contacts never add energy to the boats that they join, except when they open an overlap.
 //!
 //! If biases follow from the present gaps alone, every solution obeys this, since rest satisfies the constraints.
-//! Biases may also look ahead along a curve, for a flank on the inner wall or by relinearization. These demand too much
-//! if a boat turns far in one substep: the contact has then passed from one end of the hull to the other, and pushing
-//! as at the substep's start opens nothing.
+//! Biases may also look ahead along a curve, for a flank on the inner wall or by relinearization. Such biases demand
+//! too much if a boat turns far in one substep: the contact then passes from one end of the hull to the other, and a
+//! push at the first end opens nothing.
 
 use super::ContactProblem;
 use super::solver::ContactSolver;
 use super::velocity_bias::VelocityBias;
 
-/// Part of an island's energy that biases along a curve may add. Normally they add a share of third order in dt: in
-/// wide and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of 1.8 million islands.
+/// Fraction of an island's energy that biases along a curve may add. Normally they add a fraction of third order in
+/// dt: in `wide` and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
 /// Whether contacts might drive a boat, checked quickly: an impulse λ at a contact that opens at the speed
@@ -40,7 +40,7 @@ fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> boo
     pairs.any(|(a, b)| a.boat == b.boat && a.gap.normal.dot(&b.gap.normal) < 0.0)
 }
 
-/// Finder of islands that contacts drive, with scratch space.
+/// Finds the islands whose contacts drive boats.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passivity {
     counted: Vec<bool>,

@@ -13,7 +13,7 @@ pub(super) struct PredictedPoses {
     is_current: bool,
     /// Largest motion of each boat's hull, in cm.
     displacements: Vec<f64>,
-    /// Boats to be moved again, and for each boat whether it is one of them.
+    /// Boats whose prediction is repeated, and for each boat whether it is one of them.
     listed: Vec<u32>,
     is_listed: Vec<bool>,
 }
@@ -34,7 +34,7 @@ impl PredictedPoses {
         self.is_current = true;
     }
 
-    /// Predicts the poses of the boats of some islands, given by their contacts, again.
+    /// Repeats the prediction for the boats of some islands. Each island is given as the list of its contacts.
     pub(super) fn move_islands<'a>(
         &mut self,
         contacts: &[Contact],

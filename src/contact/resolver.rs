@@ -24,7 +24,7 @@ pub(crate) enum NotTaken {
     /// It leaves overlaps, would drive boats, or moves a boat too far: a shorter one has to be tried. Deep overlaps may
     /// have been undone, but no time has passed.
     TooLong,
-    /// Its contacts are too much work, and a shorter substep would not help; the motion is to be thrown away.
+    /// Its contacts are too much work, and a shorter substep would not help; the motion must be discarded.
     Exhausted,
 }
 
@@ -40,19 +40,19 @@ pub(crate) struct Divisibility {
 /// Outcome of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Solution {
-    /// Every gap holds.
+    /// No gap closes beyond the tolerance.
     Solved,
-    /// It was too much work, and there is no solution.
+    /// The work budget was spent before a solution was found.
     Exhausted,
     /// Contacts overlap at the substep's end by more than the tolerance.
     Overlapping,
-    /// Skipped contacts do.
+    /// Skipped contacts overlap at the substep's end by more than the tolerance.
     Closing,
     /// Contacts would add energy to boats; the biases are now such that they do not.
     Driven,
 }
 
-/// The motion that the contacts of a substep meet.
+/// The motion of a substep before its contacts are solved.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion<'a> {
     /// Poses at the substep's start.
@@ -131,7 +131,7 @@ impl ContactResolver {
         }
     }
 
-    /// Resolves whole substeps of another length from now on.
+    /// Sets the length in s of a whole substep.
     pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
         self.whole_substep_s = seconds(ticks(dt_s));
         self.detector.set_whole_substep(dt_s);
@@ -147,7 +147,7 @@ impl ContactResolver {
         self.warm_start_cache.replace(impulses.iter().copied());
     }
 
-    /// Forgets contacts and impulses: the poses have been set from outside.
+    /// Forgets contacts and impulses, after poses were set from outside.
     pub(crate) fn forget(&mut self) {
         self.contacts.clear();
         self.solver.impulses.clear();
@@ -267,7 +267,8 @@ impl ContactResolver {
         Ok(())
     }
 
-    /// Solves until a solution stands, with fewer and fewer contacts skipped; returns whether it leaves overlaps.
+    /// Solves until a solution passes the checks; returns whether it leaves overlaps. If a check fails, skipped
+    /// contacts are restored, or the caller takes a shorter substep.
     fn settle(
         &mut self,
         motion: &Motion,
@@ -346,8 +347,8 @@ impl ContactResolver {
         }
     }
 
-    /// Computes velocity biases from the present gaps alone in islands that would be driven or turned back
-    /// otherwise; returns whether there are any.
+    /// Finds the islands that contacts would drive or turn back, and computes their velocity biases from the present
+    /// gaps alone. Returns whether there are such islands.
     fn stop_driving(&mut self, motion: &Motion) -> bool {
         let bias = self.bias(motion);
         let problem = motion.problem(&self.contacts, &self.biases);
@@ -417,8 +418,8 @@ impl ContactResolver {
         self.solver.impulses.fill(0.0);
     }
 
-    /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this
-    /// kick, of length `dt`, and in the one before: which are likely to continue.
+    /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this kick, of length
+    /// `dt`, and in the one before. Such contacts are likely to persist.
     pub(crate) fn add_persistent_acceleration(
         &self,
         inertia: &[InverseInertia],

@@ -5,8 +5,8 @@ use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
-/// Contacts rarely add more than this part of the fastest boat's displacement to that of another boat. A larger part
-/// skips fewer contacts; with a smaller one, more have to be restored.
+/// Contacts rarely move a boat farther than this fraction of the fastest boat's displacement. With a larger fraction,
+/// fewer contacts are skipped; with a smaller one, more have to be restored.
 const ADDED: f64 = 0.125;
 
 /// The contacts that are skipped.

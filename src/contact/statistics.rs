@@ -33,7 +33,7 @@ pub struct Statistics {
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,
-    /// Deepest overlap met at the start of a substep in cm, positive.
+    /// Deepest overlap at the start of a substep in cm, positive.
     pub worst_overlap_cm: f64,
     /// Sum of the absolute changes of angular momentum about the pool's center when deep overlaps were undone, in
     /// cm²/s. No displacement conserves it for hulls that slide past each other while they overlap.
@@ -43,7 +43,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// All of them by name.
+    /// All statistics by name.
     pub fn named(&self) -> Value {
         let counts = named_fields!(self; substeps solves contacts islands solver_iterations
             factored_rows most_factor_entries unsolved halved_substeps depenetration_passes

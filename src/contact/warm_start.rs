@@ -57,7 +57,7 @@ pub(super) struct WarmStartCache {
 }
 
 const NONE: u32 = u32::MAX;
-/// Number of entries that a search may skip, for contacts that are gone.
+/// Number of entries that a lookup may skip, because their contacts are gone.
 const AHEAD: usize = 4;
 
 impl WarmStartCache {
@@ -115,7 +115,7 @@ impl WarmStartCache {
         }
     }
 
-    /// The entries of a contact's two bodies, at most two, from the first of them on.
+    /// The entries with the same two bodies as a contact, one or two of them, of which `start` is the first.
     #[inline]
     fn entries_from(&self, start: usize, contact: &Contact) -> Range<usize> {
         let second = self.entries.get(start + 1);
@@ -136,7 +136,7 @@ impl WarmStartCache {
         }
     }
 
-    /// The entries of a contact's two bodies, wherever they are.
+    /// The entries with the same two bodies as a contact, from a search of all entries.
     #[inline(never)]
     fn search(&self, contact: &Contact) -> Range<usize> {
         let mut index = self

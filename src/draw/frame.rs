@@ -1,5 +1,5 @@
 //! Frames: pool, hulls with a direction mark, in colors that show order or who leads, and a legend. A frame
-//! depends on the flock, its look and its size alone.
+//! depends only on the flock, its look and its size.
 
 use super::legend::Legend;
 use super::look::{Look, target_of};
@@ -32,7 +32,7 @@ impl FrameRenderer {
     /// The longest side of a frame, in pixels.
     pub const LONGEST: u32 = 4096;
 
-    /// For frames of this size in pixels.
+    /// A renderer of frames of this size in pixels.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a side outside [`Self::SHORTEST`] to [`Self::LONGEST`].
@@ -66,7 +66,7 @@ impl FrameRenderer {
         self.draw_with(flock, Look::default())
     }
 
-    /// As [`Self::draw`], with a look.
+    /// As [`Self::draw`], with another look.
     pub fn draw_with(&mut self, flock: &Flock, look: Look<'_>) -> Vec<u8> {
         self.draw_canvas(flock, look);
         let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);

@@ -27,7 +27,7 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// For frames of this size.
+    /// The legend of frames of this size.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width as f32, height as f32);
         let side = width.min(height);

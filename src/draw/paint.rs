@@ -6,7 +6,7 @@ use tiny_skia::{
 };
 
 impl Rgb {
-    /// As tiny-skia's color.
+    /// This color in tiny-skia's type.
     pub(super) fn color(self) -> Color {
         Color::from_rgba8(self.0, self.1, self.2, 0xFF)
     }

@@ -14,7 +14,7 @@ const fn hex(code: u32) -> Rgb {
     Rgb((code >> 16) as u8, (code >> 8) as u8, code as u8)
 }
 
-/// As in a style sheet: `#0072b2`.
+/// Writes the color as in a style sheet: `#0072b2`.
 impl fmt::Display for Rgb {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(r, g, b) = self;
@@ -135,7 +135,7 @@ named_choice! {
     }
 }
 
-/// The least |sin φ| of a boat that circles: 30° off the radius.
+/// A boat circles if |sin φ| is at least this: 30° off the radius.
 pub const CIRCLES_FROM: f64 = 0.5;
 
 /// The color of the direction that a boat heads in.

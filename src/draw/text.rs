@@ -14,7 +14,7 @@ pub(super) struct Typeface {
 }
 
 impl Typeface {
-    /// At a size in pixels.
+    /// The typeface at a size in pixels.
     pub(super) fn new(size: f32) -> Option<Self> {
         let font = FontRef::try_from_slice(dejavu::sans::regular()).ok()?;
         let scale = PxScale::from(size * font.height_unscaled() / font.units_per_em()?);

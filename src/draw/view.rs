@@ -4,13 +4,13 @@ use crate::flock::Flock;
 use crate::geometry::{Hull, Vec2};
 use tiny_skia::Point;
 
-/// Share of the frame's shorter side that stays free around a pool.
+/// Fraction of the frame's shorter side that stays free around a pool.
 const MARGIN: f64 = 0.03;
-/// Share of the frame's height above and below that the legend takes in open water.
+/// Fraction of the frame's height that the legend takes, above and below, in open water.
 const LEGEND: f64 = 0.12;
 /// The least half-width that open water shows, in hull lengths, so that a lone boat does not fill the frame.
 const LEAST_LENGTHS: f64 = 6.0;
-/// Number of steps by which the scale of open water doubles: coarse steps change it seldom.
+/// Number of steps in which the scale of open water doubles. With coarse steps it seldom changes.
 const STEPS: f64 = 8.0;
 
 /// A similarity from world (cm) to pixels.

@@ -14,7 +14,7 @@ const LEAST_ISLAND: f32 = 24.0;
 /// Largest pixel coordinate that is drawn.
 const FARTHEST: f32 = 1e6;
 
-/// Draws all of it.
+/// Draws the whole background.
 pub(super) fn draw(
     canvas: &mut Pixmap,
     parameters: &FlockParameters,

@@ -1,4 +1,5 @@
-//! Many environments stepped in parallel. The bits of each depend neither on its batch nor on the number of threads.
+//! Many environments stepped in parallel. The bits of an environment depend neither on its batch nor on the number of
+//! threads.
 
 use super::flock_env::StoredEnv;
 use super::observation::ObservationLayout;
@@ -42,7 +43,7 @@ struct Share<'a> {
 }
 
 impl EnvBatch {
-    /// One environment for each set of parameters, to be reset before a step.
+    /// One environment for each set of parameters. They must be reset before a step.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for settings or parameters that are not accepted.
@@ -107,8 +108,8 @@ impl EnvBatch {
             .try_for_each(|env| env.check_ready(self.settings.autoreset_mode))
     }
 
-    /// One decision of every flock, held over its control steps, or the start of its next episode if one is due.
-    /// Without actions the leaders follow the steering law at every substep.
+    /// Takes one decision in every flock and holds it over the control steps until the next one. A flock whose next
+    /// episode is due starts it instead. Without actions the leaders follow the steering law at every substep.
     ///
     /// # Errors
     /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of
@@ -124,7 +125,8 @@ impl EnvBatch {
     /// As [`Self::step`], asking now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::step`]; [`FlockError::Interrupted`] if `keep_going` said no: all flocks have to be reset then.
+    /// As for [`Self::step`]; [`FlockError::Interrupted`] if `keep_going` returned false: all flocks must be reset
+    /// then.
     ///
     /// # Panics
     /// As for [`Self::step`].
@@ -189,7 +191,7 @@ impl EnvBatch {
     /// As [`Self::reset`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::reset`]; [`FlockError::Interrupted`] if `keep_going` said no.
+    /// As for [`Self::reset`]; [`FlockError::Interrupted`] if `keep_going` returned false.
     pub fn reset_while(
         &mut self,
         keep_going: KeepGoing,
@@ -284,7 +286,7 @@ impl EnvBatch {
     /// A batch from its bytes.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed batch.
+    /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let (settings, members, states): (EnvSettings, Vec<_>, Vec<StoredEnv>) =
             unseal(&MAGIC, bytes)?;
@@ -312,7 +314,7 @@ impl EnvBatch {
     }
 }
 
-/// Number of flocks after which a step of many can be interrupted; a long step of one flock can be, too.
+/// A step of the batch can be interrupted after this many flocks, and within a long step of one flock.
 const FLOCKS_BETWEEN_CHECKS: usize = 16;
 
 /// Batches beyond this many bytes (16 GiB) are taken for a mistake.

@@ -11,7 +11,7 @@ pub(super) const MEMORY_S: f64 = 4.0;
 /// Turning of one normal boat by one leader.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 struct Turned {
-    /// Part of the boat's angular velocity that remains of the leader's impulses, in rad/s.
+    /// Part of the boat's angular velocity that comes from the leader's impulses and has not decayed yet, in rad/s.
     spin: f64,
     /// Part of its heading that the leader turned, in rad.
     angle: f64,

@@ -281,8 +281,8 @@ impl Episode {
         }
     }
 
-    /// Moves the flock through a control step, by the rudders or by the steering law; returns the time from the episode's
-    /// start to its end.
+    /// Moves the flock through a control step, by the rudders or by the steering law; returns the time from the
+    /// episode's start to the end of this step.
     fn advance(
         &mut self,
         keep_going: KeepGoing,

@@ -100,7 +100,7 @@ impl FlockEnv {
         upcoming.settings(settings).check(&parameters)
     }
 
-    /// The next episode, not started yet.
+    /// Prepares the next episode without starting it.
     ///
     /// # Errors
     /// [`FlockError::Episode`] without any seed yet, and errors of the request.
@@ -128,7 +128,7 @@ impl FlockEnv {
         (self.seeds, self.episode) = (Some(seeds), Some(episode));
     }
 
-    /// Drops the episode: the environment has to be reset.
+    /// Drops the episode. The environment must be reset before its next step.
     pub(crate) fn abandon(&mut self) {
         self.episode = None;
     }
@@ -148,9 +148,9 @@ impl FlockEnv {
         Err(FlockError::Episode(message.to_owned()))
     }
 
-    /// One decision with checked actions, held over its control steps, or the start of the next episode if one is due;
-    /// without actions leaders follow the steering law at every substep. Writes observations and rewards of the leaders
-    /// and returns whether the episode was truncated.
+    /// Takes one decision with checked actions and holds it over the control steps until the next one; starts the next
+    /// episode instead if that is due. Without actions leaders follow the steering law at every substep. Writes
+    /// observations and rewards of the leaders, and returns whether the episode was truncated.
     ///
     /// # Errors
     /// [`FlockError::Solver`], [`FlockError::Placement`], [`FlockError::Interrupted`]; the episode is over then.
@@ -263,7 +263,7 @@ impl FlockEnv {
         }
     }
 
-    /// The environment, to be stored.
+    /// The environment in its stored form.
     pub(crate) fn stored(&self) -> StoredEnv<&EpisodeState> {
         StoredEnv {
             seeds: self.seeds,
@@ -274,7 +274,7 @@ impl FlockEnv {
         }
     }
 
-    /// The environment as it was stored.
+    /// The environment from its stored form.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] if the state does not belong to such an environment.

@@ -59,12 +59,12 @@ impl Upcoming {
 }
 
 impl ResetRequest {
-    /// The request, with the settings of future episodes where it says nothing.
+    /// This request, completed by the settings of future episodes.
     #[must_use]
     pub(super) fn completed_by(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();
         request.target = request.target.or_else(|| upcoming.target.clone());
-        // A snapshot has its own.
+        // A snapshot has its own backward duration.
         request.bw_s = request.bw_s.or(upcoming.bw_s);
         request
     }

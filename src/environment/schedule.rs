@@ -17,13 +17,13 @@ pub struct EpisodeSchedule {
     pub steps: u32,
     /// The targets; if they alternate, those of the first quarter.
     targets: Targets,
-    /// Whether they change in the course of the episode.
+    /// Whether the targets change during the episode.
     pub(super) alternates: bool,
 }
 
 impl EpisodeSchedule {
-    /// Draws an episode, and the share of a range at which its backward duration lies. Both are always drawn from the
-    /// flock's seed, even if unused, so that fixing one does not change the other.
+    /// Draws an episode, and a number in [0, 1) that chooses its backward duration within a range. Both are always
+    /// drawn from the flock's seed, even if unused, so that fixing one does not change the other.
     pub fn new(settings: &EnvSettings, target: &TargetChoice, flock_seed: u64) -> (Self, f64) {
         let mut rng = Stream::EPISODE.rng(flock_seed);
         let share: f64 = rng.random_range(0.0..1.0);
@@ -57,7 +57,7 @@ impl EpisodeSchedule {
         Targets::One(if is_even { first } else { first.opposite() })
     }
 
-    /// Elapsed part of the episode, in [0, 1].
+    /// Elapsed fraction of the episode, in [0, 1].
     pub fn elapsed(&self) -> f64 {
         f64::from(self.step) / f64::from(self.steps)
     }

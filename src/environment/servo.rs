@@ -3,7 +3,7 @@
 /// A servo that moves once per control step and holds the rudder in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
-    /// Part of the difference to the command that a step takes away.
+    /// Fraction of the difference to the command that a step closes.
     follow: f64,
     /// Largest change in a step.
     most: f64,

@@ -90,7 +90,7 @@ impl EpisodeStatistics {
         }
     }
 
-    /// Counts numbers observed, and those clipped among them.
+    /// Counts observed numbers, and how many of them were clipped.
     pub(super) fn count_clipped(&mut self, clipped: u32, observed: usize) {
         self.clipped += u64::from(clipped);
         self.observed += observed as u64;
@@ -154,17 +154,17 @@ pub struct EpisodeSummary {
     /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
     /// if there are none.
     pub averages: Averages,
-    /// Part of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
+    /// Fraction of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
     /// Ordering time (eq. 7) in s since the episode started, with the angle as printed, π/20, and with
     /// π/4; infinite if the flock did not order.
     pub ordering_times_s: [f64; 2],
-    /// Part of the observed numbers that were clipped at their bounds; 0 without leaders.
+    /// Fraction of the observed numbers that were clipped at their bounds; 0 without leaders.
     pub clip_rate: f64,
     /// The flock's [`Statistics`](crate::contact::Statistics) of that name at the episode's end.
     pub worst_overlap_cm: f64,
-    /// The same.
+    /// As for `worst_overlap_cm`.
     pub unsolved: u64,
-    /// The same.
+    /// As for `worst_overlap_cm`.
     pub halved_substeps: u64,
 }

@@ -10,9 +10,9 @@ use crate::parameters::{FlockParameters, Pool, Targets};
 pub enum Change {
     /// The direction that all leaders follow from now on, or one direction per leader.
     Target(Targets),
-    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia its speed; where the
-    /// pool changes, each boat keeps its angle about the center and its relative distance between the walls. Boats that
-    /// obstacles then overlap are an error.
+    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia keeps its speed. If
+    /// the pool changes, each boat keeps its angle about the center and its relative distance between the walls. It is
+    /// an error if a boat then overlaps an obstacle.
     Parameters(Box<FlockParameters>),
 }
 

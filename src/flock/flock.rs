@@ -32,7 +32,7 @@ pub struct Flock {
 /// Work between two calls of `keep_going`, in boats moved, contacts and rows factored: some milliseconds, or a single
 /// substep that takes longer.
 const WORK_BETWEEN_CHECKS: u64 = 20_000;
-/// Part of `dt_s` below which no substep is cut to protect walls without thickness.
+/// Part of `dt_s` (one over this number) below which no substep is cut to protect walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
                         boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
@@ -56,7 +56,7 @@ impl Flock {
     /// As [`Self::new`], but large flocks take seconds to place: it checks now and then whether to continue.
     ///
     /// # Errors
-    /// As for [`Self::new`]; [`FlockError::Interrupted`] if `keep_going` said no.
+    /// As for [`Self::new`]; [`FlockError::Interrupted`] if `keep_going` returned false.
     pub fn new_while(
         keep_going: KeepGoing,
         parameters: FlockParameters,
@@ -84,7 +84,7 @@ impl Flock {
         }
     }
 
-    /// Starts over with another seed: as a new flock with these parameters.
+    /// Starts over with another seed, like a new flock with these parameters.
     ///
     /// # Errors
     /// As for [`Self::new_while`]; the flock is unchanged then.
@@ -163,7 +163,7 @@ impl Flock {
         &self.integrator.statistics
     }
 
-    /// The paper's rudder command, eq. (10), for a leader where it is now.
+    /// The paper's rudder command, eq. (10), for a leader in its present pose.
     pub fn steering_law(&self, leader: usize) -> f64 {
         self.integrator.law(leader)
     }
@@ -180,8 +180,8 @@ impl Flock {
         Ok(())
     }
 
-    /// Advances by a duration. `rudder` holds one command in [−1, 1] a leader; `None` steers by the
-    /// paper's law at every substep.
+    /// Advances by a duration. `rudder` holds one command in [−1, 1] per leader; `None` steers by the paper's law at
+    /// every substep.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] or [`FlockError::Shape`] for a bad duration or rudder,
@@ -288,7 +288,7 @@ impl Flock {
                     return Err(FlockError::Interrupted);
                 }
             }
-            // Contacts of numbers out of range would take long to fail, so stop here.
+            // With numbers out of range, contacts would fail only after long work, so stop here.
             if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
                 break;
             }

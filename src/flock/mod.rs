@@ -1,4 +1,4 @@
-//! A flock that is placed, advanced, recorded, stored and brought back.
+//! A flock that is placed, advanced, recorded, stored and restored.
 
 mod change;
 mod contact_force;

@@ -18,9 +18,9 @@ use std::f64::consts::{PI, TAU};
 const TRIES_PER_BOAT: usize = 200;
 /// Number of attempts to grow hulls before placement fails.
 const ATTEMPTS: usize = 6;
-/// Part of the water that hulls may cover; beyond it placement is not even tried.
+/// Fraction of the water that hulls may cover; beyond it placement is not even tried.
 const LARGEST_COVER: f64 = 0.92;
-/// Part of the water that hulls can cover at random.
+/// Fraction of the water that hulls can cover at random.
 const WELL_COVERED: f64 = 0.78;
 /// Hull sizes, relative, at which growing hulls are pushed apart.
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
@@ -37,7 +37,7 @@ const SURVEYED: u32 = 1024;
 ///
 /// # Errors
 /// [`FlockError::Placement`] if no placement without overlap was found, [`FlockError::Interrupted`]
-/// if `keep_going` said no.
+/// if `keep_going` returned false.
 pub(super) fn place(
     parameters: &FlockParameters,
     seed: u64,
@@ -88,8 +88,8 @@ struct Region {
 }
 
 impl Region {
-    /// How many boats to grow, and in how many attempts. Hulls that cover nearly all of the water must overlap: then one
-    /// attempt counts how many do not, for the error message.
+    /// How many boats to grow, and in how many attempts. Hulls that cover nearly all of the water must overlap. Then
+    /// there is one attempt, which counts the boats without overlap for the error message.
     fn worth_growing(&self, boats: usize) -> (usize, usize) {
         let full = self.area / self.hull.area();
         if boats as f64 <= LARGEST_COVER * full {
@@ -123,8 +123,8 @@ impl Region {
         region
     }
 
-    /// Takes the smallest disc of open water, about the pool's center, that leaves the boats' centers an area in cm²
-    /// free of obstacles.
+    /// Sets the region to the smallest disc about the center of open water in which an area in cm² is free of
+    /// obstacles.
     fn enclose(&mut self, area: f64) {
         let inner = self.inner * self.inner;
         let share = |outer: f64| self.free_share(inner, outer * outer, self.hull.radius);
@@ -153,7 +153,7 @@ impl Region {
         PI * (outer - inner) * self.free_share(inner, outer, 0.0)
     }
 
-    /// Part of the water between two squared radii that is at least this far from every obstacle, sampled at points
+    /// Fraction of the water between two squared radii that is at least this far from every obstacle, sampled at points
     /// along a spiral.
     fn free_share(&self, inner: f64, outer: f64, clearance: f64) -> f64 {
         if self.obstacles.is_empty() {

@@ -100,8 +100,8 @@ pub struct Recording<T> {
     pub pose: Vec<T>,
     /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
     pub velocity: Vec<T>,
-    /// Rudder commands of the leaders, sample after sample: those held up to each time, or under the
-    /// steering law those at its poses.
+    /// Rudder commands of the leaders, sample after sample: the commands held up to each time, or, under the
+    /// steering law, its commands at the recorded poses.
     pub rudder: Vec<f64>,
     /// Recorded quantities of the normal boats; all NaN without any.
     pub order: Vec<Recorded>,
@@ -116,7 +116,7 @@ impl<T: Real> Recording<T> {
     /// An empty recording with memory for a run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`] or than there is memory.
+    /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`], or more than the memory left.
     pub fn with_capacity_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
         let samples = sampling.count();
         let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
@@ -148,7 +148,8 @@ impl<T: Real> Recording<T> {
         self.velocity.try_reserve_exact(numbers).ok()
     }
 
-    /// Takes a sample of a flock as it is now, with the rudders that are held; `None`: the steering law.
+    /// Takes a sample of a flock in its present state. `rudder` holds the leaders' commands; with `None` they
+    /// follow the steering law.
     pub fn push(&mut self, flock: &Flock, rudder: Option<&[f64]>) {
         self.time_s.push(flock.time_s());
         self.phase.push(flock.phase().phase);
@@ -213,7 +214,7 @@ pub struct Recorder<T> {
 }
 
 impl<T: Real> Recorder<T> {
-    /// A run from where a flock is now, under the steering law, with nothing recorded yet.
+    /// A run that starts from a flock's present state, under the steering law. Nothing is recorded yet.
     ///
     /// # Errors
     /// As for [`Recording::with_capacity_for`], and for a run that would end later than any flock may.
@@ -230,18 +231,18 @@ impl<T: Real> Recorder<T> {
         })
     }
 
-    /// The same run with its contacts recorded, too.
+    /// Records contacts, too.
     #[must_use]
     pub fn with_contacts(mut self) -> Self {
         self.recording.contacts = Some(ContactSamples::default());
         self
     }
 
-    /// The same run with changes at times from its start on, after the sample at that time. A ramp may end with the
-    /// run.
+    /// Adds changes to the run. Times count from its start, and each change comes after the sample at its time. A
+    /// ramp may end with the run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for a change after the end, and for changes of which no sample would show any.
+    /// [`FlockError::Parameter`] for a change after the end, and if no sample would show any of the changes.
     pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Result<Self> {
         changes.sort_by_key(|&(time, _)| time);
         if let (Some(&(first, _)), Some(&(last, _))) = (changes.first(), changes.last()) {
@@ -259,7 +260,7 @@ impl<T: Real> Recorder<T> {
         Ok(self)
     }
 
-    /// The same run with rudders that are held between control steps; they start amidships (0).
+    /// Holds rudders between control steps; they start amidships (0).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a rate out of range.

@@ -26,7 +26,7 @@ struct Snapshot {
     motion: Checkpoint,
 }
 
-/// The byte layout of a snapshot: the speed of the water follows if the water has inertia.
+/// The byte layout of a snapshot. The speed of the water comes last, and only if the water has inertia.
 struct Stored(Snapshot);
 
 impl Serialize for Stored {
@@ -119,7 +119,7 @@ impl Snapshot {
     }
 }
 
-/// A flock is stored like its snapshot, but under the seal of whatever contains it.
+/// Stores a flock like its snapshot, but without a seal: whatever contains it is sealed.
 impl Serialize for Flock {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
         Stored(self.state()).serialize(to)
@@ -185,7 +185,7 @@ impl Flock {
     /// gives all flocks the same noise.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed snapshot.
+    /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged snapshot.
     pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
         let state = unseal::<Stored>(&MAGIC, bytes)?.0.checked()?;
         Ok(Self::from_checked(state, noise_seed))

@@ -1,4 +1,4 @@
-//! The step of a flock: changed on the way with the noise kept, and the error that it makes.
+//! A flock's step: changes it during a run while the noise stays the same, and measures the error that it causes.
 
 use super::flock::Flock;
 use crate::clock::Ticks;
@@ -8,8 +8,8 @@ use crate::geometry::rms_distance;
 use crate::integrator::Steering;
 use crate::parameters::{FlockParameters, Noise};
 
-/// The error is the distance from a run with substeps this many times shorter. Halves would not show it: an impact's
-/// error depends on when in its substep it happens, and that may be as wrong in both.
+/// The error is the distance from a run with substeps this many times shorter. Substeps of half the length would not
+/// show it: the error of an impact depends on when in a substep it happens, and may be as large in both runs.
 const FINER: f64 = 8.0;
 /// The shortest substep in s.
 const SHORTEST_S: f64 = 1e-6;
@@ -36,10 +36,10 @@ impl Flock {
         self.integrator.set_step(dt_s);
     }
 
-    /// Advances as [`Self::advance`], and returns the error that the step made on the way: the distance in cm from where
-    /// substeps of an eighth lead from the same start on the same noise paths, as [`rms_distance`] defines it. That takes nine
-    /// times as long. Errors of advances one after another do not add up: boats that press against a wall forget some, and
-    /// impacts enlarge others.
+    /// Advances as [`Self::advance`], and returns the error that the finite step caused: the [`rms_distance`] in cm to
+    /// a run with substeps an eighth as long, from the same start and with the same noise paths. This takes nine times
+    /// as long. Errors of successive advances do not add up: boats that press against a wall lose part of their errors,
+    /// and impacts enlarge them.
     ///
     /// # Errors
     /// As for [`Self::advance`]; [`FlockError::Parameter`] for a step too short to be divided by 8, and for noise that

@@ -56,8 +56,8 @@ impl Hull {
     }
 }
 
-/// The radius of gyration in cm after a hull is resized: its ratio to that of a hull of even mass stays. For sizes that
-/// are not accepted it is unchanged.
+/// The radius of gyration in cm after a hull is resized: its ratio to the radius of gyration of a hull of even mass
+/// stays the same. For sizes that are not accepted it is unchanged.
 pub fn resized_gyration_radius_cm(
     parameters: &FlockParameters,
     boat_radius_cm: f64,
@@ -75,7 +75,7 @@ pub fn resized_gyration_radius_cm(
     }
 }
 
-/// A pose with its direction vector worked out.
+/// A pose with its direction vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullPose {
     /// Center of the hull.
@@ -85,7 +85,7 @@ pub struct HullPose {
 }
 
 impl HullPose {
-    /// From a pose.
+    /// The hull at a pose.
     #[inline]
     pub fn new(pose: &Pose) -> Self {
         let (sin, cos) = sin_cos(f64x4::splat(pose.heading));
@@ -95,7 +95,7 @@ impl HullPose {
         }
     }
 
-    /// Replaces `into` by the hulls at some poses, with the bits of [`Self::new`].
+    /// Replaces the content of `into` by the hulls at these poses, bit for bit as from [`Self::new`].
     pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
         into.clear();
         let (fours, rest) = poses.as_chunks::<4>();
@@ -110,7 +110,7 @@ impl HullPose {
         into.extend(rest.iter().map(Self::new));
     }
 
-    /// Replaces the hulls of some boats by the hulls at their poses, with the bits of [`Self::new`].
+    /// Replaces the hulls of some boats by the hulls at their poses, bit for bit as from [`Self::new`].
     pub(crate) fn replace_some(hulls: &mut [Self], poses: &[Pose], boats: &[u32]) {
         for four in boats.chunks(4) {
             let boat = |lane: usize| four[lane.min(four.len() - 1)] as usize;

@@ -3,8 +3,8 @@
 //!
 //! Two hulls overlap if and only if an end of one core comes closer than 2r to the other core, or the cores cross. The
 //! four ends fall into two groups, those towards the stern and those towards the bow of the first hull; the ends of a
-//! group describe the same touch, and the nearer of them counts. That leaves at most two contacts a pair, both of them
-//! when hulls lie nearly parallel.
+//! group describe the same touch, and the nearer of them counts. So a pair has at most two contacts, and two only if
+//! its hulls are nearly parallel.
 
 use super::{Hull, HullPose, Vec2, cross, smaller, turned_left};
 
@@ -130,8 +130,8 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Nearest points for an end of hull a. If two ends face each other, both describe the same gap. With `only_nearest`
-    /// such an end counts only if neither end could slide nearer.
+    /// Nearest points for an end of hull a. If two ends face each other, both describe the same gap. With
+    /// `only_nearest` such an end is returned only if neither end could slide nearer.
     fn end_of_a(&self, side: f64, only_nearest: bool) -> Option<Touch> {
         let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
         let along_b = side * h * self.cosine - self.apart_b;
@@ -166,7 +166,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The squared distance of those points, infinite if no end faces the other core.
+    /// The squared distance of the points of [`Self::nearest_towards`], infinite if no end faces the other core.
     #[inline]
     fn square_towards(&self, side: f64) -> f64 {
         let square = |touch: Touch| touch.between.norm_squared();
@@ -304,8 +304,8 @@ pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
 }
 
 /// The gap of crossed cores: the least distance by which one core's end must be moved across the other's line, plus the
-/// distance that makes the hulls touch. Not inlined: that would slow down gaps that are not crossed. Arguments are in
-/// registers: tuples would be stored for each pair, crossed or not.
+/// distance that makes the hulls touch. Not inlined, because that would slow down gaps that are not crossed. The
+/// arguments are not tuples, so that they stay in registers: tuples would be stored for each pair, crossed or not.
 #[cold]
 fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
     let (h_a, h_b) = (hull_a.half_length, hull_b.half_length);

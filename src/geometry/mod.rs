@@ -26,7 +26,7 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The vector turned a quarter counter-clockwise.
+/// The vector rotated counter-clockwise by a quarter turn.
 #[inline]
 pub fn turned_left(a: Vec2) -> Vec2 {
     Vec2::new(-a.y, a.x)

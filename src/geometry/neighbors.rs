@@ -1,5 +1,5 @@
-//! Neighbor list: pairs of boats that may touch soon. It has a skin, and is rebuilt when boats have moved by half of
-//! that. The list is a function of the centers it was built from, so a snapshot keeps those.
+//! Neighbor list: pairs of boats that may touch soon. It has a skin, and is rebuilt when a boat has moved by half of
+//! it. The list depends only on the centers it was built from, so a snapshot keeps those.
 
 use super::Vec2;
 
@@ -11,7 +11,7 @@ pub(crate) struct NeighborList {
     reference: Vec<Vec2>,
     /// Boats by polar angle.
     order: Vec<u32>,
-    /// Their centers, in a flock of few.
+    /// Centers in that order; only in flocks of few boats.
     ordered: Vec<Vec2>,
     /// Start of each boat's partners in `partners`, by its index in `order`.
     starts: Vec<u32>,

@@ -71,7 +71,7 @@ impl Obstacle {
         matches!(self, Self::Wall { .. })
     }
 
-    /// Its two ends, each with the direction from there into the wall. A disc has none.
+    /// The two ends of a wall, each with the direction from there into the wall; `None` for a disc.
     fn ends(&self) -> Option<[(Vec2, Vec2); 2]> {
         let Self::Wall {
             pose, half_length, ..
@@ -168,7 +168,8 @@ impl Obstacle {
     }
 }
 
-/// Links walls that share an end; if several do, the one that turns off least.
+/// Links walls that share an end. If several walls do, a wall is linked to the one that continues it most nearly
+/// straight.
 fn join(obstacles: &mut [Obstacle]) {
     let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
     for (number, obstacle) in obstacles.iter().enumerate() {
@@ -190,7 +191,7 @@ fn join(obstacles: &mut [Obstacle]) {
     }
 }
 
-/// A wall is a hull of no radius.
+/// A wall as a hull of radius 0.
 fn wall_hull(half_length: f64) -> Hull {
     Hull {
         radius: 0.0,

@@ -29,7 +29,7 @@ pub(crate) struct Checkpoint {
 }
 
 impl Integrator {
-    /// The present motion, to return to.
+    /// A copy of the present motion.
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);

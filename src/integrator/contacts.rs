@@ -5,9 +5,10 @@ use super::substep::Substep;
 use crate::clock::seconds;
 use crate::contact::{Divisibility, Motion, NotTaken};
 
-/// Part of `dt_s` below which no substep is cut because its contacts would drive boats, or take too much work.
+/// A substep whose contacts would drive boats, or take too much work, is cut, but not below this fraction of
+/// `dt_s`.
 const SHORTEST_SHARE: f64 = 1.0 / 16.0;
-/// The same for a substep that leaves overlaps.
+/// A substep that leaves overlaps is cut, but not below this fraction of `dt_s`.
 const SHORTEST_OVERLAPPING_SHARE: f64 = 1.0 / 256.0;
 
 impl Integrator {

@@ -7,8 +7,8 @@ use crate::clock::{TICKS_PER_SECOND, Ticks};
 use crate::contact::NotTaken;
 use crate::parameters::Scheme;
 
-/// Speeds below this, in cm/s or rad/s, count as rest. Drag alone never ends. Squares of such speeds, and at last the
-/// speeds, become so small that processors take ten times as long for each.
+/// Speeds below this, in cm/s or rad/s, count as rest. Drag alone never stops a boat: its speed would become so small
+/// that processors take ten times as long for arithmetic with it or its square.
 const REST: f64 = 1e-150;
 /// Time between two checks for boats that can be set to rest.
 const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
@@ -31,7 +31,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// Stops what only creeps. Once a second, at whole seconds, so that it costs nothing and pauses change nothing.
+    /// Stops boats that are slower than [`REST`]. It is called once per second, so it costs nothing, and at whole
+    /// seconds, so pauses of a run do not change it.
     #[inline(never)]
     fn bring_to_rest(&mut self) {
         let stop = |speed: f64| if speed.abs() < REST { 0.0 } else { speed };

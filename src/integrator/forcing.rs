@@ -41,7 +41,7 @@ impl Integrator {
         }
     }
 
-    /// The paper's rudder command for a boat where it is now, eq. (10).
+    /// The paper's rudder command for a boat in its present pose, eq. (10).
     pub(crate) fn law(&self, boat: usize) -> f64 {
         let pose = &self.poses[boat];
         steering_law(misalignment(
@@ -51,8 +51,8 @@ impl Integrator {
         ))
     }
 
-    /// Fills `drives` for a substep: preferred speed and rudder of its phase, noise, and the water a time after the
-    /// present velocities.
+    /// Fills `drives` for a substep: preferred speed and rudder of its phase, noise, and the water's motion `ahead_s`
+    /// after the time of the present velocities.
     pub(super) fn fill_drives(&mut self, substep: &Substep, ahead_s: f64) {
         let normal = Drive {
             preferred_speed: self.phase_speed(false, substep.phase),

@@ -12,8 +12,8 @@ use crate::clock::seconds;
 use crate::contact::{InverseInertia, NotTaken};
 use crate::geometry::{Vec2, Velocity};
 
-/// Kicks below this part of `dt_s` do not show the force of contacts: impulses that close small overlaps do not shrink
-/// with the kick. The previous kick is used instead.
+/// Kicks below this fraction of `dt_s` do not show the force of contacts: impulses that close small overlaps do not
+/// shrink with the kick. The force of the previous kick is used instead.
 const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
@@ -71,8 +71,8 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     flock.last.rudder = last_rudder;
 }
 
-/// Replaces the water by its state in the middle of the kick: computed from velocities half a kick old, it would make
-/// the scheme first order.
+/// Replaces the water's motion by that in the middle of the kick. Computed from velocities half a kick old, it would
+/// make the scheme first order.
 fn center_water(flock: &mut Integrator, kick: f64) {
     flock.fill_water(0.5 * kick, |flock, boat| {
         let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);

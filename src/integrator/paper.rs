@@ -11,8 +11,8 @@ use super::substep::Substep;
 use crate::clock::seconds;
 use crate::contact::{Motion, NotTaken};
 
-/// Overlap (cm) that counts as touching at any tolerance: what a solver's residual of 1e-10 cm/s leaves in a substep,
-/// with a margin for a row of boats.
+/// Overlap (cm) that counts as touching at any tolerance: a solver's residual of 1e-10 cm/s leaves that much in a
+/// substep, with a margin for a row of boats.
 const ROUNDING: f64 = 1e-10;
 
 /// One step of the appendix.

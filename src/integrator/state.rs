@@ -34,7 +34,7 @@ pub(crate) struct Integrator {
     /// Speed in cm/s at which this substep's boats would keep the water.
     pub(super) driven_water_cm_s: f64,
     pub(crate) statistics: Statistics,
-    /// Length of the last change of velocity in s: what impulses are divided by to give forces.
+    /// Length of the last change of velocity in s. Impulses divided by it are forces.
     pub(crate) step_length_s: f64,
 }
 
@@ -86,7 +86,7 @@ impl Integrator {
         }
     }
 
-    /// From now on takes substeps of another length, on the present noise paths.
+    /// Sets the length of whole substeps; the noise paths stay the same.
     pub(crate) fn set_step(&mut self, dt_s: f64) {
         self.parameters.dt_s = dt_s;
         self.contacts.set_whole_substep(dt_s);
@@ -125,8 +125,8 @@ impl Integrator {
     }
 }
 
-/// Brownian paths whose cells are those of full substeps: leapfrog noise_increments reach from the middle of
-/// one substep to the middle of the next.
+/// Brownian paths whose cells are the intervals of full substeps' noise; in leapfrog these reach from the middle of one
+/// substep to the middle of the next.
 fn noise_paths(parameters: &FlockParameters, keys: StreamRng) -> BrownianPaths {
     let dt = ticks(parameters.dt_s);
     let shift = if parameters.scheme == Scheme::Leapfrog {

@@ -16,11 +16,11 @@ pub struct Field<S: 'static> {
     pub range: Range,
     /// Source of the default: a table, section or equation of the paper, or "chosen".
     pub source: &'static str,
-    /// Meaning, with its sign, and the place in the paper.
+    /// Meaning, with its sign, and where the paper defines it.
     pub doc: &'static str,
-    /// The value that it has.
+    /// Reads the value.
     pub get: fn(&S) -> Value,
-    /// Gives it a value, which is not checked against the range yet.
+    /// Sets the value, without checking it against the range.
     pub set: fn(&mut S, &Value) -> Result<()>,
 }
 
@@ -33,7 +33,7 @@ pub enum Range {
     Positive,
     /// At least 0, at most [`Range::LARGE`].
     NonNegative,
-    /// From a number to another, and in words.
+    /// Least and greatest number, and the range in words.
     Within(f64, f64, &'static str),
     /// The range that other fields allow, in words.
     Dependent(&'static str),
@@ -52,7 +52,7 @@ impl Range {
         }
     }
 
-    /// In words; empty where everything is accepted.
+    /// The range in words; empty if everything is accepted.
     pub fn accepted(self) -> &'static str {
         match self {
             Self::Any => "",
@@ -95,7 +95,7 @@ impl<S> Field<S> {
         }
     }
 
-    /// Its declaration by name, with its type in Python's words.
+    /// The declaration's fields by name, with the type in Python's words.
     #[cfg(feature = "python")]
     pub(crate) fn named(&self) -> Value
     where

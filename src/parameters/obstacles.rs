@@ -69,13 +69,13 @@ pub(super) trait Row: Copy {
     const COLUMNS: &'static [&'static str];
     /// The numbers.
     fn numbers(&self) -> Vec<f64>;
-    /// From a number for each column.
+    /// The row from one number per column.
     fn from_numbers(numbers: &[f64]) -> Option<Self>;
 }
 
 /// A row that describes an obstacle.
 pub(super) trait ObstacleRow: Row {
-    /// Fault in the shape of an obstacle, if any.
+    /// The reason why the shape is refused, if it is.
     fn flaw(&self) -> Option<&'static str>;
     /// The least and the largest distance of its points from the pool's center.
     fn distances(&self) -> (f64, f64);

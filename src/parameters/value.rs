@@ -1,9 +1,10 @@
-//! Values of parameters and options as users give and see them, and the types that have such values.
+//! Values of parameters and options in the form that users write and read, and the types that convert to
+//! them.
 
 use crate::error::{FlockError, Result};
 use std::fmt;
 
-/// A value as users give and see it.
+/// A value in the form that users write and read.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// None.
@@ -30,7 +31,7 @@ impl Value {
         Self::List(numbers.into_iter().map(Self::Real).collect())
     }
 
-    /// Its number, if it is one.
+    /// The number, if the value is one.
     pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Count(count) => Some(*count as f64),
@@ -39,7 +40,7 @@ impl Value {
         }
     }
 
-    /// Its two numbers, if it is a pair.
+    /// The two numbers, if the value is a pair.
     pub(crate) fn pair(&self) -> Option<(f64, f64)> {
         match self {
             Self::List(values) => match &values[..] {
@@ -150,14 +151,14 @@ pub(crate) trait Setting: Sized {
     /// The value as users see it.
     fn value(&self) -> Value;
 
-    /// From the value of the field of that name. It is not checked against the field's range.
+    /// Converts the value of the field `name`, without checking it against the field's range.
     ///
     /// # Errors
-    /// [`FlockError::Kind`] for a value of another kind, [`FlockError::Parameter`] for one that is none of the choices.
+    /// [`FlockError::Kind`] for a value of another kind, [`FlockError::Parameter`] for an unknown choice.
     fn from_value(name: &'static str, value: &Value) -> Result<Self>;
 }
 
-/// The error of a value of another kind.
+/// The error for a value of another kind.
 pub(crate) fn wrong_kind<T>(field: &'static str, accepted: impl Into<String>) -> Result<T> {
     let accepted = accepted.into();
     Err(FlockError::Kind { field, accepted })

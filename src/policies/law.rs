@@ -6,7 +6,8 @@ use crate::draw::palette::{DAMPED_LAW, LEARNED, PAPER_LAW, Rgb, TUNED_LAW};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
-/// A law that leaders steer by. One more law is a variant, a line of [`Law::NAMED`] and a rudder in `Law::rudder`.
+/// A law that leaders steer by. To add one, add a variant, a line of [`Law::NAMED`], and its rudder in
+/// `Law::rudder`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// The paper's law, eq. (10), at every substep, from the flock itself.
@@ -24,7 +25,7 @@ pub enum Law {
 pub struct NamedLaw {
     /// The name.
     pub name: &'static str,
-    /// For documentation.
+    /// Description for the documentation.
     pub doc: &'static str,
     /// The color that it has in every picture; `None`: the next free color.
     pub color: Option<Rgb>,
@@ -46,7 +47,7 @@ impl NamedLaw {
         matches!(self.origin, Origin::OfPool(_))
     }
 
-    /// The law itself, in a pool of this name, if the pool has one.
+    /// The law itself. `pool` is the name of the flock's pool, if it has one.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for pools in which the law has not been tuned or learned.
@@ -57,7 +58,7 @@ impl NamedLaw {
         }
     }
 
-    /// Its declaration by name.
+    /// The fields of the declaration by name.
     pub fn named(&self) -> Value {
         let declared = [
             ("name", Value::from(self.name)),
@@ -111,7 +112,7 @@ impl Law {
         },
     ];
 
-    /// The law of a name, in a pool of this name, if the pool has one.
+    /// The law with this name. `pool` is the name of the flock's pool, if it has one.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for other names, and as for [`NamedLaw::law`].
@@ -168,7 +169,7 @@ impl Law {
         }
     }
 
-    /// The leaning law if it is one: such a law reads lean features.
+    /// The leaning law, if this is one. Only leaning laws read lean features.
     pub(super) fn leaning(&self) -> Option<&LeaningLaw> {
         match self {
             Self::Leaning(law) => Some(law),
@@ -181,7 +182,7 @@ impl Law {
         let rudder = match self {
             Self::EverySubstep | Self::Paper => steering_law(course.misalignment),
             Self::Damped(law) => law.rudder(course),
-            // One without gains chooses rudders itself.
+            // A leaning law without gains chooses rudders itself.
             Self::Leaning(law) => law.gains.map_or(0.0, |gains| gains.rudder(course)),
         };
         f64::from(rudder as f32)

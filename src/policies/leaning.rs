@@ -1,4 +1,5 @@
-//! The leaning law: a heading that leans outward of the target's tangent, or a rudder, linearly in what a leader sees.
+//! The leaning law: a heading that leans outward of the target's tangent, or a rudder, as a linear function of what a
+//! leader sees.
 
 use crate::boat::DampedLaw;
 use crate::environment::LARGEST_LEAN;
@@ -17,7 +18,7 @@ pub enum Bound {
     Clip,
 }
 
-/// Judgment of a law: its order, and the flocks that it was judged in.
+/// Judgment of a law: the order that it reached, and in which flocks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judged {
@@ -61,7 +62,7 @@ pub struct LeaningLaw {
     /// are held, the gains must be those tuned in the pool, as for the action mode "lean".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decision_period_s: Option<f64>,
-    /// Lean in rad, or rudder, where every feature has its usual value.
+    /// Lean in rad, or rudder, if every feature has its usual value.
     pub bias: f64,
     /// Rad, or rudder, per standard deviation of each feature.
     #[serde(with = "by_feature")]
@@ -125,7 +126,7 @@ mod by_feature {
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
 impl LeaningLaw {
-    /// A law of these numbers: the weights of the features, then the bias.
+    /// A law with these numbers: the weights of the features, then the bias.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for what [`Self::check`] refuses.
@@ -154,7 +155,7 @@ impl LeaningLaw {
     /// The law of a JSON text.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for text that is no law, and for what [`Self::check`] refuses.
+    /// [`FlockError::Parameter`] for text that is not a law, and for laws that [`Self::check`] refuses.
     pub fn from_json(text: &str) -> Result<Self> {
         let law: Self = serde_json::from_str(text).map_err(|error| {
             FlockError::parameter("policy", error, "a leaning law in JSON of finite numbers")
@@ -163,10 +164,10 @@ impl LeaningLaw {
         Ok(law)
     }
 
-    /// The law as a JSON text, which [`Self::from_json`] reads to the same bits.
+    /// The law as a JSON text, from which [`Self::from_json`] restores it bit for bit.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for what [`Self::check`] refuses.
+    /// [`FlockError::Parameter`] for laws that [`Self::check`] refuses.
     pub fn to_json(&self) -> Result<String> {
         self.check()?;
         let text = serde_json::to_string_pretty(self);

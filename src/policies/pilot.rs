@@ -1,4 +1,4 @@
-//! Leaders of a flock that follow a law by themselves.
+//! A pilot, which steers a flock's leaders by a law.
 
 use super::Law;
 use crate::clock::whole_steps;
@@ -44,7 +44,7 @@ impl Views {
 }
 
 impl Pilot {
-    /// For a flock with these checked parameters and a number of control steps per second.
+    /// A pilot for a flock with these checked parameters and a number of control steps per second.
     ///
     /// # Errors
     /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are not a whole number

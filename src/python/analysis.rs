@@ -1,5 +1,5 @@
-//! The table of quantities at many times, quantities that follow from them, and structure of recorded poses: arrays (t,
-//! n, 3).
+//! Recorded quantities at many times, quantities that are derived from them, and the structure of recorded poses (t, n,
+//! 3).
 
 use super::arrays::{rows_of, same_length, wrong_shape};
 use super::value::argument;
@@ -32,7 +32,7 @@ pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bou
     Ok(columns)
 }
 
-/// The recorded quantities of boats at each time, of poses and velocities of shape (t, n, 3). Rows of NaN stand for
+/// The recorded quantities of boats at each time, from poses and velocities of shape (t, n, 3). Rows of NaN stand for
 /// missing boats; quantities of too few boats are NaN.
 #[pyfunction]
 pub(super) fn order_columns<'py>(
@@ -49,7 +49,7 @@ pub(super) fn order_columns<'py>(
     columns(py, &poses.recorded(&velocities)?)
 }
 
-/// The columns that derived quantities and states follow from.
+/// The columns from which derived quantities and collective states are computed.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(super) struct Orders<'py> {

@@ -1,4 +1,4 @@
-//! Arrays from Python, of any library: of a given shape and of real numbers.
+//! Arrays of real numbers from Python, of any library, with a given shape.
 
 use super::error::refusal;
 use super::value::{sequence_length, value_from, wrong_type};
@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyInt;
 
-/// Most axes that NumPy makes of nested sequences.
+/// Largest number of axes of a NumPy array.
 const MOST_AXES: usize = 64;
 
 /// The shape of an array of any library.
@@ -18,8 +18,8 @@ fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
     object.getattr("shape").ok()?.extract().ok()
 }
 
-/// The shape that the first items of an array-like suggest, up to a number of axes. An error if the first one is no real
-/// number.
+/// The shape that the first items of an array-like suggest, up to a number of axes. An error if the first item is not a
+/// real number.
 fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<usize>> {
     if let Some(shape) = array_shape(object) {
         let dtype = object.getattr("dtype").ok();
@@ -142,7 +142,7 @@ pub(super) fn rows_from(
 }
 
 /// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are levels. A rudder of 1.0
-/// is not level 1, so that levels must be integers. Messages call the actions by `name`.
+/// is not level 1, so levels must be integers. Messages call the actions by `name`.
 #[pyfunction]
 #[pyo3(signature = (actions, shape, levels, name="actions"))]
 pub(super) fn flat_actions<'py>(
@@ -189,7 +189,7 @@ pub(super) fn linear<'py>(
     Ok(sums.mapv(|sum| sum as f32).into_pyarray(rows.py()))
 }
 
-/// The error of an array of another shape.
+/// The error for an array of another shape.
 pub(super) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
     let found = shape_text(found);
     refusal(format!("{name} has shape {found}, expected {expected}"))

@@ -25,7 +25,7 @@ type Step<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// Numbers of flocks, boats or leaders, a row each.
+/// Numbers with one row per flock, boat or leader.
 type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
 
 /// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
@@ -73,7 +73,7 @@ fn never_reset() -> FlockError {
     FlockError::Episode("reset has not been called yet".to_owned())
 }
 
-/// `count` numbers that `fill` writes.
+/// A vector of `count` numbers, written by `fill`.
 fn filled(count: usize, fill: impl FnOnce(&mut [f32])) -> Vec<f32> {
     let mut numbers = vec![0.0; count];
     fill(&mut numbers);
@@ -107,8 +107,8 @@ impl PyEnvBatch {
         self.env(flock, |env| PyParameters(env.parameters().clone()))
     }
 
-    /// One decision of every flock. The actions are copied, since other Python threads may write to them meanwhile.
-    /// `None`: leaders follow the steering law at every substep.
+    /// Takes one decision in every flock. The actions are copied, since other Python threads may write to them
+    /// meanwhile. `None`: leaders follow the steering law at every substep.
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -219,8 +219,8 @@ impl PyEnvBatch {
         rows_of(py, observations, size)
     }
 
-    /// Features of every flock in the frame of its target, (flocks, features), or of each leader's flock in the frame
-    /// of its own, (rows, features).
+    /// Features of every flock in the frame of its target: (flocks, features). With `each_leader`, the features of
+    /// each leader's flock in the frame of the leader's target: (rows, features).
     fn flock_features<'py>(&self, py: Python<'py>, each_leader: bool) -> Rows<'py, f32> {
         self.gathered(py, FlockFeatures::SIZE, |env, _| {
             let leaders = env.parameters().n_leaders;
@@ -335,7 +335,7 @@ impl PyEnvBatch {
     }
 }
 
-/// A request of a flock of a number of boats.
+/// The reset request for a flock with this number of boats.
 fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
     let mut request = ResetRequest::default();
     let (mut snapshot, mut noise_seed) = (None, None);

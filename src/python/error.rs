@@ -1,4 +1,5 @@
-//! The exceptions that users meet. Errors of the core become exceptions here alone; `?` does it elsewhere.
+//! The exceptions that users meet. Only this file turns errors of the core into exceptions; elsewhere `?`
+//! does it.
 
 use crate::error::FlockError;
 use pyo3::exceptions::{
@@ -8,7 +9,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyTuple, PyType};
 
-/// Their names and meanings. The first is the base of the others; each is a built-in exception, too.
+/// Names and meanings of the exceptions. The first is the base of the others; each is a built-in
+/// exception, too.
 const DECLARED: [(&str, &str); 5] = [
     (
         "FlockError",
@@ -53,7 +55,8 @@ fn exceptions(py: Python<'_>) -> PyResult<&Vec<Py<PyType>>> {
             let first = made.first().map(|first| first.bind(py).clone());
             let bases = PyTuple::new(py, first.into_iter().chain([built_in]).collect::<Vec<_>>())?;
             let body = [("__module__", "flockenv.errors"), ("__doc__", doc)].into_py_dict(py)?;
-            // As a `class` statement of Python makes it: it may have several bases.
+            // Made by `type`, as in Python's `class` statement, since an exception may have several
+            // bases.
             let class = py.get_type::<PyType>().call1((name, bases, body))?;
             made.push(class.cast_into::<PyType>()?.unbind());
         }

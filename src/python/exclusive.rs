@@ -51,9 +51,9 @@ impl<T> Exclusive<T> {
 /// Time between two checks of Python's signals.
 const SIGNAL_PERIOD: Duration = Duration::from_millis(20);
 
-/// Work without the interpreter lock that ends if a signal's handler raises. It asks now and then whether to keep
-/// going. Python handles signals only in the calling thread: that thread checks for them when it asks, and the others
-/// read its result.
+/// Does work without the interpreter lock; the work ends if a signal's handler raises. It calls `keep_going` now and
+/// then. Python handles signals only in the calling thread: that thread checks for them in this call, and the other
+/// threads read its result.
 pub(super) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,

@@ -1,4 +1,4 @@
-//! Observations outside environments: the tables, and a flock observed.
+//! Observations outside environments: the tables of entries, and the observations of a flock.
 
 use super::arrays::rows_of;
 use super::flock::{PyFlock, rudders_from};

@@ -1,4 +1,4 @@
-//! Parameters that are checked, behind `flockenv.FlockParameters`, which shows their values.
+//! The checked parameters behind `flockenv.FlockParameters`.
 
 use super::value::{argument, set_given, wrong_type};
 use crate::geometry::{Hull, resized_gyration_radius_cm};
@@ -12,8 +12,8 @@ pub(super) struct PyParameters(pub(super) FlockParameters);
 
 #[pymethods]
 impl PyParameters {
-    /// Other parameters, or a preset by name, with some fields changed. If the hull is resized, the radius of gyration
-    /// scales with it, unless it is given.
+    /// Given parameters, or a preset by name, with some fields changed. If the hull is resized, the radius of gyration
+    /// scales with it, unless it is among the changes.
     #[new]
     fn new(base: &Bound<'_, PyAny>, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
         let base = match base.cast::<Self>() {

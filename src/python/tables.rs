@@ -1,4 +1,4 @@
-//! Declarations of parameters and options, and values that follow from them without a flock.
+//! Declarations of parameters and options, and values that are computed from them without a flock.
 
 use super::value::argument;
 use crate::clock::whole_steps;
@@ -47,14 +47,14 @@ pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
 
-/// Number of decisions at a rate in a time (s), which must be whole.
+/// Number of decisions at a rate in a time (s). It must be a whole number.
 #[pyfunction]
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
     let hold_s = argument(hold_s, "hold_s")?;
     Ok(whole_steps("hold_s", hold_s, rate_hz, "decisions")?)
 }
 
-/// The rudders of levels by their numbers, in an environment with `rudder_levels`.
+/// The rudders that numbers of levels stand for, in an environment with `rudder_levels`.
 #[pyfunction]
 pub(super) fn rudders_of_levels(levels: Vec<f64>, rudder_levels: usize) -> Result<Vec<f64>> {
     let settings = EnvSettings {

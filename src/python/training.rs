@@ -23,7 +23,7 @@ impl PyTrainer {
 
 #[pymethods]
 impl PyTrainer {
-    /// A training from its start; flocks have the first seed and those that follow.
+    /// A training at its start; its flocks have consecutive seeds from the first one on.
     #[new]
     fn new(
         parameters: FlockParameters,
@@ -40,7 +40,7 @@ impl PyTrainer {
         )?))
     }
 
-    /// A training from its bytes, with another end if one is given.
+    /// A training from its bytes, to end at other `flock_hours` if these are given.
     #[staticmethod]
     #[pyo3(signature = (state, flock_hours=None))]
     fn from_bytes(state: &[u8], flock_hours: Option<f64>) -> Result<Self> {
@@ -53,7 +53,7 @@ impl PyTrainer {
         Ok(PyBytes::new(py, &self.0.read()?.to_bytes()))
     }
 
-    /// Takes up to this many more branches of pairs.
+    /// Runs up to this many more branches, each of one pair of flocks.
     fn advance(&self, py: Python<'_>, branches: usize) -> PyResult<()> {
         let mut trainer = self.0.write()?;
         let trainer = &mut *trainer;

@@ -1,5 +1,5 @@
-//! Values of parameters, options and arguments from Python, and to it. Every refusal names the field and shows the
-//! given value. A value out of range is a `ParameterError`, one of the wrong type a `TypeError`.
+//! Values of parameters, options and arguments, from Python and to Python. Every error names the field and shows the
+//! value. A value out of range is a `ParameterError`, one of the wrong type a `TypeError`.
 
 use crate::error::FlockError;
 use crate::parameters::{Field, FlockParameters, Setting, Value};
@@ -8,11 +8,11 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyDict, PyFloat, PyInt, PySequence, PyString, PyTuple};
 
-/// The most items of a list, such as targets of leaders or rows of obstacles, and of a list in it: beyond, nothing is
-/// copied.
+/// The most items of a list, such as targets of leaders or rows of obstacles, and of a list in it: longer lists are
+/// not copied.
 const MOST_ITEMS: [usize; 2] = [FlockParameters::MOST_BOATS, 16];
 
-/// A value as Python code gives it.
+/// A value from a Python object.
 pub(super) fn value_from(object: &Bound<'_, PyAny>) -> Value {
     nested_value(object, &MOST_ITEMS)
 }
@@ -61,14 +61,14 @@ fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Valu
         .collect()
 }
 
-/// The length of a sequence that is no string, or of an array of any library.
+/// The length of a sequence that is not a string, or of an array of any library.
 pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
     let text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
     let is_sequence = object.cast::<PySequence>().is_ok() || object.hasattr("shape").ok()?;
     (is_sequence && !text).then(|| object.len().ok()).flatten()
 }
 
-/// A value as Python code gets it.
+/// Converts a value to a Python object.
 impl<'py> IntoPyObject<'py> for Value {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
@@ -87,7 +87,7 @@ impl<'py> IntoPyObject<'py> for Value {
     }
 }
 
-/// The argument of that name.
+/// The value of the argument `name`.
 pub(super) fn argument<T: Setting>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
     let value = value_from(object);
     T::from_value(name, &value).map_err(|error| refused(error, &value, object))
@@ -103,13 +103,13 @@ pub(super) fn noise_seed_from(object: &Bound<'_, PyAny>) -> PyResult<Option<u64>
     Ok(argument::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
 }
 
-/// The error of a field's type, with the value that Python code gave.
+/// The error of a field's conversion, with the value from Python.
 fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
     match error {
         FlockError::Kind { field, accepted } => {
             let is_long = sequence_length(object).is_some_and(|length| length > MOST_ITEMS[0]);
             match value {
-                // Any other int has a value.
+                // An int within 64 bits would have a value.
                 Value::Other if object.is_instance_of::<PyInt>() => {
                     return not_accepted(field, object, "a number that fits 64 bits");
                 }
@@ -130,7 +130,7 @@ fn set<S>(of: &mut S, field: &Field<S>, object: &Bound<'_, PyAny>) -> PyResult<(
     outcome.map_err(|error| refused(error, &value, object))
 }
 
-/// Gives fields the values that a dictionary holds. They are not checked yet.
+/// Sets fields to the values of a dictionary, without checking them.
 pub(super) fn set_given<S>(
     of: &mut S,
     fields: &[Field<S>],
@@ -145,7 +145,7 @@ pub(super) fn set_given<S>(
     Ok(())
 }
 
-/// The error of a value that is out of range.
+/// The error for a value that is out of range.
 fn not_accepted(name: &'static str, value: &Bound<'_, PyAny>, accepted: &str) -> PyErr {
     FlockError::parameter(name, short_repr(value), accepted).into()
 }

@@ -1,7 +1,7 @@
 //! Brownian paths that can be read at any time, from keyed normal draws.
 //!
 //! The noise is keyed, not consumed: a draw is a function of (seed, boat, time). So two policies or two control rates
-//! meet the same noise if the seed is the same, and a snapshot holds no generator.
+//! get the same noise if the seed is the same, and a snapshot holds no generator.
 
 use super::normal::{Ziggurat, scramble};
 use super::streams::{Stream, StreamRng};
@@ -51,7 +51,7 @@ pub struct BrownianPaths {
     cell_length: u64,
     /// Cell j covers [j·length − shift, (j + 1)·length − shift).
     shift: u64,
-    /// Most increments start where the previous one ended.
+    /// Where the last increment ended: most increments start there.
     last: Reading,
     /// Scratch: the paths at both ends of an interval, one value per boat.
     low: Vec<f64>,
@@ -73,8 +73,8 @@ struct Reading {
 const HALF_TICK_S: f64 = 0.5e-9;
 
 impl BrownianPaths {
-    /// Paths of a seed for `boats` boats; cells of `cell_length` half ticks, the first of them start
-    /// `shift` half ticks before time 0.
+    /// Paths of a seed for `boats` boats. Cells are `cell_length` half ticks long, and the first starts `shift` half
+    /// ticks before time 0.
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
         Self::from_keys(Stream::NOISE.rng(seed), boats, cell_length, shift)
     }
@@ -96,7 +96,7 @@ impl BrownianPaths {
         }
     }
 
-    /// Other paths in the same cells.
+    /// Changes to other paths in the same cells.
     pub(crate) fn replace_keys(&mut self, keys: StreamRng) {
         let boats = self.normals.keys.len();
         *self = Self::from_keys(keys, boats, self.cell_length, self.shift);

@@ -9,8 +9,8 @@ const LAYERS: usize = 256;
 /// Start of the lowest layer's tail: the value for which the uppermost layer ends at x = 0.
 const TAIL: f64 = 3.654_152_885_361_009;
 
-/// Right edges of the layers and the density there, from the bottom up. The first edge is that of a rectangle
-/// as large as the lowest layer with its tail.
+/// Right edges of the layers and the density there, from the bottom up. The first edge belongs to a rectangle
+/// with the same area as the lowest layer including its tail.
 #[derive(Debug)]
 struct Layers {
     edges: [f64; LAYERS + 1],
@@ -36,7 +36,7 @@ fn density(x: f64) -> f64 {
     libm::exp(-0.5 * x * x)
 }
 
-/// A word that looks independent of the given one: a step of SplitMix64 (Steele, Lea and Flood 2014).
+/// A hash of the word, which looks independent of it: a step of SplitMix64 (Steele, Lea and Flood 2014).
 #[inline]
 pub(super) fn scramble(word: u64) -> u64 {
     let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -54,7 +54,7 @@ impl Ziggurat {
         Self(&OF_NORMAL)
     }
 
-    /// The number of a word.
+    /// The normal number for a random word.
     #[inline]
     pub(super) fn normal(self, word: u64) -> f64 {
         let (layer, x) = self.choose(word);
@@ -65,7 +65,7 @@ impl Ziggurat {
         }
     }
 
-    /// Chooses a layer by a word, and an x within its width on either side of 0.
+    /// Uses a word to choose a layer, and an x within its width on either side of 0.
     #[inline]
     fn choose(self, word: u64) -> (usize, f64) {
         let layer = (word & (LAYERS as u64 - 1)) as usize;

@@ -13,7 +13,7 @@ use crate::policies::LeaningLaw;
 use crate::random::{Stream, StreamRng};
 use rand_chacha::rand_core::Rng;
 
-/// Data that all branches of a training share.
+/// The task of a training, which all its branches share.
 #[derive(Debug, Clone)]
 pub(super) struct Task {
     pub settings: BranchSettings,
@@ -39,9 +39,9 @@ pub(super) struct Pair {
 /// Outcome of a branch for the regression.
 #[derive(Debug, Clone)]
 pub(super) struct Outcome {
-    /// Sum over offsets of the offset times the features of its decisions, in both flocks.
+    /// Sum over both flocks and all offsets: offset times features of its decisions.
     pub tried: Features,
-    /// Order of the flock with the offsets less that of the flock with the opposite offsets, summed over decisions.
+    /// Order of the flock with the offsets minus that of the flock with the opposite offsets, summed over decisions.
     pub difference: f64,
     /// Features of each offset's decisions, mean of both flocks.
     pub features: Vec<Features>,
@@ -67,7 +67,7 @@ fn coin(random: &mut StreamRng) -> bool {
 }
 
 impl Task {
-    /// The pair of this number before its first branch. Pairs end their first episodes at different times.
+    /// The pair with this number before its first branch. Pairs end their first episodes at different times.
     pub(super) fn pair(&self, number: usize) -> Pair {
         let branches = self.settings.branches();
         Pair {
@@ -264,7 +264,7 @@ fn flock_of(env: &FlockEnv) -> Result<&Flock> {
     env.episode().map(Episode::flock).ok_or_else(none)
 }
 
-/// Adds the observation, and 1 for the bias, times a factor.
+/// Adds an observation, and 1 for the bias, times a factor to `sum`.
 fn add(sum: &mut Features, row: &[f32], factor: f64) {
     let [features @ .., bias] = sum;
     for (sum, &value) in features.iter_mut().zip(row) {

@@ -1,4 +1,4 @@
-//! Sums and the solution of a ridge regression, each in one order of its terms.
+//! Sums and the solution of a ridge regression, with a fixed order of summation.
 
 use crate::environment::observation::LEAN_FEATURES;
 
@@ -14,7 +14,7 @@ pub(super) fn dot(a: &Features, b: &Features) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
-/// The sum of values times the rows' numbers.
+/// Matrix times vector.
 pub(super) fn product(matrix: &Matrix, x: &Features) -> Features {
     std::array::from_fn(|row| dot(&matrix[row], x))
 }
@@ -28,8 +28,8 @@ pub(super) fn add_square(matrix: &mut Matrix, factor: f64, x: &Features) {
     }
 }
 
-/// The solution of (A + λ I) g = b for a positive semidefinite A, where λ is a part of A's mean diagonal: Cholesky's
-/// factor, then both triangles.
+/// The solution of (A + λ I) g = b for a positive semidefinite A, where λ is `part` times the mean of A's diagonal:
+/// Cholesky's factor, then both triangles.
 pub(super) fn ridge(matrix: &Matrix, part: f64, b: &Features) -> Features {
     let trace = (0..SIZE).fold(0.0, |sum, k| sum + matrix[k][k]);
     let ridge = part * trace / SIZE as f64 + f64::MIN_POSITIVE.sqrt();

@@ -1,4 +1,4 @@
-//! Everything about a training but the flocks, each option declared once.
+//! The options of a training, each declared once, apart from the flocks' parameters.
 
 use crate::clock::whole_steps;
 use crate::environment::observation::{Block, ObservationLayout};
@@ -43,7 +43,7 @@ declare_fields! {
     ridge: f64 = 0.1, "", Range::Within(1e-6, 1e6, "1e-6 to 1e6"), "chosen";
 }
 
-/// Numbers of decisions.
+/// Lengths of a training's periods, in decisions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decisions {
     /// Number of decisions in a branch, in a hold, in the part of a hold over which features are averaged, in all

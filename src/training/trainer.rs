@@ -25,7 +25,7 @@ struct Memory {
     /// count less.
     tried: Matrix,
     differences: Features,
-    /// Sum of the features' squares, and how many rounds count in it.
+    /// Sum of the features' squares, and the number of rounds in it, where earlier rounds count less.
     features: Matrix,
     rounds: f64,
     /// Branches in which a flock left an overlap deeper than the tolerance, and the deepest of all, in cm.
@@ -35,7 +35,7 @@ struct Memory {
 }
 
 impl Memory {
-    /// Whether it fits a training of this many pairs, each with this many branches in an episode.
+    /// Whether this state fits a training of so many pairs, with so many branches in an episode.
     fn fits(&self, pairs: usize, branches: usize) -> bool {
         let sums = self
             .tried
@@ -57,8 +57,8 @@ impl Memory {
 /// Trains leaders whose leans or rudders are linear in the lean features.
 ///
 /// In a round each pair of flocks goes through a branch: from one state, with one noise, and with opposite offsets of
-/// the leaders' actions. The difference of the orders is regressed on the offsets times the features, which says by how
-/// much each weight raises the order; the weights take a step that way.
+/// the leaders' actions. The difference of their orders is regressed on the offsets times the features. The result says
+/// how much each weight raises the order, and the weights take a step in that direction.
 #[derive(Debug, Clone)]
 pub struct Trainer {
     task: Task,
@@ -68,7 +68,7 @@ pub struct Trainer {
 }
 
 impl Trainer {
-    /// A training from its start. The seed decides the offsets; flocks have the first seed and those that follow.
+    /// A training at its start. The seed decides the offsets; its flocks have consecutive seeds from the first one on.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
@@ -130,7 +130,7 @@ impl Trainer {
         )
     }
 
-    /// Whether it is over.
+    /// Whether the training has ended.
     pub fn has_ended(&self) -> bool {
         self.memory.orders.len() >= self.task.settings.rounds()
     }
@@ -155,10 +155,10 @@ impl Trainer {
         (branches as u64, unsolved, worst_overlap_cm)
     }
 
-    /// Takes up to this many more branches of pairs, and a step of the weights when a round is over.
+    /// Runs up to this many more branches, each of one pair of flocks, and changes the weights when a round is over.
     ///
     /// # Errors
-    /// [`FlockError::Interrupted`] if `keep_going` said no, and those of the flocks; nothing has changed then.
+    /// [`FlockError::Interrupted`] if `keep_going` returned false, and errors of the flocks; nothing has changed then.
     pub fn advance(&mut self, keep_going: KeepGoing, branches: usize) -> Result<()> {
         if self.has_ended() {
             return Ok(());
@@ -188,7 +188,7 @@ impl Trainer {
         Ok(())
     }
 
-    /// Ends a round: a step along the natural gradient.
+    /// Ends a round: the weights take a step along the natural gradient.
     fn take_step(&mut self) {
         let (settings, memory) = (&self.task.settings, &mut self.memory);
         let sums = memory.tried.iter_mut().chain(&mut memory.features);
@@ -265,10 +265,10 @@ impl Trainer {
         )
     }
 
-    /// A training from its bytes, which continues to the same bits.
+    /// A training from its bytes, which continues bit for bit.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`] for bytes that are not a whole, unharmed training with finite weights.
+    /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged training with finite weights.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let (settings, parameters, seed, first_seed, memory) = unseal(&MAGIC, bytes)?;
         let mut trainer = Self::new(settings, parameters, seed, first_seed)?;
@@ -282,7 +282,7 @@ impl Trainer {
         Ok(trainer)
     }
 
-    /// The same training with another end.
+    /// This training, to end at other `flock_hours`.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

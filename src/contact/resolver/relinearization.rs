@@ -1,4 +1,4 @@
-//! Solves again where gaps are curved functions of the motion: until they hold at the substep's end.
+//! Solves again if gaps are curved functions of the motion, until no gap overlaps at the substep's end.
 
 use super::{ContactResolver, Motion, Solution};
 use crate::contact::Statistics;
@@ -36,9 +36,10 @@ impl Relinearization {
 }
 
 impl ContactResolver {
-    /// Solves islands again until no gap at the substep's end, evaluated where the last solve moves the boats, overlaps
-    /// by more than the tolerance: with biases for which those gaps open to zero. Normals, along which forces act, and the
-    /// factor stay those of the substep's start. `first` is the outcome of the first solve.
+    /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance. The gaps are
+    /// evaluated where the last solve moves the boats, and the next solve has biases for which they open to zero. The
+    /// normals, along which forces act, and the factor stay those of the substep's start. `first` is the outcome of the
+    /// first solve.
     pub(super) fn relinearize(
         &mut self,
         motion: &Motion,
@@ -103,8 +104,8 @@ impl ContactResolver {
         self.is_overlapping(&mut islands, motion.dt)
     }
 
-    /// Whether gaps at the substep's end overlap by more than the tolerance. Keeps of `islands` those in which they do,
-    /// with their gaps; all of them for a solver that knows no islands.
+    /// Whether gaps at the substep's end overlap by more than the tolerance. Removes the other islands from `islands`
+    /// and their gaps from the list; a solver without islands keeps all.
     fn is_overlapping(&mut self, islands: &mut Vec<u32>, dt: f64) -> bool {
         let tolerance = self.relinearization.tolerance;
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
@@ -119,7 +120,7 @@ impl ContactResolver {
             }
             let stays = overlap > tolerance || !has_islands;
             if !stays {
-                // Their biases stay those that were solved for: whether contacts drive boats is judged by them.
+                // No new biases for this island: the check for driven boats needs those that it was solved with.
                 self.relinearization.end_gaps.truncate(before);
             }
             stays
@@ -127,9 +128,9 @@ impl ContactResolver {
         deepest > tolerance
     }
 
-    /// Notes the gaps of an island at the substep's end, apart from those of contacts that cannot close at these
-    /// velocities or whose touch is gone. Returns the deepest overlap in cm. A shortened substep leaves its share
-    /// `left_over` of an overlap from before, which counts up to the tolerance only.
+    /// Notes the gaps of an island at the substep's end, except for contacts that cannot close at these velocities or
+    /// whose touch is gone. Returns the deepest overlap in cm. A shortened substep need not close an earlier overlap
+    /// fully: it may leave the fraction `left_over` of it.
     fn deepest_end_overlap(&mut self, island: u32, left_over: f64) -> f64 {
         let (mut deepest, mut pair) = (0.0, None);
         for &k in self.solver.islands().contacts(island as usize) {

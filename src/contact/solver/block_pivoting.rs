@@ -14,8 +14,9 @@ use crate::geometry::Velocity;
 use island_solver::IslandSolver;
 use rows::NONE;
 
-/// Rows that solvers may hold memory for, and how many more per boat. Each solver keeps what the largest of its islands
-/// took, which sums up to many times the rows of a large flock, if its islands have other numbers in each substep.
+/// Number of rows that the solvers may hold memory for, and how many more per boat. Each solver keeps the memory of its
+/// largest island so far. As islands are numbered differently in each substep, this could add up to many times the rows
+/// of a large flock.
 const MOST_ROWS_HELD: usize = 1000;
 const MOST_ROWS_HELD_A_BOAT: usize = 8;
 

@@ -77,7 +77,7 @@ impl ContactSolver {
     }
 
     /// An exact solver in which every contact yields by `regularization`·A_kk·λ_k, so that contradicting constraints
-    /// are met as well as possible.
+    /// are satisfied as well as possible.
     pub(crate) fn regularized(regularization: f64) -> Self {
         Self {
             pivoting: BlockPivoting::new(regularization),
@@ -85,7 +85,7 @@ impl ContactSolver {
         }
     }
 
-    /// The same solver, set to keep its factors or not: with them, solving the same contacts again costs less.
+    /// Sets whether the solver keeps its factors. With them, it costs less to solve the same contacts again.
     pub fn keeping_factors(mut self, keeps: bool) -> Self {
         self.pivoting.keeps_factors = keeps;
         self
@@ -115,7 +115,8 @@ impl ContactSolver {
         (self.pivoting.budget, self.reserved) = (budget, 0);
     }
 
-    /// Reserves most of the budget if easier contacts can replace the next ones, which then may use a small part of it.
+    /// If easier contacts can replace the next ones, reserves most of the budget and leaves a small part for the next
+    /// ones.
     pub(crate) fn reserve_budget(&mut self, easier_possible: bool) {
         let budget = self.pivoting.budget + self.reserved;
         let spare = (budget - self.most_work / 16).max(0);

@@ -65,7 +65,7 @@ impl CourseReader {
     }
 }
 
-/// Reads leaders' courses from a flock in view, to the same bits as from observations.
+/// Reads leaders' courses from a flock in view, bit for bit as from observations.
 #[derive(Debug, Clone)]
 pub struct CourseView {
     reader: CourseReader,
@@ -73,7 +73,7 @@ pub struct CourseView {
 }
 
 impl CourseView {
-    /// For checked parameters.
+    /// A reader for flocks with these checked parameters.
     ///
     /// # Errors
     /// None: the layout has all blocks that the laws read.

@@ -18,9 +18,9 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// In words. The bounds are the centers of boats that touch the walls. Without an inner wall -1 is the pool's
-    /// center, and in open water +1 is 40 boat radii farther than -1. The speed is the faster of the two preferred
-    /// ones.
+    /// The scale in words. The bounds are the centers of boats that touch the walls. Without an inner wall -1 is the
+    /// pool's center, and in open water +1 is 40 boat radii farther than -1. The speed is the faster of the two
+    /// preferred ones.
     pub fn description(self) -> &'static str {
         match self {
             Self::Plain => "1",
@@ -46,7 +46,7 @@ impl Scale {
     }
 }
 
-/// The angular velocity by which others are divided, in rad/s.
+/// Scale of angular velocities in rad/s.
 pub(crate) const ANGULAR_VELOCITY_SCALE: f64 = 2.0;
 
 /// The speed by which velocities are divided: the fastest preferred speed of any boat, not counting the spread; 15 cm/s
@@ -78,7 +78,7 @@ fn radial(parameters: &FlockParameters) -> (f64, f64) {
 /// One number of an observation or of the global state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Its name; all neighbors have entries of the same names, and so do all boats.
+    /// Its name. All neighbors have entries of the same names; so do all boats of the global state.
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: &'static str,
@@ -114,7 +114,7 @@ impl Entry {
         }
     }
 
-    /// Its declaration by name, as the entry at an index of a block.
+    /// The fields of the entry by name, with its block and its index there.
     pub fn named(&self, block: &'static str, index: usize) -> Value {
         let [name, unit, low, high, mirrored, meaning] =
             named_fields!(self; name unit low high mirrored meaning);

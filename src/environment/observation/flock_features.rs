@@ -91,10 +91,10 @@ pub struct FlockFeatures {
 }
 
 impl FlockFeatures {
-    /// Their number.
+    /// Number of features.
     pub const SIZE: usize = GROUPS * GROUP.len() + NEAR_LEADERS.len() + PHASE.len() + CLOCK.len();
 
-    /// For checked parameters.
+    /// A writer for flocks with these checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let entries = flock_feature_entries().into_iter();
         let length = Scale::Length.affine(parameters).0;
@@ -106,7 +106,7 @@ impl FlockFeatures {
         }
     }
 
-    /// Writes the features in the frame of a target; `elapsed` is the part of the episode that is over.
+    /// Writes the features in the frame of a target; `elapsed` is the fraction of the episode that is over.
     pub fn observe(&self, view: &FlockView, target: Target, elapsed: f64, out: &mut [f32]) {
         let seen: Vec<_> = (0..view.poses.len())
             .map(|boat| self.seen(view, target, boat))

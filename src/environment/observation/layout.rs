@@ -69,7 +69,7 @@ impl ObservationLayout {
         layout
     }
 
-    /// The same layout, mirrored or not.
+    /// This layout, mirrored or not.
     #[must_use]
     pub fn mirrored(self, is_mirrored: bool) -> Self {
         Self {

@@ -39,7 +39,7 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// For a checked layout and checked parameters.
+    /// An observer for a checked layout and checked parameters.
     ///
     /// # Errors
     /// [`crate::FlockError::Parameter`] for blocks that cannot serve the flock, such as `lean_features` in a pool in
@@ -85,7 +85,7 @@ pub(crate) struct StateObserver {
 }
 
 impl StateObserver {
-    /// For checked parameters; mirrored like the observations of leader 0.
+    /// An observer for checked parameters, mirrored like the observations of leader 0.
     pub(crate) fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
         let rest = state_entries(0).into_iter();
         Self {
@@ -101,7 +101,7 @@ impl StateObserver {
         self.boats * self.boat.len() + self.rest.len()
     }
 
-    /// Writes the state; `elapsed` is the part of the episode that is over.
+    /// Writes the state; `elapsed` is the fraction of the episode that is over.
     pub(crate) fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
         let mirrored = self.mirror_to_target && view.targets.reference().sign() < 0.0;
         let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());

@@ -31,7 +31,7 @@ pub struct FlockView<'a> {
 }
 
 impl<'a> FlockView<'a> {
-    /// The view of a flock without faults, from the present rudders and the order parameters of its normal boats.
+    /// A flock as it is, without a camera, with the present rudders and the order parameters of its normal boats.
     pub fn new(flock: &'a Flock, rudders: &'a [f64], order: Option<&'a OrderParameters>) -> Self {
         let parameters = flock.parameters();
         Self {

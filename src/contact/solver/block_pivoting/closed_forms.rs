@@ -5,7 +5,7 @@ use super::{BlockPivoting, EXACT, SolveReport};
 use crate::contact::ContactProblem;
 use crate::geometry::Velocity;
 
-/// Two contacts whose coupling leaves less than this of the product of their diagonals depend on each other.
+/// Two contacts depend on each other if their determinant is at most this fraction of the product of their diagonals.
 const INDEPENDENT: f64 = 1e-6;
 
 impl BlockPivoting {
@@ -36,8 +36,8 @@ impl BlockPivoting {
         }
     }
 
-    /// Solves two contacts, of which both push or one does; returns whether it did. It leaves two contacts that depend
-    /// on each other, and regularized problems, to pivoting.
+    /// Solves two contacts if one or both push; returns whether it did. Contacts that depend on each other, and
+    /// regularized problems, are left to pivoting.
     pub(super) fn solve_two(
         &self,
         problem: &ContactProblem,

@@ -13,8 +13,8 @@ use crate::contact::solver::{EXACT, SolveReport};
 const CONTRADICTION: f64 = 1e9;
 
 impl IslandSolver {
-    /// Solves the island again: a large one from the pushing impulses of the last round, and a small one, or one
-    /// that this fails to solve, from no impulses at all.
+    /// Solves the island again. A large island starts from the pushing impulses of the last round. If that fails, and
+    /// in a small island, all impulses start at zero.
     pub(super) fn descend(&mut self, regularization: f64, report: &mut SolveReport) {
         let rows = &self.rows.rows;
         let mut pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
@@ -25,8 +25,8 @@ impl IslandSolver {
         }
     }
 
-    /// Descends from the given impulses, or from zero; returns whether that solves the island. Contacts enter together
-    /// if some push already, and one by one otherwise.
+    /// Descends from the given impulses, or from zero; returns whether that solves the island. If some contacts push at
+    /// the start, others enter together; if none does, they enter one by one.
     fn descend_from(
         &mut self,
         mut current: Vec<f64>,
@@ -113,8 +113,8 @@ impl IslandSolver {
             .map(|(k, _)| k)
     }
 
-    /// Moves `current` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes on
-    /// the way; returns how far the first step went, in (0, 1], or 0 if it could not be taken.
+    /// Moves `current` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes
+    /// before that; returns the fraction of the first step that was taken, in (0, 1], or 0 if it could not be taken.
     fn approach(
         &mut self,
         current: &mut [f64],
@@ -145,7 +145,7 @@ impl IslandSolver {
         }
     }
 
-    /// The largest part of the way from `current` to the impulses before one turns negative.
+    /// The largest fraction of the step from `current` to the new impulses at which none is negative.
     fn feasible_step(&self, current: &[f64]) -> f64 {
         let pairs = self.rows.rows.iter().zip(current);
         pairs

@@ -7,8 +7,8 @@
 
 use super::rows::{NONE, Row, Rows, WALLS};
 
-/// Entries come in groups of this many, padded with zeros: rows have two or three, and loops of unpredictable length
-/// cost more than the arithmetic.
+/// Entries come in groups of this many, padded with zeros. Rows have two or three entries, and a loop of unpredictable
+/// length costs more than the extra arithmetic.
 const GROUP: usize = 2;
 
 /// Rows of fewer entries cost too little to be counted.
@@ -78,8 +78,8 @@ pub(super) struct Factor {
     pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
-    /// The row that is being computed. It is zero between two rows, also of different islands, and always beyond the
-    /// rows.
+    /// The row that is being computed. All of it is zero between two computations, and its end beyond the rows is
+    /// always zero.
     work: Vec<f64>,
 }
 
@@ -200,7 +200,7 @@ impl Factor {
             pivot -= rest * value;
             new[count] = Entry { column, value };
             count += 1;
-            // A row that had this column's first entry so far has one row more before it. (NONE plus 1 is 0.)
+            // Row k now has this column's first entry, so the row that had it changes, too. (NONE plus 1 is 0.)
             if parent.wrapping_add(1) > own + 1 {
                 nodes[parent as usize].is_dirty = true;
             }

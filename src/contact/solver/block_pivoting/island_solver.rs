@@ -28,7 +28,7 @@ pub(super) struct IslandSolver {
     is_guess_old: bool,
     /// Right-hand side and solution, row by row.
     solution: Vec<f64>,
-    /// Rows whose sign is wrong, and the largest slack of an active row in cm/s.
+    /// Number of rows with a wrong sign, and the largest slack of an active row in cm/s.
     violations: usize,
     pub worst: f64,
 }
@@ -54,7 +54,7 @@ impl IslandSolver {
     }
 
     /// Sets the free velocities of the boats.
-    // Bodies are built with theirs, and few solves change them.
+    // Only a few solves need this: bodies are built with their free velocities.
     #[cold]
     pub(super) fn set_free(&mut self, problem: &ContactProblem) {
         for body in &mut self.rows.bodies[1..] {
@@ -140,7 +140,7 @@ impl IslandSolver {
 
     /// The boats and their velocities.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = (u32, Velocity)> {
-        // The first body is the walls.
+        // Body 0 stands for the walls.
         self.rows.bodies[1..].iter().map(|body| {
             let [x, y, angular] = body.velocity;
             (body.boat, Velocity::new(x, y, angular))
@@ -159,8 +159,8 @@ impl IslandSolver {
         computed
     }
 
-    /// Solves again for the slack that rounding leaves at the active contacts. A regularized problem keeps its slack,
-    /// since its contacts are meant to yield. Returns whether it solved.
+    /// Solves again for the slack that rounding leaves at the active contacts; returns whether it did. A regularized
+    /// problem keeps its slack, since its contacts are meant to yield.
     pub(super) fn refine(&mut self, regularization: f64) -> bool {
         if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
             return false;
@@ -221,7 +221,7 @@ impl IslandSolver {
         }
     }
 
-    /// The larger of the natural residual and the worst so far; NaN if anything is.
+    /// The larger of the natural residual and the worst so far; NaN if any number is NaN.
     fn worst_residual(&self, regularization: f64, worst: f64) -> f64 {
         self.rows.rows.iter().fold(worst, |worst, row| {
             let residual = residual(row.diagonal * row.impulse, row.slack, regularization);

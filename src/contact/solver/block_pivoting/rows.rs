@@ -1,4 +1,4 @@
-//! The contact problem of one island in numbers of its own: rows of J, and the boats they join.
+//! The contact problem of one island with its own numbering: rows of J, and the boats they join.
 
 use crate::contact::{ContactProblem, InverseInertia};
 use crate::geometry::{Velocity, smaller};
@@ -8,7 +8,7 @@ pub(super) const TOLERANCE: f64 = 1e-11;
 
 /// No row.
 pub(super) const NONE: u32 = u32::MAX;
-/// Index of the walls among an island's bodies: at rest, and nothing moves them.
+/// Index of the walls among an island's bodies. They are at rest, and no impulse moves them.
 pub(super) const WALLS: u32 = 0;
 
 /// Violation of a row, from its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to yield.

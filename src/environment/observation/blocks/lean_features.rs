@@ -1,4 +1,4 @@
-//! Features that a leader's lean depends on: numbers of its view, mirrored to the target and standardized.
+//! Features that a leader's lean depends on: numbers that it sees, mirrored to the target and standardized.
 
 use super::super::entry::{Entry, Scale};
 use super::super::view::{FlockView, Scaling};
@@ -19,8 +19,8 @@ const POOLS: [&str; 2] = ["wide", "narrow"];
 /// Standardized features are clipped at ± this: larger ones come from flocks unlike those that were measured.
 const BOUND: f64 = 20.0;
 
-/// Usual values of the features, a row each: the mean and the standard deviation in each of [`POOLS`]. Measured with
-/// three of 27 boats that the tuned law steers at each pool's critical noise, after 20 s. A deviation is at least 0.05.
+/// One row per feature: its mean and standard deviation in each of [`POOLS`], measured after 20 s in flocks of 27 boats
+/// at the pool's critical noise, three of which the tuned law steers. Deviations are at least 0.05.
 const USUAL: &str = include_str!("lean_features.csv");
 
 /// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.

@@ -42,7 +42,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Anything made for a flock. Types that implement `Default` are the same for every flock.
+/// An object that is made for a flock's parameters. Types that implement `Default` are the same for every flock.
 trait MadeFor: Sized {
     /// The object for checked parameters.
     ///
