@@ -18,7 +18,8 @@ from flockenv.statistics import (
     loss_of_order,
     mean_interval,
 )
-from studies.study import Options, Study, write
+from studies.store import write
+from studies.study import Options, Study
 
 
 class Interval(tuple[float, float, float]):

@@ -17,7 +17,8 @@ from docs.scripts.plots import (
 )
 from flockenv.comparison.episodes import NO_LEADERS
 from flockenv.comparison.figure import policy_colors
-from studies.study import Options, StudyError
+from studies.store import StudyError
+from studies.study import Options
 
 
 def drawing(name: str, plots: Mapping[str, Plot]) -> Callable[[Options], None]:

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from flockenv.runs.store import RESULTS_VERSION
-from studies import make, study
+from studies import make, store, study
 
 TABLES = [
     path
@@ -49,11 +49,11 @@ def test_statements_follow_from_the_runs(name: str, copied: Path) -> None:
 
 @pytest.mark.parametrize("path", TABLES, ids=lambda path: str(path.relative_to(study.HERE)))
 def test_a_table_names_its_version_and_is_compressed_if_long(path: Path) -> None:
-    assert 1 <= study.version_of(path) <= RESULTS_VERSION
-    assert (path.suffix == ".gz") == (len(pd.read_csv(path)) > study.MOST_PLAIN)
+    assert 1 <= store.version_of(path) <= RESULTS_VERSION
+    assert (path.suffix == ".gz") == (len(pd.read_csv(path)) > store.MOST_PLAIN)
 
 
 def test_no_name_is_of_a_table_that_is_gone() -> None:
-    for made in study.HERE.rglob(study.MADE):
-        versions = tomllib.loads(made.read_text("utf-8"))[study.VERSION]
+    for made in study.HERE.rglob(store.MADE):
+        versions = tomllib.loads(made.read_text("utf-8"))[store.VERSION]
         assert [name for name in versions if not (made.parent / name).exists()] == []

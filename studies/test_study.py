@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 
 from docs.scripts.plots import Plot
-from studies import claim, counts, make, plots, study
+from studies import claim, counts, make, plots, store, study
 from studies.transition import transition, transition_runs
 
 
@@ -92,11 +92,11 @@ def test_an_interrupted_script_says_whether_it_resumes() -> None:
 
 def test_a_store_of_another_design(tmp_path: Path) -> None:
     (tmp_path / "few" / "results").mkdir(parents=True)
-    store = tmp_path / "few" / "results" / "counted.csv"
-    store.write_text("length,seed,twice\n1,0,0\n")
-    with pytest.raises(study.StudyError, match="a store of another design"):
+    file = tmp_path / "few" / "results" / "counted.csv"
+    file.write_text("length,seed,twice\n1,0,0\n")
+    with pytest.raises(store.StudyError, match="a store of another design"):
         _counted([]).results(study.Options(out=tmp_path))
-    assert store.read_text() == "length,seed,twice\n1,0,0\n"
+    assert file.read_text() == "length,seed,twice\n1,0,0\n"
 
 
 def test_a_design_that_was_changed_after_its_runs(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_a_design_that_was_changed_after_its_runs(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         _counted([]).results(study.Options(out=tmp_path))
     changed = study.Study("few/counted", lambda: [{"minutes": 2.0, "seed": 0}], lambda row: {})
-    with pytest.raises(study.StudyError, match=r"another design: .* was it changed after its runs"):
+    with pytest.raises(store.StudyError, match=r"another design: .* was it changed after its runs"):
         changed.results(options)
 
 
@@ -112,27 +112,27 @@ def test_a_store_of_another_version(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     options = study.Options(out=tmp_path)
     with pytest.raises(KeyboardInterrupt):
         _counted([]).results(options)
-    store = tmp_path / "few" / "results" / "counted.csv"
-    before = store.read_text()
-    monkeypatch.setattr(study, "RESULTS_VERSION", study.RESULTS_VERSION + 1)
-    with pytest.raises(study.StudyError, match=r"holds runs of results version \d+, and \d are"):
+    file = tmp_path / "few" / "results" / "counted.csv"
+    before = file.read_text()
+    monkeypatch.setattr(store, "RESULTS_VERSION", store.RESULTS_VERSION + 1)
+    with pytest.raises(store.StudyError, match=r"holds runs of results version \d+, and \d are"):
         _counted([]).results(options)
-    assert store.read_text() == before
+    assert file.read_text() == before
     judged = _counted([]).results(study.Options(out=tmp_path, runs=False))
-    assert set(judged["results_version"]) == {study.RESULTS_VERSION - 1}
+    assert set(judged["results_version"]) == {store.RESULTS_VERSION - 1}
 
 
 def test_a_store_of_two_versions(tmp_path: Path) -> None:
     (tmp_path / "few" / "results").mkdir(parents=True)
-    store = tmp_path / "few" / "results" / "counted.csv"
+    file = tmp_path / "few" / "results" / "counted.csv"
     for text in (
         "minutes,seed,twice\n1.0,0,0\n",
         "minutes,seed,twice,results_version\n1.0,0,0,4\n1.0,1,2,5\n",
     ):
-        store.write_text(text)
-        with pytest.raises(study.StudyError, match="does not say which results version"):
+        file.write_text(text)
+        with pytest.raises(store.StudyError, match="does not say which results version"):
             _counted([]).results(study.Options(out=tmp_path))
-        assert store.read_text() == text
+        assert file.read_text() == text
 
 
 def test_a_tree_without_results(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_a_tree_without_results(tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match=r"section4.results.section4\.csv is missing or empty"):
         study.main(script, ["--no-runs", "--out", str(tmp_path)])
     draw = plots.drawing(__name__, {"means": Plot([tmp_path / "means.csv"], lambda figure: None)})
-    with pytest.raises(study.StudyError, match=r"means\.csv is missing: its folder's README"):
+    with pytest.raises(store.StudyError, match=r"means\.csv is missing: its folder's README"):
         draw(study.Options(out=tmp_path))
     assert list(tmp_path.iterdir()) == []
 
@@ -148,7 +148,7 @@ def test_a_tree_without_results(tmp_path: Path) -> None:
 def test_long_tables_are_compressed_and_read_again(tmp_path: Path) -> None:
     many = study.Study(
         "few/many",
-        lambda: [{"minutes": 1.0, "seed": seed} for seed in range(study.MOST_PLAIN + 1)],
+        lambda: [{"minutes": 1.0, "seed": seed} for seed in range(store.MOST_PLAIN + 1)],
         lambda row: {"twice": 2.0 * row["seed"]},
     )
     options = study.Options(out=tmp_path)
@@ -158,39 +158,39 @@ def test_long_tables_are_compressed_and_read_again(tmp_path: Path) -> None:
     before = file.read_bytes()
     again = study.Study(many.name, many.design, lambda row: pytest.fail("it is there"))
     pd.testing.assert_frame_equal(again.results(options), made)
-    assert study.version_of(file) == study.RESULTS_VERSION
+    assert store.version_of(file) == store.RESULTS_VERSION
     file.unlink()
     many.results(options)
     assert file.read_bytes() == before
     file.write_bytes(before[:100])
-    with pytest.raises(study.StudyError, match="cannot be read"):
+    with pytest.raises(store.StudyError, match="cannot be read"):
         many.results(options)
 
 
 def test_a_command_goes_on_with_rows_of_its_version_alone(tmp_path: Path) -> None:
     path = tmp_path / "rows.csv"
-    assert len(study.resumed(path)) == 0
-    study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
-    assert study.resumed(path)["seed"].tolist() == [1, 2]
-    later = study.RESULTS_VERSION + 1
+    assert len(store.resumed(path)) == 0
+    store.write_table(path, pd.DataFrame({"seed": [1, 2]}))
+    assert store.resumed(path)["seed"].tolist() == [1, 2]
+    later = store.RESULTS_VERSION + 1
     for text, why in (
         (f"seed,results_version\n1,{later}\n", f"has rows of results version {later}, and this"),
         ("seed\n1\n", "does not say which results version"),
         ("", "cannot be read"),
     ):
         path.write_text(text)
-        with pytest.raises(study.StudyError, match=why):
-            study.resumed(path)
-        with pytest.raises(study.StudyError, match=why):
-            study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
+        with pytest.raises(store.StudyError, match=why):
+            store.resumed(path)
+        with pytest.raises(store.StudyError, match=why):
+            store.write_table(path, pd.DataFrame({"seed": [1, 2]}))
         assert path.read_text() == text
     path.write_text("seed,results_version\n")
-    study.write_table(path, pd.DataFrame({"seed": [1, 2]}))
+    store.write_table(path, pd.DataFrame({"seed": [1, 2]}))
     path.write_text("seed\n1\n")
     (tmp_path / "made.toml").write_text(
-        f'[results_version]\n"rows.csv" = {study.RESULTS_VERSION}\n'
+        f'[results_version]\n"rows.csv" = {store.RESULTS_VERSION}\n'
     )
-    assert study.resumed(path)["seed"].tolist() == [1]
+    assert store.resumed(path)["seed"].tolist() == [1]
 
 
 def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -200,9 +200,9 @@ def test_a_full_disk_leaves_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(study.os, "fsync", full)
-    with pytest.raises(study.StudyError, match="No space left on device; it is as it was"):
-        study.write(path, b"after")
+    monkeypatch.setattr(store.os, "fsync", full)
+    with pytest.raises(store.StudyError, match="No space left on device; it is as it was"):
+        store.write(path, b"after")
     assert path.read_text() == "before"
     assert [each.name for each in tmp_path.iterdir()] == ["claims.csv"]
 

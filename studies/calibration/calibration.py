@@ -34,7 +34,8 @@ from studies.calibration.score_card import (
 )
 from studies.claim import FAILS, HOLDS, Claims, Interval, unknown, write_claims
 from studies.section4.section4 import LEVELS_S
-from studies.study import COLORS, VERSION, Options, Row, Study, StudyError, main, picture
+from studies.store import VERSION, StudyError
+from studies.study import COLORS, Options, Row, Study, main, picture
 
 FIXED: Row = {
     "boat_radius_cm": 2.5,

@@ -11,7 +11,8 @@ import pytest
 import flockenv
 from studies.calibration.score_card import CARD, Number
 from studies.claim import Interval
-from studies.study import Options, Row, StudyError
+from studies.store import StudyError
+from studies.study import Options, Row
 
 
 def test_constants_lie_in_their_ranges_and_turn_as_they_say(script: ModuleType) -> None:

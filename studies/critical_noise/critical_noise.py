@@ -25,7 +25,8 @@ import numpy as np
 
 import flockenv
 from flockenv.statistics import critical_noise
-from studies.study import Row, Store, existing, run
+from studies.store import Row, Store, existing
+from studies.study import run
 
 NOISE_S = {
     "simulation": np.round(np.arange(0.0, 0.91, 0.05), 2),

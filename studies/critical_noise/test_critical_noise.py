@@ -8,7 +8,7 @@ import pytest
 
 from flockenv import FlockParameters
 from flockenv.statistics import critical_noise
-from studies.study import Row, StudyError
+from studies.store import Row, StudyError
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -45,7 +45,7 @@ from flockenv.comparison import compare_leaders, score_policies
 from flockenv.envs.observation import observation_entries
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
-from studies.study import write_table
+from studies.store import write_table
 
 FLOCKS, LEADERS, DECISIONS_HZ = 128, 3, 2.5
 #: Flock-hours of the two stages; flocks that judge during and after the training, and for how long.

@@ -11,7 +11,8 @@ from matplotlib.patches import Rectangle
 from docs.scripts.plots import Interval, Plot, bar_lengths, draw_intervals, name_heights
 from flockenv.comparison.levels import NO_STEERING, REFERENCE
 from studies.plots import OWN, drawing, interval
-from studies.study import existing, main
+from studies.store import existing
+from studies.study import main
 
 RESULTS = Path(__file__).parent / "results"
 PAIRS, CURVES, AREAS = (RESULTS / name for name in ("pairs.csv", "curves.csv.gz", "areas.csv"))

@@ -13,7 +13,8 @@ import pandas as pd
 
 from flockenv.comparison import score_policies
 from flockenv.comparison.levels import FLOCKS, LEVELS, NO_STEERING, REFERENCE
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 LEARNED, LAWS = "learned", (REFERENCE, "paper's law", NO_STEERING)
 

@@ -40,7 +40,8 @@ from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.errors import FlockError
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, two_way_interval
 from studies.levels import level_curves
-from studies.study import StudyError, existing, resumed, run, write, write_table
+from studies.store import StudyError, existing, resumed, write, write_table
+from studies.study import run
 from studies.suite.compare_grid import holm
 
 HERE = Path(__file__).parent

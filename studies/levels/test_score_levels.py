@@ -12,7 +12,7 @@ from flockenv.comparison.levels import LEVELS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
 from flockenv.runs.store import RESULTS_VERSION
-from studies.study import existing
+from studies.store import existing
 
 FLOCKS = 64
 

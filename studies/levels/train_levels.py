@@ -61,7 +61,8 @@ from flockenv.policies.provenance import provenance_of
 from flockenv.runs.store import RESULTS_VERSION
 from studies.levels.level_curves import Curve
 from studies.levels.level_learners import LEARNERS
-from studies.study import StudyError, run, write
+from studies.store import StudyError, write
+from studies.study import run
 
 ENTRIES = Path("studies/levels/entries")
 

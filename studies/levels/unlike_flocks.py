@@ -65,7 +65,8 @@ from flockenv.statistics import (
 from studies.levels import score_levels
 from studies.levels.draw import trainings
 from studies.other_flocks.beyond_one_noise import CELLS, Cell
-from studies.study import HERE, Options, Row, Study, run, write_table
+from studies.store import write_table
+from studies.study import HERE, Options, Row, Study, run
 
 LAW_FLOCKS, LED_FLOCKS, MARGIN = 128, 8, 0.05
 KEY, PLACE = ["level", "budget", "entry"], ["level", "what", "value"]

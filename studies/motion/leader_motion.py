@@ -18,7 +18,8 @@ from docs.scripts.plots import page_style, write_png
 from flockenv import FlockParameters
 from flockenv.comparison.figure import policy_colors
 from flockenv.statistics import mean_interval
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 FOLDER = Path(__file__).parent
 POOLS = ("wide", "narrow")

@@ -28,7 +28,8 @@ from flockenv.comparison import run_episodes, score_policies
 from flockenv.comparison.score import SCORE
 from flockenv.policies import DampedLaw, LeaningLaw, load
 from flockenv.runs.seeds import release_seeds
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 POOL = "wide"
 

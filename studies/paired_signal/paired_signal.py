@@ -21,7 +21,8 @@ import pandas as pd
 
 from flockenv.runs.seeds import release_seeds
 from studies.planning.plan_ahead import flocks, learned
-from studies.study import check_version, run, write_table
+from studies.store import check_version, write_table
+from studies.study import run
 
 HORIZONS_S = (8, 16, 24, 32, 48, 64, 96, 128, 192, 240)
 LONGEST_S, WINDOW_S = 240, 8

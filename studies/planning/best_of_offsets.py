@@ -27,7 +27,8 @@ from flockenv.policies.laws import LARGEST_LEAN
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import mean_interval
 from studies.planning.plan_ahead import flocks, learned
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 STATES, OFFSETS, NOISES, BLOCK = 128, 16, 64, 4
 SIZES_RAD, HORIZONS_S, BEFORE_S, HELD_S, SKIPPED_S = (0.3,), (64, 96), 240, 16, 8

@@ -33,7 +33,8 @@ from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
 from studies.flocks import lean
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 EPISODE_S, EVERY_S, HELD_S, HORIZON_S, JUDGED_S = 480, 8, 16, 32, 8
 CANDIDATES, OFFSET_RAD = 16, 0.3

@@ -43,7 +43,8 @@ from flockenv.policies import LeaningLaw, load
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from flockenv.runs.seeds import release_seeds
 from studies.flocks import lean
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 FLOCKS, ROUNDS, BEFORE_S, BRANCH_S, HELD_S, HOLDS, SKIPPED_S = 256, 20, 240, 64, 16, 2, 8
 OFFSET_RAD, FLIPS = 0.4, 2000

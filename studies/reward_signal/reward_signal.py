@@ -34,7 +34,8 @@ import flockenv
 from flockenv.policies import LeaningLaw, StraightAhead
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv
-from studies.study import check_version, run, write_table
+from studies.store import check_version, write_table
+from studies.study import run
 
 REWARDS = ("leader_velocity", "contact_push", "contact_alignment", "signed_order")
 #: Rows that a baseline is fitted to, about.

@@ -27,7 +27,8 @@ from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw
 from flockenv.runs.seeds import POLICY_SEEDS
 from studies.roles.misinformed_pair import TASK, Signed
-from studies.study import check_version, run, write_table
+from studies.store import check_version, write_table
+from studies.study import run
 from studies.tuned_laws.tune_laws import RANGES, law
 
 LEADERS, NUMBERS = 2, 1 + len(RANGES)

@@ -16,7 +16,8 @@ from studies.section5.section5 import (
     Evidence,
     in_words,
 )
-from studies.study import COLORS, Options, main, picture, write
+from studies.store import write
+from studies.study import COLORS, Options, main, picture
 
 
 def judge(e: Evidence) -> Claims:

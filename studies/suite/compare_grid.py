@@ -25,7 +25,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from studies.study import run, version_of, write_table
+from studies.store import version_of, write_table
+from studies.study import run
 
 PERMUTATIONS = 9999
 

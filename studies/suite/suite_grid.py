@@ -71,7 +71,8 @@ from flockenv.policies import NetworkPolicy
 from flockenv.policies.provenance import commit
 from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics import interquartile_mean
-from studies.study import StudyError, run, write_table
+from studies.store import StudyError, write_table
+from studies.study import run
 from studies.suite.suite_learners import INPUTS, Training, learn
 
 #: Of each algorithm, as `Training.setting`.

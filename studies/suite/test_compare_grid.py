@@ -5,7 +5,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from studies.study import RESULTS_VERSION, version_of
+from flockenv.runs.store import RESULTS_VERSION
+from studies.store import version_of
 
 
 def trainings(*algorithms: float, seed: int = 0) -> pd.DataFrame:

@@ -22,7 +22,8 @@ import pandas as pd
 import flockenv
 from flockenv.statistics.structure import structure_series
 from flockenv.tracks import TrackLayout, read_tracks
-from studies.study import check_version, run, write_table
+from studies.store import check_version, write_table
+from studies.study import run
 
 QUANTITIES = ("psi_o", "nematic", "milling", "psi_v", "largest_cluster")
 LAYOUT = TrackLayout(pool="wide", leaders=("0", "1", "2"), fps=25.0, wrapped=False)

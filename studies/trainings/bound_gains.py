@@ -16,7 +16,8 @@ import numpy as np
 import pandas as pd
 
 from flockenv.statistics import student_interval
-from studies.study import run, write
+from studies.store import write
+from studies.study import run
 
 RESULTS = Path(__file__).parent / "results"
 BOUND = "bound"

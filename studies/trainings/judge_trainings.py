@@ -53,7 +53,8 @@ from flockenv import FlockParameters
 from flockenv.comparison import compare_leaders, score_policies
 from flockenv.runs.seeds import release_seeds
 from flockenv.statistics import two_way_interval
-from studies.study import check_version, run, write_table
+from studies.store import check_version, write_table
+from studies.study import run
 
 LAWS = ("paper's law", "tuned law")
 

@@ -33,18 +33,8 @@ import flockenv
 from flockenv.statistics.structure import jam_sizes
 from studies.claim import Claims, bca, mean, write_claims
 from studies.flocks import one_jam, rotating
-from studies.study import (
-    COLORS,
-    FIRST_SEED,
-    Options,
-    Row,
-    Study,
-    curve,
-    flock,
-    main,
-    picture,
-    write,
-)
+from studies.store import write
+from studies.study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
 from studies.transition.outside import JAMS
 from studies.transition.transition_runs import STARTED, WHITE, outer_radius_cm
 

@@ -11,7 +11,8 @@ from typing import Any
 import pandas as pd
 
 from studies.claim import mean
-from studies.study import COLORS, Options, curve, picture, write
+from studies.store import write
+from studies.study import COLORS, Options, curve, picture
 
 JAMS = 0.05
 """Least share of boats in jams, over the last ten minutes, of a flock that has any."""

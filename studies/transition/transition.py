@@ -24,7 +24,8 @@ from studies.claim import (
     write_claims,
 )
 from studies.section4.fig08 import slope
-from studies.study import COLORS, Options, curve, main, picture, write
+from studies.store import write
+from studies.study import COLORS, Options, curve, main, picture
 from studies.transition.outside import write_outside
 from studies.transition.transition_runs import AFTER_MIN, C4, LITERAL, LONG, STARTED, STUDY
 

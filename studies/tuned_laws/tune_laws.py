@@ -40,7 +40,8 @@ from flockenv.comparison import run_episodes, score_policies
 from flockenv.policies import DampedLaw
 from flockenv.policies.provenance import provenance_of
 from flockenv.runs.seeds import POLICY_SEEDS, release_seeds
-from studies.study import resumed, run, write_table
+from studies.store import resumed, write_table
+from studies.study import run
 
 #: Gains, each with the middle and the width (in factors of e) of the first generation.
 RANGES: dict[str, tuple[float, float]] = {
