@@ -16,8 +16,9 @@ import pandas as pd
 
 from flockenv.statistics import bootstrap_interval
 from studies.claim import DISORDER, FAILS, HOLDS, OPEN, Interval, crossing
+from studies.order import MOSTLY, PHI_EDGES
 from studies.section4 import fig07, section4, states
-from studies.study import MOSTLY, PHI_EDGES, Row, simulated
+from studies.study import Row, simulated
 
 ARMS: dict[str, tuple[int, str]] = {"free": (0, "cw"), "ccw": (3, "ccw"), "cw": (3, "cw")}
 LED = ("ccw", "cw")

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from studies.calibration.score_card import CARD
+from studies.order import PHI_EDGES
 from studies.section4.section4 import LEVELS_S
-from studies.study import PHI_EDGES
 
 BY_NAME = {number.name: number for number in CARD}
 

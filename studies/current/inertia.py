@@ -25,6 +25,7 @@ import pandas as pd
 import flockenv
 from studies.claim import Claims, bca, disorder, mean, write_claims
 from studies.current.water import add_speeds
+from studies.order import order_row
 from studies.section4.section4 import at, over
 from studies.study import (
     COLORS,
@@ -35,7 +36,6 @@ from studies.study import (
     curve,
     flock,
     main,
-    order_row,
     picture,
     seed_of,
     simulated,

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, Interval, bca, crossing, judging, mean
+from studies.order import PHI_EDGES, histograms
 from studies.section4.section4 import (
     CCW,
     CW,
@@ -28,15 +29,7 @@ from studies.section4.section4 import (
     within,
     words,
 )
-from studies.study import (
-    PAPERS_LINE,
-    PHI_EDGES,
-    Options,
-    density_map,
-    histograms,
-    main,
-    picture,
-)
+from studies.study import PAPERS_LINE, Options, density_map, main, picture
 
 TIMES_UNIFORM = (2.0, 3.0)
 NEAR = 0.65

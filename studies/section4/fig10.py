@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import DISORDER, Claims, Interval, bca, crossing, disorder, judging, mean
+from studies.order import MOSTLY
 from studies.section4.section4 import (
     CW,
     FREE,
@@ -21,7 +22,7 @@ from studies.section4.section4 import (
     setup,
     words,
 )
-from studies.study import COLORS, MOSTLY, PAPERS_LINE, Options, curve, main, picture
+from studies.study import COLORS, PAPERS_LINE, Options, curve, main, picture
 
 _BANDS = {"low": LOW_S, "medium": MEDIUM_S, "high": HIGH_S}
 

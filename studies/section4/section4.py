@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.study import SEEDS, Row, Study, order_row, simulated
+from studies.order import order_row
+from studies.study import SEEDS, Row, Study, simulated
 
 LEVELS_S = tuple(round(0.2 * place, 1) for place in range(15))
 """Backward durations from 0 to 2.8 s; the paper's begin at 0.4 s."""

@@ -4,16 +4,9 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, Interval, mean
+from studies.order import PHI_EDGES, histograms
 from studies.section5.section5 import LOST_S, LOW_S, SERIES, Evidence, judging_presets, panel_title
-from studies.study import (
-    PAPERS_LINE,
-    PHI_EDGES,
-    Options,
-    density_map,
-    histograms,
-    main,
-    picture,
-)
+from studies.study import PAPERS_LINE, Options, density_map, main, picture
 
 
 def in_rarer_direction(runs: pd.DataFrame) -> tuple[int, int]:

@@ -4,17 +4,9 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, bca, mean
+from studies.order import MOSTLY, PHI_EDGES, PSI_EDGES, histograms
 from studies.section5.section5 import Evidence, judging_presets
-from studies.study import (
-    MOSTLY,
-    PHI_EDGES,
-    PSI_EDGES,
-    Options,
-    density_map,
-    histograms,
-    main,
-    picture,
-)
+from studies.study import Options, density_map, main, picture
 
 
 def densities(e: Evidence) -> pd.DataFrame:
