@@ -1,4 +1,4 @@
-"""Studies: designs as tables of runs, pictures, scripts.
+"""Studies: designs as tables of runs, and the scripts that make, judge and draw them.
 
 A design is a list of rows; a row says all that a run depends on, its seed included. The result is
 ``results/<name>.csv`` in the study's folder, compressed if it is long, with one line per run: the
@@ -9,28 +9,20 @@ runs.
 """
 
 import argparse
-import io
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
-from numpy.typing import NDArray
 
 import flockenv
-from docs.scripts.plots import page_style, write_png
-from flockenv.rendering.palette import OKABE_ITO
 from flockenv.runs.seeds import POLICY_SEEDS
-from studies.store import Row, Store, StudyError, existing, write
+from studies.store import Row, Store, StudyError, existing
 
 HERE = Path(__file__).parent
 FIRST_SEED = POLICY_SEEDS["paper"].first
@@ -159,58 +151,6 @@ def simulated(row: Mapping[str, Any], **options: Any) -> flockenv.Recording:
 def seed_of(row: Mapping[str, Any]) -> int:
     """Return the simulator's seed of a row, counted from its ``first_seed`` if it has one."""
     return int(row.get("first_seed", FIRST_SEED)) + int(row["seed"])
-
-
-# --- pictures -------------------------------------------------------------------------------------
-
-COLORS = (*OKABE_ITO.values(),)
-
-PAPERS_LINE: dict[str, Any] = {
-    "color": "0.1",
-    "linestyle": "--",
-    "path_effects": [withStroke(linewidth=3.0, foreground="w")],
-}
-"""How a picture marks what the paper says, visible on every ground."""
-
-DENSITIES = "YlGnBu"
-"""The map of densities: nothing is the color of the ground, so that `docs.scripts.dark` and the
-site's style sheet, which turn lightness around, make a map of it that begins at dark ground."""
-
-
-@contextmanager
-def picture(
-    options: Options, name: str, width_cm: float = 17.0, height_cm: float = 7.0
-) -> Iterator[Figure]:
-    """Yield an empty figure, and write it to ``pictures/<name>.png``."""
-    with mpl.rc_context(page_style(9.0)):
-        figure = Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained")
-        yield figure
-        write_png(figure, file := io.BytesIO(), 130)
-    write(path := options.folder / "pictures" / f"{name}.png", file.getvalue())
-    print(f"Drawn: {path}")
-
-
-def curve(
-    axes: Any, x: Iterable[float], intervals: Iterable[tuple[float, float, float]], **style: Any
-) -> None:
-    """Draw means with their intervals."""
-    value, low, high = np.array(list(intervals)).T
-    bars = np.nan_to_num(np.maximum([value - low, high - value], 0.0))
-    axes.errorbar(list(x), value, bars, elinewidth=0.7, **{"marker": "o", **style})
-
-
-def density_map(
-    axes: Any, x: Sequence[float], edges: NDArray[np.float64], shares: Sequence[Any], most: float
-) -> Any:
-    """Draw histograms side by side, as densities over a uniform one."""
-    centers = np.asarray(x, float)
-    step = np.diff(centers).min() / 2
-    sides = np.array([*(centers - step), centers[-1] + step])
-    density = (len(edges) - 1) * np.array(shares).T
-    axes.grid(visible=False)
-    return axes.pcolormesh(
-        sides, edges, density, cmap=DENSITIES, vmin=0.0, vmax=most, rasterized=True
-    )
 
 
 # --- scripts --------------------------------------------------------------------------------------

@@ -20,8 +20,8 @@ from docs.scripts.plots import (
     letters_px,
 )
 from studies import make
+from studies.picture import DENSITIES
 from studies.plots import grouped, levels
-from studies.study import DENSITIES
 
 STUDIES = Path(__file__).parent
 PLOTS = {

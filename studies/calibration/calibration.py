@@ -33,9 +33,10 @@ from studies.calibration.score_card import (
     values_of,
 )
 from studies.claim import FAILS, HOLDS, Claims, Interval, unknown, write_claims
+from studies.picture import COLORS, picture
 from studies.section4.section4 import LEVELS_S
 from studies.store import VERSION, StudyError
-from studies.study import COLORS, Options, Row, Study, main, picture
+from studies.study import Options, Row, Study, main
 
 FIXED: Row = {
     "boat_radius_cm": 2.5,

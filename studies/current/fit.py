@@ -15,8 +15,9 @@ import pandas as pd
 import flockenv
 from studies.claim import DISORDER, Claims, bca, disorder, fall, mean, write_claims
 from studies.order import order_row
+from studies.picture import COLORS, curve, picture
 from studies.section4.section4 import LEVELS_S, at
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
+from studies.study import SEEDS, Options, Row, Study, main, simulated
 
 MEASURED: Row = {
     "speed_spread_cm_s": 5.0,

@@ -26,20 +26,9 @@ import flockenv
 from studies.claim import Claims, bca, disorder, mean, write_claims
 from studies.current.water import add_speeds
 from studies.order import order_row
+from studies.picture import COLORS, curve, picture
 from studies.section4.section4 import at, over
-from studies.study import (
-    COLORS,
-    SEEDS,
-    Options,
-    Row,
-    Study,
-    curve,
-    flock,
-    main,
-    picture,
-    seed_of,
-    simulated,
-)
+from studies.study import SEEDS, Options, Row, Study, flock, main, seed_of, simulated
 
 GAIN, RELAXATION_S = 0.6, 45.0
 WEAK, INSTANT, INERT = "as in the preset", "strong, without inertia", "strong, with inertia"

@@ -14,7 +14,8 @@ import pandas as pd
 
 import flockenv
 from studies.claim import Claims, judging, mean
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, simulated
+from studies.picture import COLORS, curve, picture
+from studies.study import SEEDS, Options, Row, Study, flock, main, simulated
 
 FIRST = 530  # Seeds that no other study of this folder has.
 NOISES_S = (0.8, 1.0, 1.2)

@@ -16,10 +16,11 @@ import pandas as pd
 from studies.claim import OPEN, Claim, Interval, mean, proportion, write_claims
 from studies.counts import FIGURES
 from studies.headlines import headlines
+from studies.picture import COLORS, picture
 from studies.section4 import fig07, fig10, fig12, section4, states
 from studies.section5 import fig14, fig15, fig17, section5
 from studies.section5.section5 import FEW_LEVELS_S, LOW_S, READINGS, Evidence
-from studies.study import COLORS, FIRST_SEED, HERE, Options, Row, Study, main, picture
+from studies.study import FIRST_SEED, HERE, Options, Row, Study, main
 
 FIRST, BLOCK = 30_000, 1000
 """The first of the seeds that no other study has, and the seeds kept for each statement."""

@@ -14,10 +14,11 @@ from studies.claim import Claims, Interval, bca, mean, write_claims
 from studies.current.fit import CANDIDATE, HELD_OUT, LEVELS_S, constants, runs_of
 from studies.flocks import RADII_CM
 from studies.order import order_row
+from studies.picture import COLORS, curve, picture
 from studies.section4.section4 import FREE, READING, STUDY, VERY_LOW_S, over, setup, words
 from studies.section5.section5 import STUDY as SECTION5
 from studies.section5.section5 import Evidence
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture
+from studies.study import SEEDS, Options, Row, Study, flock, main
 from studies.study import simulated as run_of
 
 FIRST = 100  # Seeds that no other study of this folder has.

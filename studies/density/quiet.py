@@ -14,8 +14,9 @@ import pandas as pd
 
 from studies.claim import Claims, bca, judging, mean
 from studies.order import order_row
+from studies.picture import COLORS, curve, picture
 from studies.section4.fig08 import slope
-from studies.study import COLORS, Options, Row, Study, curve, main, picture
+from studies.study import Options, Row, Study, main
 from studies.study import simulated as run_of
 
 FIRST, RUNS = 500, 12  # Seeds that no other study of this folder has.

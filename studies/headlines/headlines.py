@@ -18,7 +18,8 @@ import flockenv
 from studies.claim import Claims, Interval, bca, disorder, fall, judging, mean, unknown
 from studies.density.noise_makes_motion import SETS, order_row
 from studies.flocks import one_jam, rotating
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, flock, main, picture, seed_of
+from studies.picture import COLORS, curve, picture
+from studies.study import SEEDS, Options, Row, Study, flock, main, seed_of
 
 FIRST = 200
 """Seeds that no other study of this folder has."""

@@ -40,6 +40,7 @@ from docs.scripts.plots import draw_intervals, name_heights
 from flockenv.comparison.figure import policy_colors
 from flockenv.statistics import FEW
 from studies.claim import Claims, Interval, bca, judging, unknown
+from studies.picture import COLORS, curve, picture
 from studies.response.branches import (
     FREE,
     KINDS,
@@ -54,7 +55,7 @@ from studies.response.branches import (
     Group,
     cells,
 )
-from studies.study import COLORS, Options, curve, main, picture
+from studies.study import Options, main
 from studies.worth.worth_runs import DENSITY_BOATS, LAW
 
 

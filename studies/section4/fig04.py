@@ -8,8 +8,9 @@ from matplotlib.patches import Circle
 
 import flockenv
 from flockenv.statistics.structure import structure_series
+from studies.picture import COLORS, picture
 from studies.section4.states import STATES
-from studies.study import COLORS, Options, Row, main, picture, simulated
+from studies.study import Options, Row, main, simulated
 
 _TITLES = ("jamming", "clustering", "ordered motion", "disordered motion")
 _NOISE_S = (0.4, 1.4, 1.0, 2.8)

@@ -5,8 +5,9 @@ import pandas as pd
 
 import flockenv
 from studies.claim import Claims, Interval, judging, mean
+from studies.picture import COLORS, picture
 from studies.section4.section4 import READING
-from studies.study import COLORS, SEEDS, Options, Row, Study, flock, main, picture, seed_of
+from studies.study import SEEDS, Options, Row, Study, flock, main, seed_of
 
 NOISES_S = (1.8, 1.4)
 """The paper's noise, and one near which the preset loses its order."""

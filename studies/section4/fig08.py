@@ -7,8 +7,9 @@ import pandas as pd
 
 from flockenv.statistics import kaplan_meier
 from studies.claim import Claims, Interval, bca, judging, mean, unknown
+from studies.picture import COLORS, picture
 from studies.section4.section4 import CW, FREE, READING, STUDY, at, setup, within
-from studies.study import COLORS, Options, main, picture
+from studies.study import Options, main
 
 END_S = 480.0
 _PAPERS_P = {CW: 0.01, FREE: 0.003}

@@ -15,6 +15,7 @@ import pandas as pd
 
 from studies.claim import Claims, Interval, bca, crossing, judging, mean
 from studies.order import PHI_EDGES, histograms
+from studies.picture import PAPERS_LINE, density_map, picture
 from studies.section4.section4 import (
     CCW,
     CW,
@@ -29,7 +30,7 @@ from studies.section4.section4 import (
     within,
     words,
 )
-from studies.study import PAPERS_LINE, Options, density_map, main, picture
+from studies.study import Options, main
 
 TIMES_UNIFORM = (2.0, 3.0)
 NEAR = 0.65

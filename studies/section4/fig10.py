@@ -7,6 +7,7 @@ import pandas as pd
 
 from studies.claim import DISORDER, Claims, Interval, bca, crossing, disorder, judging, mean
 from studies.order import MOSTLY
+from studies.picture import COLORS, PAPERS_LINE, curve, picture
 from studies.section4.section4 import (
     CW,
     FREE,
@@ -22,7 +23,7 @@ from studies.section4.section4 import (
     setup,
     words,
 )
-from studies.study import COLORS, PAPERS_LINE, Options, curve, main, picture
+from studies.study import Options, main
 
 _BANDS = {"low": LOW_S, "medium": MEDIUM_S, "high": HIGH_S}
 

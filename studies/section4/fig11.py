@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, Interval, bca, judging, mean
+from studies.picture import COLORS, PAPERS_LINE, curve, picture
 from studies.section4.section4 import (
     CW,
     FREE,
@@ -16,7 +17,7 @@ from studies.section4.section4 import (
     setup,
     words,
 )
-from studies.study import COLORS, PAPERS_LINE, Options, curve, main, picture
+from studies.study import Options, main
 
 
 def share_of_best(runs: pd.DataFrame, least: float, most: float = 9.0) -> Interval:

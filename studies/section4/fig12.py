@@ -5,9 +5,10 @@ import pandas as pd
 
 from studies.claim import Claims, Interval, bca, judging, mean
 from studies.order import order_row
+from studies.picture import COLORS, curve, picture
 from studies.section4.fig08 import slope
 from studies.section4.section4 import READING
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, main, picture, simulated
+from studies.study import SEEDS, Options, Row, Study, main, simulated
 
 NOISES_S = (1.8, 1.4)
 """The paper's noise, which it calls critical, and about the critical one of the preset."""

@@ -11,19 +11,9 @@ import pandas as pd
 import flockenv
 from flockenv.statistics.structure import structure_series
 from studies.claim import Claims, Interval, judging, mean
+from studies.picture import COLORS, PAPERS_LINE, curve, picture
 from studies.section4.section4 import LOW_S, MEDIUM_S, READING, over, within, words
-from studies.study import (
-    COLORS,
-    PAPERS_LINE,
-    SEEDS,
-    Options,
-    Row,
-    Study,
-    curve,
-    main,
-    picture,
-    simulated,
-)
+from studies.study import SEEDS, Options, Row, Study, main, simulated
 
 LEVELS_S = (1.4, 1.9, 0.4, 0.8, 1.2, 1.6, 2.4, 2.8)
 STATES = ("jamming", "clustering", "ordered", "disordered", "between")

@@ -5,8 +5,9 @@ import pandas as pd
 
 from studies.claim import Claims, Interval, mean
 from studies.order import PHI_EDGES, histograms
+from studies.picture import PAPERS_LINE, density_map, picture
 from studies.section5.section5 import LOST_S, LOW_S, SERIES, Evidence, judging_presets, panel_title
-from studies.study import PAPERS_LINE, Options, density_map, main, picture
+from studies.study import Options, main
 
 
 def in_rarer_direction(runs: pd.DataFrame) -> tuple[int, int]:

@@ -5,8 +5,9 @@ import pandas as pd
 
 from studies.claim import Claims, bca, mean
 from studies.order import MOSTLY, PHI_EDGES, PSI_EDGES, histograms
+from studies.picture import density_map, picture
 from studies.section5.section5 import Evidence, judging_presets
-from studies.study import Options, density_map, main, picture
+from studies.study import Options, main
 
 
 def densities(e: Evidence) -> pd.DataFrame:

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, Interval, mean, write_claims
+from studies.picture import COLORS, picture
 from studies.section5 import fig14, fig15, fig16, fig17
 from studies.section5.section5 import (
     LOST_S,
@@ -17,7 +18,7 @@ from studies.section5.section5 import (
     in_words,
 )
 from studies.store import write
-from studies.study import COLORS, Options, main, picture
+from studies.study import Options, main
 
 
 def judge(e: Evidence) -> Claims:

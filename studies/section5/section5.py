@@ -7,7 +7,8 @@ import pandas as pd
 
 from studies.claim import Claim, Claims, Interval, critical_bw, judging, mean, unknown
 from studies.order import order_row
-from studies.study import COLORS, SEEDS, Options, Row, Study, curve, picture, simulated
+from studies.picture import COLORS, curve, picture
+from studies.study import SEEDS, Options, Row, Study, simulated
 
 LEVELS_S = tuple(round(0.1 * place, 1) for place in range(13))
 FEW_LEVELS_S = (0.0, 0.2, *LEVELS_S[4:9], 1.0, 1.2)

@@ -23,8 +23,9 @@ import pandas as pd
 import flockenv
 from flockenv.comparison.figure import policy_colors
 from studies.claim import Claims, Interval, bca, critical_bw, mean, unknown, write_claims
+from studies.picture import COLORS, curve, picture
 from studies.section4.fig08 import slope
-from studies.study import COLORS, Options, Row, Study, curve, main, picture, seed_of
+from studies.study import Options, Row, Study, main, seed_of
 from studies.worth.worth_runs import DENSITY_BOATS, LAW, POLICIES
 from studies.worth.worth_runs import measure as measure_led
 

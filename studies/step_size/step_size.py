@@ -30,7 +30,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from studies.claim import Claims, Interval, bca, mean, unknown, write_claims
-from studies.study import COLORS, Options, Row, Study, main, picture, simulated
+from studies.picture import COLORS, picture
+from studies.study import Options, Row, Study, main, simulated
 
 FIRST = 20_000  # Seeds that no other study of this folder has.
 SEEDS = 1800

@@ -33,8 +33,9 @@ import flockenv
 from flockenv.statistics.structure import jam_sizes
 from studies.claim import Claims, bca, mean, write_claims
 from studies.flocks import one_jam, rotating
+from studies.picture import COLORS, curve, picture
 from studies.store import write
-from studies.study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
+from studies.study import FIRST_SEED, Options, Row, Study, flock, main
 from studies.transition.outside import JAMS
 from studies.transition.transition_runs import STARTED, WHITE, outer_radius_cm
 

@@ -19,7 +19,8 @@ import flockenv
 from flockenv.statistics.structure import jam_sizes
 from studies.claim import Claims, judging, mean
 from studies.flocks import rotating
-from studies.study import COLORS, FIRST_SEED, Options, Row, Study, curve, flock, main, picture
+from studies.picture import COLORS, curve, picture
+from studies.study import FIRST_SEED, Options, Row, Study, flock, main
 from studies.transition.transition_runs import outer_radius_cm
 
 COVERAGE = 0.35

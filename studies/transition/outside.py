@@ -11,8 +11,9 @@ from typing import Any
 import pandas as pd
 
 from studies.claim import mean
+from studies.picture import COLORS, curve, picture
 from studies.store import write
-from studies.study import COLORS, Options, curve, picture
+from studies.study import Options
 
 JAMS = 0.05
 """Least share of boats in jams, over the last ten minutes, of a flock that has any."""

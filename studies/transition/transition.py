@@ -23,9 +23,10 @@ from studies.claim import (
     unknown,
     write_claims,
 )
+from studies.picture import COLORS, curve, picture
 from studies.section4.fig08 import slope
 from studies.store import write
-from studies.study import COLORS, Options, curve, main, picture
+from studies.study import Options, main
 from studies.transition.outside import write_outside
 from studies.transition.transition_runs import AFTER_MIN, C4, LITERAL, LONG, STARTED, STUDY
 

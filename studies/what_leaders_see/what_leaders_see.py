@@ -17,7 +17,8 @@ from flockenv.comparison import compare_leaders, run_episodes
 from flockenv.policies import LeaningLaw
 from flockenv.policies.laws import LARGEST_LEAN, LEAN_FEATURES
 from studies.claim import Claims, Interval, judging, mean
-from studies.study import COLORS, FIRST_SEED, Options, Row, Study, flock, main, picture
+from studies.picture import COLORS, picture
+from studies.study import FIRST_SEED, Options, Row, Study, flock, main
 
 CELL: Row = {"pool": "wide", "n_boats": 27, "n_leaders": 3, "bw_s": 0.31}
 BLOCKS, FLOCKS = 16, 32

@@ -10,7 +10,8 @@ import pandas as pd
 
 from flockenv.comparison.figure import policy_colors
 from studies.claim import Claims, Interval, bca, judging, mean, unknown
-from studies.study import Options, curve, main, picture
+from studies.picture import curve, picture
+from studies.study import Options, main
 from studies.worth.worth_runs import LAW, NOISES_S, POLICIES, STUDY
 
 
