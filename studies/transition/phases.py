@@ -33,7 +33,9 @@ import numpy as np
 import pandas as pd
 
 from studies.claim import Claims, Interval, mean, proportion, unknown, write_claims
-from studies.study import COLORS, DENSITIES, Options, Row, Study, curve, main, picture, write
+from studies.picture import COLORS, DENSITIES, curve, picture
+from studies.store import write
+from studies.study import Options, Row, Study, main
 from studies.transition import condensation
 from studies.transition.condensation import ADDED, DENSE, HOURS, WIDTH_CM, difference, outside
 from studies.transition.outside import JAMS
