@@ -8,11 +8,12 @@ import numpy as np
 import typer
 
 from flockenv._io.atomic_write import write_csv
-from flockenv.cli.console import echo, errors, print_json
+from flockenv.cli.console import echo, errors, print_json, warn
 from flockenv.cli.options import Printing
 from flockenv.cli.output import prepare
 from flockenv.cli.progress import progress
 from flockenv.comparison.levels import FLOCKS, LEVELS, SUITE
+from flockenv.comparison.report import overlap_notes
 from flockenv.comparison.suite_entry import Scored, SuiteEntry, scored
 from flockenv.errors import ParameterError, refuse_unknown
 
@@ -26,7 +27,7 @@ def compare_entries(
     *,
     trust: bool,
 ) -> None:
-    """Score entries, and write a row for each of their levels and the order of every flock."""
+    """Score entries, and write a row for each of their levels and one for every flock."""
     levels, flocks = _levels(tasks), trial_flocks or FLOCKS
     if not files:
         raise ParameterError(f"--suite {SUITE} scores entries: name the file of one with --entry")
@@ -58,7 +59,9 @@ def compare_entries(
 
 
 def _show(found: Scored, out: Path, printing: Printing) -> None:
-    """Print the rows, and where they are."""
+    """Print the rows, and where they are; warn of overlaps beyond the tolerance."""
+    for line in overlap_notes(found.orders):
+        warn(line)
     if printing.as_json:
         print_json({"entries": json.loads(found.rows.to_json(orient="records"))})
         return

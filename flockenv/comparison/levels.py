@@ -3,7 +3,7 @@
 If a level or a number in one changes, it is another suite.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from flockenv.comparison.episodes import Progress, no_progress, run_episodes
 from flockenv.envs.ids import ENVIRONMENTS
 from flockenv.envs.options import EnvOptions
 from flockenv.errors import ParameterError, short_repr
+from flockenv.flock import STEP_STATISTICS
 from flockenv.parameters import FlockParameters
 from flockenv.policies.base import Policy
 from flockenv.policies.names import DAMPED_LAW
@@ -28,6 +29,12 @@ FLOCKS = 512
 
 NO_STEERING, REFERENCE = "straight ahead", DAMPED_LAW
 """The policies whose scores are 0 and 1."""
+
+MEASURED = ("signed_order", *STEP_STATISTICS)
+"""What is known of each flock: its score, and whether the run kept its tolerance."""
+
+Led = Mapping[str, NDArray[np.float64]]
+"""The `MEASURED` of flocks by name, shape (flocks,), or (policies, flocks) of several policies."""
 
 BUDGETS = (30, 100, 300)
 """Flock-hours of a training, by which entries are classed; the last rollout may add 2 %."""
@@ -74,10 +81,10 @@ class Level:
         """Return the hours of simulated time that a policy takes."""
         return flocks * self.episode_s / 3600.0
 
-    def orders(
+    def run(
         self, steers: Policy | str, flocks: int = FLOCKS, progress: Progress = no_progress
-    ) -> NDArray[np.float64]:
-        """Return the signed order of each of the level's first flocks, led by a policy."""
+    ) -> Led:
+        """Return what was measured in each of the level's first flocks, led by a policy."""
         if not 2 <= flocks <= FLOCKS:
             raise ParameterError(
                 f"flocks = {short_repr(flocks)} is not accepted: from 2 to {FLOCKS}"
@@ -86,20 +93,22 @@ class Level:
         found = run_episodes(
             self.parameters, checked, _SEEDS[:flocks], self.episode_s, progress, self.environment
         )
-        return found["signed_order"]
+        return {name: found[name] for name in MEASURED}
 
-    def references(
-        self, flocks: int = FLOCKS, progress: Progress = no_progress
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the orders of flocks without steering, and of those under the damped law."""
-        none, law = (self.orders(name, flocks, progress) for name in (NO_STEERING, REFERENCE))
-        return none, law
+    def references(self, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
+        """Return flocks without steering, and the same flocks under the damped law."""
+        return stacked([self.run(name, flocks, progress) for name in (NO_STEERING, REFERENCE)])
 
 
 LEVELS: Mapping[str, Level] = {
     name: Level.from_id(name, env_id) for name, env_id in LEVEL_IDS.items()
 }
 """The levels by name."""
+
+
+def stacked(led: Sequence[Led]) -> Led:
+    """Return the flocks of several policies as one, shape (policies, flocks)."""
+    return {name: np.array([own[name] for own in led]) for name in MEASURED}
 
 
 def score(

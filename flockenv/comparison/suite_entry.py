@@ -21,9 +21,11 @@ from flockenv.comparison.levels import (
     NO_STEERING,
     REFERENCE,
     SUITE,
+    Led,
     Level,
     budget_of,
     score,
+    stacked,
 )
 from flockenv.envs.spaces import differing_options
 from flockenv.errors import FlockError, ParameterError, refuse_unknown, short_repr
@@ -116,24 +118,22 @@ class SuiteEntry:
         """The class of its trainings by flock-hours."""
         return budget_of(self.flock_hours)
 
-    def run(
-        self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress
-    ) -> NDArray[np.float64]:
-        """Return the signed orders of a level's trainings, shape (trainings, flocks).
+    def run(self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
+        """Return the flocks of a level's trainings, shape (trainings, flocks).
 
         A ParameterError names a policy that cannot steer to the end of the episode.
         """
         found = []
         for training in self.trainings[level]:
             try:
-                found.append(LEVELS[level].orders(training.policy, flocks, progress))
+                found.append(LEVELS[level].run(training.policy, flocks, progress))
             except Exception as error:  # An object's own code may raise anything.
                 kind = "" if isinstance(error, FlockError) else f"{type(error).__name__}: "
                 raise ParameterError(
                     f"{self.name}, {level}, {training.given}: {kind}{error}; nothing of the "
                     "entry is scored"
                 ) from error
-        return np.array(found)
+        return stacked(found)
 
     def row(
         self,
@@ -171,7 +171,7 @@ class Scored(NamedTuple):
 
     #: The ranked rows of entries.
     rows: "pd.DataFrame"
-    #: The orders of all flocks, which start with those of each level's two references.
+    #: The `MEASURED` of all flocks, which start with those of each level's two references.
     orders: "pd.DataFrame"
     #: Why other entries have no row, in a sentence each.
     broken: tuple[str, ...]
@@ -191,8 +191,8 @@ def scored(
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
     ends = {name: LEVELS[name].references(flocks, progress) for name in named}
     parts = [
-        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), np.array(orders))
-        for name, orders in ends.items()
+        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), flocks_led)
+        for name, flocks_led in ends.items()
     ]
     rows: list[dict[str, object]] = []
     broken: list[str] = []
@@ -203,20 +203,21 @@ def scored(
         except ParameterError as error:
             led = {}
             broken.append(str(error))
-        for name, orders in led.items():
-            rows.append(entry.row(name, orders, *ends[name]))
+        for name, flocks_led in led.items():
+            rows.append(entry.row(name, flocks_led["signed_order"], *ends[name]["signed_order"]))
             given = [training.given for training in entry.trainings[name]]
-            parts.append(orders_table(name, entry.budget, entry.name, given, orders))
+            parts.append(orders_table(name, entry.budget, entry.name, given, flocks_led))
         yield Scored(ranked(rows), pandas.concat(parts, ignore_index=True), tuple(broken))
 
 
 def orders_table(
-    level: str, budget: str, entry: str, policies: Sequence[str], orders: NDArray[np.float64]
+    level: str, budget: str, entry: str, policies: Sequence[str], led: Led
 ) -> "pd.DataFrame":
-    """Return a row for each flock of each policy, from orders of shape (policies, flocks)."""
+    """Return a row for each flock of each policy, from arrays of shape (policies, flocks)."""
     pandas = require("pandas", "plot")
-    index = pandas.MultiIndex.from_product([policies, range(orders.shape[1])])
-    table: pd.DataFrame = pandas.DataFrame({"signed_order": orders.ravel()}, index)
+    index = pandas.MultiIndex.from_product([policies, range(led["signed_order"].shape[1])])
+    columns = {name: values.ravel() for name, values in led.items()}
+    table: pd.DataFrame = pandas.DataFrame(columns, index)
     table = table.rename_axis(["policy", "flock"]).reset_index()
     names: pd.DataFrame = pandas.DataFrame({"level": level, "budget": budget, "entry": entry}, [0])
     return names.merge(table, how="cross")

@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> None:
         if len(table) and name in set(table["level"]):
             continue
         laws = (LEARNED, *LAWS) if level.parameters.pool == "wide" else LAWS
-        orders = {law: level.orders(law, options.flocks) for law in laws}
+        orders = {law: level.run(law, options.flocks)["signed_order"] for law in laws}
         table = pd.concat([table, score_policies(orders, REFERENCE).assign(level=name)])
         write_table(options.out, table, "%.4f")
         print(table[table["level"] == name].round(3).to_string(index=False), flush=True)

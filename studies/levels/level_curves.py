@@ -49,7 +49,8 @@ class Curve:
     def add(self, hours: float, learned: Policy) -> None:
         """Add a point."""
         start = time.process_time()
-        order = float(LEVELS[self.level].orders(learned, flocks_of(self.level)).mean())
+        led = LEVELS[self.level].run(learned, flocks_of(self.level))
+        order = float(led["signed_order"].mean())
         self.points.append((hours, order))
         self.cpu_s += time.process_time() - start
 

@@ -36,8 +36,10 @@ import pandas as pd
 from scipy import stats
 
 from flockenv.comparison.levels import LEVELS
+from flockenv.comparison.report import overlap_notes
 from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.errors import FlockError
+from flockenv.flock import STEP_STATISTICS
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, two_way_interval
 from studies.levels import level_curves
 from studies.store import StudyError, existing, resumed, write, write_table
@@ -308,12 +310,15 @@ def score(given: Sequence[SuiteEntry], out: Path, *, is_checked: bool) -> list[s
     count, hours = flock_hours(given)
     print(f"{count} policies lead {hours:.0f} flock-hours", file=sys.stderr, flush=True)
     # The last has all of them.
-    *_, (rows, orders, broken) = scored(given, [*LEVELS])
+    *_, (rows, flocks, broken) = scored(given, [*LEVELS])
+    for line in overlap_notes(flocks):
+        print(line, file=sys.stderr, flush=True)
     if is_checked:
         committed = pd.read_csv(out / "entries.csv", dtype=str, keep_default_na=False)
         if words := differing(rows, committed):
             sys.exit(f"Error: these rows are not what their entries score: {'; '.join(words)}")
         return [*broken]
+    orders = flocks.drop(columns=[*STEP_STATISTICS])
     write_table(out / "entries.csv", rows, FORM)
     write_table(out / "orders.csv", orders, FORM)
     during = level_curves.points(given, orders)

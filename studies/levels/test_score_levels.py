@@ -103,6 +103,8 @@ def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_p
     assert "old" not in text
     assert text.count("| order-easy | 30 |") == 2
     assert len(pd.read_csv(tmp_path / "out" / "pairs.csv")) == 1
+    written, committed = tmp_path / "out" / "orders.csv", existing(script.RESULTS / "orders.csv")
+    assert [*pd.read_csv(written, nrows=0)] == [*pd.read_csv(committed, nrows=0)]
     script.main([*given, "--check"])
     entry |= {"name": "c", "levels": {"order-easy": ["module:attribute"]}}
     (tmp_path / "a.0.toml").write_text(tomli_w.dumps(entry), "utf-8")
@@ -128,7 +130,7 @@ def test_committed_entries_are_scored_again_to_the_digit(script) -> None:
                 if isinstance(each.policy.source, NetworkPolicy) and "tanh" in repr(each.policy):
                     continue
                 own = named[named["policy"] == each.given].sort_values("flock")[:4]
-                found = LEVELS[level].orders(each.policy, 4)
+                found = LEVELS[level].run(each.policy, 4)["signed_order"]
                 assert [f"{order:.6g}" for order in found] == [
                     f"{order:.6g}" for order in own["signed_order"]
                 ]

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 import tomli_w
 
+from flockenv.comparison.episodes import run_episodes
 from flockenv.comparison.levels import LEVELS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
@@ -54,6 +55,25 @@ def test_an_entry_is_scored_again_to_the_digit(cli, entry: str, tmp_path: Path) 
     assert own["signed_order"].mean() == pytest.approx(first["signed_order"][0], rel=1e-4)
     printed = json.loads(cli.succeeds(*words(entry, out=tmp_path / "json"), "--json").stdout)
     assert printed["entries"][0]["entry"] == "mine"
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_overlaps_beyond_the_tolerance_are_said_in_one_line(
+    cli, entry: str, tmp_path: Path, monkeypatch, form
+) -> None:
+    """The second flock of each policy is deep: here of two policies and of two references."""
+
+    def deep(*arguments):
+        overlaps = {"unsolved": np.array([0, 7, 0]), "worst_overlap_cm": np.array([0.0, 0.25, 0.0])}
+        return run_episodes(*arguments) | overlaps
+
+    monkeypatch.setattr("flockenv.comparison.levels.run_episodes", deep)
+    done = cli.succeeds(*words(entry, out=tmp_path), *form)
+    line = "4 of 12 episodes left overlaps deeper than tolerance_cm; the deepest is 0.25 cm\n"
+    assert done.stderr.count(f"Warning: {line}") == 1
+    flocks = pd.read_csv(tmp_path / "orders.csv")
+    assert flocks["unsolved"].tolist() == [0, 7, 0] * 4
+    assert flocks["worst_overlap_cm"].max() == 0.25
 
 
 BROKEN = """

@@ -49,8 +49,8 @@ def test_an_id_gives_what_the_level_scores(name: str, env_id: str) -> None:
     ended = np.zeros(2, bool)
     while not ended.any():
         seen, _, _, ended, infos = env.step(law.predict(seen)[0])
-    found = level.orders("damped law", 2)
-    assert found.tolist() == infos["episode_summary"]["signed_order"].tolist()
+    found = level.run("damped law", 2)
+    assert found["signed_order"].tolist() == infos["episode_summary"]["signed_order"].tolist()
 
 
 def test_the_scale_is_known_on_paper() -> None:
@@ -84,9 +84,9 @@ def test_a_class_holds_its_last_rollout() -> None:
 
 def test_only_a_level_s_own_flocks_are_led() -> None:
     with pytest.raises(ParameterError, match="flocks = 513"):
-        LEVELS["order-easy"].orders("damped law", FLOCKS + 1)
+        LEVELS["order-easy"].run("damped law", FLOCKS + 1)
     with pytest.raises(ParameterError, match="action_mode 'lean'"):
-        LEVELS["order-wide"].orders(_leans(), 2)
+        LEVELS["order-wide"].run(_leans(), 2)
 
 
 def _leans():

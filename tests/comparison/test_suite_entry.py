@@ -165,14 +165,18 @@ def test_a_row_says_what_was_scored(entered, tmp_path: Path) -> None:
     assert (row["sees"], row["budget"], row["cpu_s"]) == ("as given", "30", 4.0)
     assert np.isnan(row["searched_hours"])
     # Straight ahead is what a network of zeros does.
-    found = entry.run(LEVEL, 2)
-    assert found[0].tolist() == LEVELS[LEVEL].orders("straight ahead", 2).tolist()
+    found = entry.run(LEVEL, 2)["signed_order"]
+    ahead = LEVELS[LEVEL].run("straight ahead", 2)
+    assert found[0].tolist() == ahead["signed_order"].tolist()
     assert found[1].tolist() != found[0].tolist()
     ((rows, orders, broken),) = scored([entry], [*LEVELS], 2)
     assert (rows["entry"].tolist(), broken) == (["mine"], ())
     led = orders.groupby("policy", sort=False)["signed_order"].apply(list)
     assert led.index.tolist() == ["straight ahead", "damped law", *names]
     assert led["b.npz"] == found[1].tolist()
+    deepest = orders[orders["policy"] == "a.npz"]["worst_overlap_cm"].tolist()
+    assert deepest == ahead["worst_overlap_cm"].tolist()
+    assert min(deepest) > 0.0
 
 
 def trained(wrapper: Callable[[Any], Any] = lambda venv: venv, **changes: object) -> Any:
@@ -196,7 +200,8 @@ def stacked() -> WrappedPolicy:
 def sees(path: Path) -> object:
     """What the row of an entry says, from two flocks."""
     entry = SuiteEntry.from_file(path, trust=True)
-    return entry.row(LEVEL, entry.run(LEVEL, 2), np.zeros(2), np.full(2, 0.4))["sees"]
+    orders = entry.run(LEVEL, 2)["signed_order"]
+    return entry.row(LEVEL, orders, np.zeros(2), np.full(2, 0.4))["sees"]
 
 
 def test_a_model_is_said_to_see_what_it_sees(entered, tmp_path: Path) -> None:
