@@ -4,16 +4,16 @@
     python baselines/evolution_strategy.py --task wide --flock-hours 500 \\
         --sigma 0.3 --learning-rate 0.1 --out results/wide
 
-Three leaders in `wide` have an order of 0.412 to 0.467 after 500 flock-hours, 1.8 minutes of one
-core, with seeds 0 to 4; the tuned law, from which they start, has 0.451 in the same flocks
-(results version 5).
+With seeds 0 to 4, three leaders in `wide` reach an order of 0.412 to 0.467 after 500 flock-hours,
+1.8 minutes of one core. The tuned law, from which they start, has 0.451 in the same flocks (results
+version 5).
 
 The policy is linear in what a leader observes. Gaussian perturbations of its weights are tried in
 antithetic pairs, one flock for each, all in one batch of the simulator. The candidates of a
-generation steer the same episode, so that they differ by their weights alone. Their mean rewards
-are replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An
-interrupted command resumes from its last generation. The result is a policy file: `policy.json`, a
-law, where leaders lean, and `policy.npz` otherwise.
+generation steer the same episode, so that they differ only by their weights. Their mean rewards are
+replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An interrupted
+command resumes from its last generation. The result is a policy file: the law `policy.json` if
+leaders lean, and `policy.npz` otherwise.
 
     flockenv compare --policy "paper's law" --policy results/wide/policy.json
 """
@@ -42,7 +42,8 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 def lean(pool: str, episode_s: float) -> dict[str, Any]:
     """Return the task of examples/train_leaders.py: three leaders lean about the tangent.
 
-    No lean is the tuned law, from which the search starts. The reward is the order alone.
+    Without a lean they follow the tuned law, from which the search starts. The only reward is the
+    order.
     """
     others = dict.fromkeys(("own", "phase", "target", "order"), False)
     return {
@@ -114,10 +115,10 @@ def next_generation(
 ) -> dict[str, Any]:
     """Try the candidates of a generation, and return the state after it.
 
-    `steer` maps weights and the number of leaders to a policy, as `linear`, which is the default.
+    `steer` maps weights and the number of leaders to a policy, as the default `linear` does.
     """
     weights, number = state["weights"], int(state["generation"])
-    # Each generation has a generator of its own, so a checkpoint needs only the generation's
+    # Each generation has its own random generator, so a checkpoint needs only the generation's
     # number.
     random = np.random.default_rng([options.seed, number])
     half = random.standard_normal((options.pairs, len(weights)))
@@ -144,7 +145,7 @@ def next_generation(
 
 
 def first_state(size: int) -> dict[str, Any]:
-    """Return the start: weights of zero, by which leaders go straight ahead or follow the law."""
+    """Return the start: weights of zero, with which leaders go straight ahead or follow the law."""
     zeros = {name: np.zeros(size) for name in ("weights", "average", "moment_1", "moment_2")}
     return {"generation": np.array(0), "curve": np.zeros((0, 2)), **zeros}
 
@@ -172,7 +173,8 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
     hours = env.num_envs * TASKS[options.task]["episode_s"] / 3600.0
     while int(state["generation"]) * hours < options.flock_hours:
         state = next_generation(state, env, options)
-        # Written whole or not at all: an interrupt leaves the checkpoint of the generation before.
+        # Written completely or not at all: an interrupt leaves the previous generation's
+        # checkpoint.
         half = path.with_suffix(".half.npz")
         np.savez(half, **state, identity=identity)
         half.replace(path)

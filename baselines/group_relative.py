@@ -7,16 +7,16 @@
 Seeds 0 to 4 reach an order of 0.459 to 0.500 with 200 flock-hours, 44 to 46 s of one core each. The
 tuned law has 0.451.
 
-Eight flocks branch from one state and meet one noise, as the pairs of paired_branches.py. The
-leaders of each explore with weights of their own, drawn about the policy's and held for the branch.
-The advantage of all decisions of a branch is its order in the second half of a minute, less the
-mean over its group. The policy climbs the clipped objective of PPO with these advantages (Shao et
+Eight flocks branch from one state and have the same noise, like the pairs of paired_branches.py. In
+each flock the leaders explore with other weights, drawn about the policy's and held for the branch.
+The advantage of all decisions of a branch is its order in the second half of a minute minus the
+mean over its group. The policy ascends the clipped objective of PPO with these advantages (Shao et
 al. 2024). It is linear in the 29 lean features and starts as the tuned law; there is no critic, no
 discount, and only the order counts. The result is the average of the weights over the second half
 of the training.
 
-The settings were fixed before seeds 0 to 4: of two that were tried with seed 100, 200 flock-hours
-each, the first guess was better in 256 flocks of validation seeds.
+The settings were fixed before seeds 0 to 4. Of two settings that were tried with seed 100, for 200
+flock-hours each, the first guess was better in 256 flocks of validation seeds.
 """
 
 import argparse
@@ -63,7 +63,7 @@ def branch(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean order of each flock, led by its own weights, at the end of a branch.
 
-    Also returns what its leaders saw, shape (seconds, flocks, leaders, features).
+    Also returns the leaders' observations, shape (seconds, flocks, leaders, features).
     """
     weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
     every: list[np.ndarray] = []

@@ -8,8 +8,8 @@ has 0.294 and the damped law 0.377 (results version 5).
 
 PPO of stable-baselines3 trains four leaders in 64 flocks of `flockenv/Order-easy-v0` at once. The
 last point of a curve is the mean signed order of the mean policy in the same 512 held-out flocks as
-the laws. The other points use the first 128 of these flocks. The time of a point is processor time,
-of the training alone.
+the laws. The other points use the first 128 of these flocks. The time of a point is the training's
+processor time.
 """
 
 import argparse

@@ -4,15 +4,15 @@
     flockenv compare --policy "tuned law" --policy results/paired/0/policy.json --n-leaders 3
     python -m studies.trainings.judge_trainings results/paired/*     # in the same 512 flocks
 
-Seeds 0 to 4 reach an order of 0.455 to 0.481 with 200 flock-hours, 42 s of one core each, where the
-tuned law has 0.451.
+Seeds 0 to 4 reach an order of 0.455 to 0.481 with 200 flock-hours, 42 s of one core each. The tuned
+law has 0.451.
 
 A policy is linear in the 29 lean features, as in examples/train_leaders.py, and starts as the tuned
-law. Each pair of flocks starts from one snapshot and meets one noise. The two flocks differ by a
-Gaussian change of the weights, added in one and subtracted in the other. For about a minute the
-noise moves both nearly alike, so that the difference of their orders shows the change of the
+law. Both flocks of a pair start from one snapshot and have the same noise. The two flocks differ by
+a Gaussian change of the weights, added in one and subtracted in the other. For about a minute the
+noise moves both nearly alike, so that the difference of their orders shows the effect of the
 weights (measured in studies/paired_signal). Adam follows the sum of changes times differences.
-After a branch a coin picks one flock of the pair, and both continue from its state. After an
+After a branch one flock of the pair is chosen at random, and both continue from its state. After an
 episode of 8 minutes the pair starts at rest again. So every flock-hour is spent on the comparison,
 in states that the policy itself leads to.
 

@@ -3,13 +3,13 @@
     python baselines/ppo_single_file.py                 # into results/ppo_single_file
     flockenv compare --policy results/ppo_single_file/policy.npz --pool narrow --set n_boats=9
 
-After 102 400 samples, 8 s of one core, seed 0 leads 9 boats with an order of 0.177, from 0.147 at
-its start: 64 flocks are too few to show such a gain. The file is meant to be read.
+With seed 0 and 102 400 samples, 8 s of one core, the order of 9 boats rises from 0.147 to 0.177: 64
+flocks are too few to show such a gain. The file is meant to be read.
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
-flock (`LeadersVectorEnv.flock_features`) and is needed in training alone, so that the actor is
-saved as a policy that steers any number of leaders without torch. docs/training_reference.md runs
-it; needs torch (extra `train`).
+flock (`LeadersVectorEnv.flock_features`) and is needed only in training, so the actor is saved as a
+policy that steers any number of leaders without torch. docs/training_reference.md runs it; needs
+torch (extra `train`).
 """
 
 import argparse
@@ -96,7 +96,7 @@ class Learner:
         return self.critic(features).squeeze(-1)
 
     def update(self, rollout: dict[str, torch.Tensor]) -> None:
-        """Take some passes over a rollout."""
+        """Update both networks in some passes over a rollout."""
         settings, size = self.settings, len(rollout["returns"])
         for _ in range(settings.epochs):
             for part in torch.randperm(size).chunk(settings.minibatches):

@@ -4,20 +4,21 @@
     python baselines/pretrained.py --trial       # all of it with little of everything, a minute
     python baselines/pretrained.py --ship        # copies what passes to src/policies/learned
 
-In `wide` three leaders reach a signed order of 0.503 in the mean of eight seeds, 0.481 to 0.520,
-where the tuned law reaches 0.451. In `narrow` no seed passes the tuned law.
+In `wide` three leaders reach a signed order of 0.503 on average over eight seeds (0.481 to 0.520).
+The tuned law reaches 0.451. In `narrow` no seed passes the tuned law.
 
-The design was fixed before the first training. In `wide` eight trainings differ from
-`flockenv train` in the number of leaders alone: flocks with one, two, three and four leaders,
-equally many of each. In `narrow`, where PPO does not pass the tuned law, eight searches compare
-paired branches (paired_branches.py) with three leaders. Each PPO training has 1100 flock-hours,
-each search 400, and no setting was searched for.
+The design was fixed before the first training. In `wide` eight trainings differ from `flockenv
+train` only in the number of leaders: equally many flocks have one, two, three and four leaders. In
+`narrow`, where PPO does not pass the tuned law, eight searches compare paired branches
+(paired_branches.py) with three leaders. Each PPO training has 1100 flock-hours, each search 400,
+and no setting was searched for.
 
-Every policy is linear, so policies can be averaged: by the mean of their weights. This mean is the
-pool's policy if it leads at least as well in the validation flocks as the best single policy;
-otherwise the best single policy is. The score is the mean signed order with one to four leaders, in
-128 validation flocks each, at the default physics. Then the policy is judged with three leaders in
-flocks that nobody has used. Its file holds that order, the command, the seeds and the flock-hours.
+Every policy is linear, so policies can be averaged by taking the mean of their weights. This mean
+is the pool's policy if it leads at least as well in the validation flocks as the best single
+policy; otherwise the best single policy is. The score is the mean signed order with one to four
+leaders, in 128 validation flocks each, at the default physics. Then the policy is judged with three
+leaders in flocks that nobody has used. Its file holds that order, the command, the seeds and the
+flock-hours.
 
 A training whose policy is in `--out` already is skipped, so an interrupted command resumes. PPO
 also keeps its policy after 500 flock-hours. judge_trainings.py has the commands that compare all
@@ -101,7 +102,7 @@ class Keep(BaseCallback):
 
 
 def every_step(law: LeaningLaw, provenance: dict[str, str]) -> LeaningLaw:
-    """Return a law that decides at every control step, and not once per second as trained."""
+    """Return the law, deciding at every control step instead of once per second as in training."""
     return LeaningLaw(law.pool, law.bias, law.weights, provenance=provenance)
 
 
@@ -210,7 +211,7 @@ def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, Le
 
 
 def judged(given: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
-    """Return the order that a policy reaches with three leaders in flocks nobody has used."""
+    """Return the order that a policy reaches with three leaders in unused flocks."""
     seeds = release_seeds("pretrained", given.judging_flocks)
     own = orders(law, pool, 3, seeds, given.episode_s)
     found = score_policies({"law": own}).loc[0, ["signed_order", "low", "high"]]

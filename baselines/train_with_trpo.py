@@ -3,7 +3,7 @@
     python baselines/train_with_trpo.py SEED FLOCK_HOURS FOLDER
 
 Seeds 0 to 4 reach an order of 0.464 to 0.500 with 500 flock-hours, 3.1 to 3.4 minutes of one core
-each, where the tuned law has 0.451 (results version 5).
+each. The tuned law has 0.451 (results version 5).
 
 Flocks, reward, policy and exploration are as in `flockenv train`; only the algorithm differs.
 """

@@ -1,4 +1,4 @@
-"""Measure a quantity of your own: `python examples/own_order_parameter.py MINUTES`.
+"""Measure your own quantity: `python examples/own_order_parameter.py MINUTES`.
 
 A quantity is a function of the recording that returns one number per sample. It is kept in the
 recording, in its file and in its tables.

@@ -1,4 +1,4 @@
-"""Reward something of your own: `python examples/own_reward.py FLOCKS SECONDS`.
+"""Use your own reward: `python examples/own_reward.py FLOCKS SECONDS`.
 
 The reward is any function of the vector environment after its step. This one pays for normal boats
 that stay away from the outer wall.
@@ -16,7 +16,7 @@ flocks, seconds = map(int, sys.argv[1:] + ["8", "60"][len(sys.argv) - 1 :])
 
 
 def away_from_the_wall(envs):
-    """Return, for each flock, the share of normal boats more than 30 cm from the outer wall."""
+    """Return each flock's fraction of normal boats that are more than 30 cm from the outer wall."""
     normal = envs.poses()[:, 3:]  # boats 0 to 2 are the leaders
     radius_cm = np.hypot(normal[..., 0], normal[..., 1])
     return (radius_cm < 180.0 - 30.0).mean(axis=1)

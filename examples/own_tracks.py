@@ -1,4 +1,4 @@
-"""Analyze tracks of your own and replay them: `python examples/own_tracks.py`.
+"""Analyze and replay your own tracks: `python examples/own_tracks.py`.
 
 The tracks are arrays: times (t,) in s and poses (t, n, 3), x and y in cm from the pool's center and
 the heading in rad. Rows of NaN are boats that were not seen. Here 12 points circle with some noise.

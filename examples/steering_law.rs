@@ -1,4 +1,4 @@
-//! A steering law of your own beside the paper's, on the same seeds.
+//! Your own steering law beside the paper's, on the same seeds.
 //!
 //! `cargo run --release --example steering_law`
 

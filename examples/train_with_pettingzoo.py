@@ -5,7 +5,7 @@
 
 Needs torch (extra `train`). The environment is one flock of `flockenv/Order-easy-v0`, whose four
 leaders are four agents. `docs/train.md` steps 64 flocks at once, which is much faster; this file is
-for a loop of your own over agents.
+a start for your own loop over agents.
 """
 
 import sys
@@ -90,7 +90,8 @@ for episode in range(settings.episodes):
             rewards.append(stacked(gained))
         seen.append(stacked(observations))
 
-        # Advantages, backward in time. The episode was cut off, so that its end has a value.
+        # Advantages, backward in time. The episode was cut off by its time limit, so its last state
+        # still has a value.
         rows = torch.stack(seen)
         values = critic(rows).squeeze(-1)
         advantages, later = torch.zeros_like(values[:-1]), torch.zeros(len(agents))

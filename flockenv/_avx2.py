@@ -9,7 +9,7 @@ from flockenv import _core
 
 
 def choose() -> None:
-    """Replace `flockenv._core` by it, with the same bits, if this processor has AVX2."""
+    """Let `flockenv._core` be the AVX2 build, with the same bits, if the processor has AVX2."""
     if _core.USES_AVX2 or not _core.HAS_AVX2:
         return
     name, file = _core.__name__, Path(str(_core.__file__))

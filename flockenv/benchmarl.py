@@ -66,7 +66,7 @@ class LeadersTaskClass(TaskClass):
         seed: int | None,
         device: torch.device | str,
     ) -> Callable[[], EnvBase]:
-        """Return the function that makes the environment of a number of flocks.
+        """Return a function that makes the environment with a number of flocks.
 
         Flocks are seeded from the range of training seeds that a run of this number has; see
         `flockenv.runs.seeds.POLICY_SEEDS`.
@@ -101,7 +101,7 @@ class LeadersTaskClass(TaskClass):
         return False
 
     def group_map(self, env: EnvBase) -> dict[str, list[str]]:
-        """Return the leaders of a flock, a group."""
+        """Return the group that all leaders of a flock form."""
         groups: dict[str, list[str]] = env.group_map
         return groups
 

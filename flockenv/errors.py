@@ -57,7 +57,8 @@ def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> 
     known = list(known)
     for name in names:
         if name not in known:
-            raise ParameterError(f"{name!r} is no {what}: {hint(name, known)}")
+            article = "an" if what[0] in "aeiou" else "a"
+            raise ParameterError(f"{name!r} is not {article} {what}: {hint(name, known)}")
 
 
 class HintsAtNames:

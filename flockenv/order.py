@@ -120,7 +120,7 @@ class OrderParameters(_Recorded[float], HintsAtNames):
 
 @dataclass(frozen=True, eq=False)
 class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
-    """Order parameters one after another: the fields of `OrderParameters` as float64 arrays (t,).
+    """Order parameters at many times: the fields of `OrderParameters` as float64 arrays (t,).
 
     All are NaN if there is no boat; ``c_o`` and ``c_v`` are NaN for a single boat. Columns that are
     not given are NaN. Series are equal if their columns are.
@@ -151,7 +151,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         samples: slice | NDArray[np.bool_ | np.integer[Any]],
         time_s: NDArray[np.float64] | None = None,
     ) -> "OrderSeries":
-        """Return the series at some of its samples, an index of NumPy, and at those times."""
+        """Return some samples of the series, chosen by a NumPy index, with these times."""
         return OrderSeries(*(column[samples] for column in self.columns()), time_s=time_s)
 
     def __len__(self) -> int:
@@ -177,8 +177,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         name
             Its name in the table of quantities.
         target
-            Direction that signed quantities count towards, "cw" or "ccw"; a list counts by its
-            first entry.
+            Direction in which signed quantities are positive, "cw" or "ccw". In a list only the
+            first entry counts.
 
         Raises
         ------
@@ -202,7 +202,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
 
-        With a list of targets the first counts. Raises what `series` raises.
+        In a list of targets only the first counts. Raises the errors of `series`.
         """
         return self.series("signed_order", target)
 
@@ -233,8 +233,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         speed_cm_s
             Preferred forward speed of the boats.
         largest_cluster
-            Part of the boats in the largest cluster at each time, shape (t,), the quantity of that
-            name. None: no state is called clustering.
+            Fraction of the boats in the largest cluster at each time, shape (t,), the quantity of
+            that name. None: no state is called clustering.
 
         Raises
         ------
@@ -277,7 +277,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
             Recorded and derived quantities of the table, such as "psi_v" or "signed_order". None:
             the recorded ones that have no unit and lie within known bounds.
         target
-            Direction that signed quantities count towards, "cw" or "ccw".
+            Direction in which signed quantities are positive, "cw" or "ccw".
         ax
             Axes of matplotlib to draw into. None: a new figure.
 
@@ -316,8 +316,8 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     Parameters
     ----------
     pose
-        Shape (t, n, 3): [x, y from the pool's center, heading rad counter-clockwise from x]. Rows
-        of NaN if a boat is not there. Leaders count if they are among the boats.
+        Shape (t, n, 3): [x, y from the pool's center, heading rad counter-clockwise from x]. A row
+        of NaN stands for a missing boat. Leaders, if there are any, count like other boats.
     velocity
         The same shape, in the unit of length of the pose per s.
 
@@ -330,7 +330,7 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     Raises
     ------
     ParameterError
-        For other shapes, and for values that are no numbers.
+        For other shapes, and for values that are not numbers.
     """
     states = {"pose": with_gaps(pose, "pose"), "velocity": with_gaps(velocity, "velocity")}
     for name, shares in states.items():

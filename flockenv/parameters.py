@@ -32,8 +32,8 @@ class FlockParameters:
     plain Python numbers and strings, a list of targets as a tuple, and a pool that equals a named
     one as its name.
 
-    docs/environments/tables.md lists the fields with meaning, unit, range
-    and their values in the presets; ``dataclasses.fields`` has the same as metadata.
+    docs/environments/tables.md lists the fields with their meanings, units, ranges and values in
+    the presets; ``dataclasses.fields`` has the same as metadata.
 
     Raises
     ------
@@ -137,9 +137,9 @@ class FlockParameters:
     ) -> float:
         """Critical noise of 27 boats: the bw_s at which leaderless flocks lose their order.
 
-        There the mean Ψ_o of leaderless runs falls through the middle between its ordered and its
-        disordered level. ``studies/critical_noise`` measured it for Table 3's presets in both
-        named pools, and for ``"experiment"`` in ``"narrow"``. A ParameterError refuses other
+        At this noise the mean Ψ_o of leaderless runs falls through the middle between its ordered
+        and its disordered level. ``studies/critical_noise`` measured it for Table 3's presets in
+        both named pools, and for ``"experiment"`` in ``"narrow"``. Raises ParameterError for other
         presets and pools, since no value was measured for them.
         """
         if not isinstance(preset, str) or pool is None:
@@ -172,8 +172,8 @@ class FlockParameters:
     def replace(self, **changes: object) -> Self:
         """Return these parameters with some fields changed; see the class for the errors.
 
-        A hull of another size scales the radius of gyration along, unless ``gyration_radius_cm`` is
-        among the changes.
+        If the hull is resized, the radius of gyration scales with it, unless ``gyration_radius_cm``
+        is among the changes.
         """
         return self._from_core(_changed(self._in_core, changes))
 
@@ -190,8 +190,8 @@ class FlockParameters:
         Parameters
         ----------
         values
-            Any of the fields. ``"preset"`` may name the preset whose values the missing fields
-            take, ``"simulation"`` otherwise.
+            Any of the fields. Missing fields have the values of the preset that ``"preset"`` names,
+            or of ``"simulation"``.
         """
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
@@ -206,7 +206,7 @@ class FlockParameters:
     def from_toml(cls, text: str) -> Self:
         """Return parameters from TOML, with the keys of `from_dict`.
 
-        Raises what the class raises, and a ParameterError for text that is no TOML.
+        Raises what the class raises, and a ParameterError for text that is not TOML.
         """
         return cls.from_dict(read_toml(text, "the text of parameters"))
 

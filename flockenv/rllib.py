@@ -41,14 +41,14 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
     ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
     ``activation`` ("tanh" or "relu") and ``first_log_std`` (the
     logarithm of the first standard deviation of an action, shared by all leaders and learned). A
-    ParameterError names unknown entries of ``model_config``, and refuses spaces of other
+    ParameterError is raised for unknown entries of ``model_config`` and for spaces of other
     environments.
     """
 
     def setup(self) -> None:
         """Make the networks."""
         given = dict(self.model_config or {})
-        # RLlib adds entries of its own, which say how it makes its networks.
+        # RLlib adds its own entries, which say how it makes its networks.
         of_rllib = {option.name for option in fields(DefaultModelConfig)}
         refuse_unknown(given.keys() - of_rllib, _DEFAULTS, "entry of model_config")
         config = {**_DEFAULTS, **given}

@@ -86,24 +86,24 @@ def simulate(
         Called now and then with the flock-seconds simulated since the last call; its exceptions end
         the run.
     start
-        Where the run starts, and at which time. None: at random, at rest, at 0 s. A snapshot, as
-        bytes of `Flock.snapshot`, of a flock with these parameters (the target aside) and this
-        seed: under the law the run continues with the same bits. A dictionary with ``pose`` (n, 3)
-        and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
-        `Flock.set_state`. A recording: its last sample. Boats may not be further than a hull's
-        width from the water.
+        Where the run starts, and at which time. None: a random placement, at rest, at 0 s. A
+        snapshot (bytes of `Flock.snapshot`) of a flock with this seed and these parameters, apart
+        from the target: under the law the run continues bit for bit. A dictionary with ``pose`` (n,
+        3) and, optionally, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
+        `Flock.set_state`. A recording: its last sample. Boats may be at most a hull's width outside
+        the water.
     noise_seed
         Other noise after a start from a snapshot; see `Flock.restore`.
     schedule
-        Changes during the run: pairs of a time in s from the start of the run and a dictionary of
-        the parameters' fields that have other values from then on, after the sample at that time:
-        ``[(60.0, {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp, all of which comes before the
-        last sample. With another pool each boat keeps its angle about the center and its relative
+        Changes during the run: pairs of a time in s from the start of the run, and a dictionary of
+        the fields of the parameters that change then, after the sample at that time. ``[(60.0,
+        {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp. All changes must come before the last
+        sample. With another pool each boat keeps its angle about the center and its relative
         distance between the walls. The recording has the parameters of its start.
     quantities
-        Quantities of your own, by name: functions that take the recording, whose arrays are
-        read-only then, and return an array (t,), a real number for each sample. They are kept in
-        its attribute ``quantities``, in its file and in its tables.
+        User-defined quantities, by name: functions that take the recording, with read-only arrays,
+        and return an array (t,), a real number for each sample. Their values are kept in the
+        recording's attribute ``quantities``, in its file and in its tables.
 
     Returns
     -------
@@ -113,12 +113,12 @@ def simulate(
     Raises
     ------
     ParameterError
-        For arguments out of range, unknown names of policies and pools that a policy is not made
-        for, policies whose actions are no rudders or that have nobody to steer, boats that do not
+        For arguments out of range, unknown names of policies, pools that a policy was not made for,
+        policies whose actions are not rudders, policies without leaders to steer, boats that do not
         fit the pool, a start that this flock cannot have, a noise_seed without a snapshot, a
-        schedule that changes n_boats or n_leaders or that no sample shows, quantities of another
-        shape or with a name that is taken, rudders that are NaN, and a recording of more than 16
-        GiB. An error during the run has an attribute ``recording``: the run until then.
+        schedule that changes n_boats or n_leaders, a schedule that no sample shows, quantities of
+        another shape or with a name that is taken, rudders that are NaN, and a recording of more
+        than 16 GiB. An error during the run has an attribute ``recording``: the run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -158,7 +158,7 @@ def _origin(
     noise_seed: int | None,
     control_hz: float | None,
 ) -> dict[str, object]:
-    """Return the fields in which runs of the same parameters, seed and policy may differ."""
+    """Return the recording's fields that tell apart runs of one parameters, seed and policy."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
         "control_hz": None if control_hz is None else float(control_hz),
@@ -196,9 +196,9 @@ def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, A
 
 
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
-    """Return the steering of a run and its rate, as the core takes them."""
+    """Return a run's steering and its rate in the form that the core takes."""
     if leaders.law is not None:
-        # If a law steers, the core does it, and holds leans itself.
+        # A law steers within the core, which also holds its leans.
         own = leaders.seats[0].policy.control_hz
         if own is None and control_hz is not None:
             raise ParameterError(
@@ -218,7 +218,7 @@ def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
 
 
 def _changes(parameters: FlockParameters, schedule: Schedule, seed: int) -> Changes:
-    """Return the changes of a schedule: of the target alone, or of all parameters."""
+    """Return a schedule's changes, each of the target alone or of all parameters."""
     entries = [(*_change(entry), entry) for entry in items(schedule, "schedule")]
     changes: Changes = []
     now, times = parameters, dict[float, set[str]]()

@@ -1,4 +1,4 @@
-"""TorchRL's environment over one batch of flocks, its leaders a group of agents.
+"""TorchRL's environment for one batch of flocks, whose leaders are one group of agents.
 
 Needs the extra ``torchrl``.
 """
@@ -56,7 +56,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     ========================================= =============================================
 
     The same seed gives the same bits as in `LeadersVectorEnv`: ``set_seed(s)`` makes the next reset
-    seed flock i with s + i. Flocks that have had no seed draw one from `np_random`. ``reset`` with
+    seed flock i with s + i. Flocks that never had a seed draw one from `np_random`. ``reset`` with
     a ``"_reset"`` mask starts the flocks in it, and ``reset(options={...})`` takes the options of
     `LeadersVectorEnv.reset`.
 
@@ -157,7 +157,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     def set_seed(self, seed: int | None = None, static_seed: bool = False) -> int | None:
         """Seed the flocks at the next reset: flock i with ``seed + i``; return TorchRL's next seed.
 
-        A ParameterError refuses anything but a seed.
+        Raises ParameterError for anything but a seed.
         """
         given = None if seed is None else as_int(seed, "seed")
         following: int | None = super().set_seed(given, static_seed)
@@ -235,7 +235,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
 
 
 def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
-    """Return global states with a row for each boat, and the rest in each row."""
+    """Return global states with a row for each boat; each row also has the entries of no boat."""
     rest = len(state_entries(0))
     own = states[:, :-rest].reshape(len(states), boats, -1)
     clock = np.broadcast_to(states[:, None, -rest:], (len(states), boats, rest))

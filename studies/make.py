@@ -57,7 +57,7 @@ def main(arguments: list[str] | None = None) -> None:
 
     known = {*made, *left, *(each.partition("/")[0] for each in [*made, *left])}
     if unknown := [name for name in names if name not in known]:
-        sys.exit(f"Error: {unknown[0]!r} is no study of this folder: {', '.join(sorted(known))}")
+        sys.exit(f"Error: {unknown[0]!r} is not a study of this folder: {', '.join(sorted(known))}")
     failed = []
     for each in named(made):
         module = f"{HERE.name}.{each.replace('/', '.')}"

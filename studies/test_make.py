@@ -10,7 +10,7 @@ from studies import make, study
 
 
 def test_an_unknown_study() -> None:
-    with pytest.raises(SystemExit, match="'fig99' is no study of this folder: "):
+    with pytest.raises(SystemExit, match="'fig99' is not a study of this folder: "):
         make.main(["fig99"])
 
 

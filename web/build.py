@@ -26,7 +26,7 @@ MOST_BYTES = 500_000
 
 _TARGET = "wasm32-unknown-unknown"
 _THREAD = ("core.mjs", "worker.mjs")
-# In the order in which one needs another.
+# In the order of their dependencies.
 _SHARED = (
     "words.mjs",
     "link.mjs",
@@ -68,7 +68,7 @@ _OWN = (
 
 
 def without_names(module: bytes) -> bytes:
-    """Return a WebAssembly module without its custom sections: rustc leaves functions' names in."""
+    """Return a WebAssembly module without its custom sections, such as names of functions."""
     kept, start = [module[:8]], 8
     while start < len(module):
         length = shift = 0
@@ -105,7 +105,7 @@ def constant(path: Path, name: str) -> str:
 
 
 def expected_orders() -> list[dict[str, object]]:
-    """Return mean order against the backward duration, of the paper's leaderless flocks."""
+    """Return mean order against the backward duration for the paper's leaderless flocks."""
     orders = defaultdict(list)
     results = ROOT / "studies" / "section4" / "results" / "section4.csv.gz"
     with gzip.open(results, "rt", encoding="utf-8") as file:
@@ -117,13 +117,13 @@ def expected_orders() -> list[dict[str, object]]:
 
 
 def bare(script: str) -> str:
-    """Return a script without the lines that are comments and the indents: a quarter of it."""
+    """Return a script without comment lines and indents, which are a quarter of it."""
     code = re.sub(r"^[ \t]*(?://.*|/\*\*(?:.|\n)*?\*/)\n", "", script, flags=re.MULTILINE)
     return re.sub(r"^[ \t]+", "", code, flags=re.MULTILINE)
 
 
 def packed(content: bytes) -> str:
-    """Return bytes as text: the same at every build, since the header has no time.
+    """Return compressed bytes as text; the header has no time, so every build gives the same text.
 
     Base 85 takes 6 % less room than base 64, and cannot spell the end of a script element.
     """

@@ -4,7 +4,7 @@ import { element, plain } from "../flockenv/replay/shared/words.mjs";
 import { YOU } from "./laws.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
-/** Parameter, words, least, most, step, and a unit to be read: the one that everybody needs, and more. */
+/** Sliders: parameter, words, least, most, step, and a unit to read aloud. The first is the one that everybody needs. */
 const SLIDERS = {
   noise: [["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05, "seconds"]],
   sliders: [
@@ -15,7 +15,7 @@ const SLIDERS = {
   ],
 };
 
-/** Parameter, words, accepted values with their words. */
+/** Choices: parameter, words, and accepted values with their words. */
 const CHOICES = {
   choices: [
     ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
@@ -36,7 +36,7 @@ export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }
 
-/** The nearest value that a slider of this step has. */
+/** The nearest value on a slider with this step. */
 const onGrid = (value, step) => step * Math.round(value / step);
 
 export class Controls {
@@ -68,7 +68,8 @@ export class Controls {
     input.addEventListener("input", () => this.change(name, plain(onGrid(Number(input.value), step)).replace("−", "-")));
     label.append(text, value, input);
     this.inputs.set(name, (shown) => {
-      // A slider rounds a value between two of its own, and a screen reader would say that one.
+      // A slider rounds a value to one of its steps, and a screen reader would read the rounded
+      // value.
       input.step = Math.abs(onGrid(Number(shown), step) - Number(shown)) > 1e-9 ? "any" : step;
       input.value = shown;
       value.textContent = plain(Number(shown));
@@ -96,7 +97,7 @@ export class Controls {
     return label;
   }
 
-  /** Shows these values, and a choice for each leader that has a policy of its own. */
+  /** Shows these values, and a separate choice for each leader if their policies differ. */
   show(values) {
     const own = values.leaders.includes(",") ? values.leaders.split(",") : [];
     for (const [name, set] of this.inputs) {

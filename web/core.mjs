@@ -9,7 +9,7 @@ export const CONTACT = 6;
 /** The longest sentence, in letters: values may have hundreds of digits. */
 const LONGEST_SENTENCE = 250;
 
-/** A request that the simulator refuses: the parameter that is to blame, if one is, and a sentence. */
+/** An error for a request that the simulator refuses, with the parameter at fault, if there is one, and a sentence. */
 export class Refusal extends Error {
   constructor({ field, words }) {
     super(words.length > LONGEST_SENTENCE ? `${words.slice(0, LONGEST_SENTENCE)}…` : words);
@@ -43,12 +43,12 @@ export class Core {
     return this.#ask(request, () => this.exports.check());
   }
 
-  /** The recorded quantities, null for none, of the flock that was last checked in a state: `pose` and `velocity`. */
+  /** The recorded quantities, null if undefined, of the flock that was checked last, in a given state (`pose`, `velocity`). */
   recorded(state) {
     return this.#ask(state, () => this.exports.recorded());
   }
 
-  /** Starts a flock again; returns its parameters. */
+  /** Restarts a flock; returns its parameters. */
   open(flock, request) {
     return this.#ask(request, () => this.exports.open(flock));
   }
@@ -90,7 +90,7 @@ export class Core {
     return this.#answer();
   }
 
-  /** The quantity at this index of the table, of boats with an order at an angle and of a target of this sign. */
+  /** The derived quantity at this index of the table, for a given order, its angle and the target's sign. */
   derived(index, order, angle, sign) {
     return this.exports.derived(index, order, angle, sign);
   }

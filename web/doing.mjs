@@ -1,8 +1,8 @@
-// A sentence about what a flock does, for those who do not see it.
+// Sentences about what a flock does, for visitors who cannot see it.
 
 import { tintOf } from "../flockenv/replay/shared/scene.mjs";
 
-/** The least shares of boats, and what they are called. */
+/** Least fractions of the boats, with the words for them. */
 const SHARES = [[1, "all"], [0.9, "nearly all"], [0.6, "most"]];
 const DIRECTIONS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
 
@@ -41,5 +41,5 @@ export function doing(run, sample, palette) {
   return `${boats}; ${word ? `${word} ${DIRECTIONS[direction]}` : mixed}.`;
 }
 
-/** The scores of a round without those of earlier ones. */
+/** The scores of one round, without those of earlier rounds. */
 export const scoreWords = (score, rounds) => `${Array.from(score.children, ({ textContent }) => textContent.replace(`. ${rounds}`, "")).filter(Boolean).join(", ")}.`;

@@ -1,4 +1,4 @@
-// The flocks that are shown, and those beside them: questions to the simulator, and its answers.
+// The shown flocks and those beside them: requests to the simulator, and its answers.
 
 import { opposedTargets } from "./controls.mjs";
 import { GrowingRun } from "./growing_run.mjs";
@@ -11,12 +11,12 @@ export const SAMPLING = 10;
 const SETTLING = 30;
 /** Most changes of a schedule in a link. */
 const MOST_CHANGES = 200;
-/** The number of no boat. */
+/** Number that stands for no boat. */
 export const NO_BOAT = 1e6;
-/** Fields whose change makes another flock of a map's. */
+/** Fields whose change makes a flock another one on the map of order. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
-/** The flocks that are wanted after a change of one field. `values`: the parameters now; `laws`: the known laws. */
+/** The requested flocks after a change of one field. `values`: the present parameters; `laws`: the known laws. */
 export function changed(base, values, laws, name, value) {
   const wanted = { ...base, flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
@@ -61,7 +61,7 @@ function distinguished(described, copies) {
 
 export class Flocks {
   runs = [];
-  /** The last request, and the request that the runs answer. */
+  /** The latest request, and the request that the shown runs belong to. */
   asked = null;
   shown = null;
   /** The flocks' start, the time from which their means count, and their changes since. */
@@ -119,7 +119,7 @@ export class Flocks {
 
   /** Lets the simulator open or change the flocks; returns whether they continue from their state. */
   async become(wanted, kind) {
-    // Changes that are made before the answer start from this.
+    // Changes that are made before the answer are applied to this request.
     this.asked = wanted;
     const requests = requestsOf(wanted, this.kinds).map((request) =>
       (request.leaders === TRAINED && this.trained ? { ...request, trained: this.trained } : request));
@@ -151,7 +151,7 @@ export class Flocks {
   async advance(question, onCycle) {
     const { runs } = this;
     const said = await this.simulator.ask("advance", question);
-    // Since the question, other flocks may have replaced these, or a recording may be shown.
+    // In the meantime, other flocks may have replaced these, or a recording may be shown.
     if (runs === this.runs || runs === this.#behind?.runs) {
       this.append(said.taken, onCycle, runs);
     }
@@ -164,7 +164,7 @@ export class Flocks {
     });
   }
 
-  /** Advances the flocks to a time, in s, as long as that is wanted and no others replace them. */
+  /** Advances the flocks to a time in s, unless this is canceled or other flocks replace them. */
   async runTo(time, isWanted) {
     const { runs } = this;
     for (;;) {
@@ -182,13 +182,13 @@ export class Flocks {
     await this.simulator.ask("teach", { policy });
   }
 
-  /** Means of the flocks count from now on. */
+  /** Restarts the flocks' means. */
   restartMeans() {
     this.past.start = Number(this.runs[0].end.toFixed(1));
     this.runs.forEach((run) => { run.restartMeans(); });
   }
 
-  /** Shows a recording's run in front of them: they wait. */
+  /** Shows a recording's run instead of the flocks, which wait. */
   show(run) {
     if (!this.isRecorded) {
       const { runs, values } = this;
@@ -197,7 +197,7 @@ export class Flocks {
     Object.assign(this, { runs: [run], values: run.parameters, isRecorded: true });
   }
 
-  /** Shows the flocks again that a recording stood in front of. */
+  /** Shows the waiting flocks again instead of the recording. */
   comeBack() {
     Object.assign(this, this.#behind, { isRecorded: false });
     this.#behind = null;

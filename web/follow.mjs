@@ -1,4 +1,4 @@
-// Following of a link: flocks from their start, their changes, and the moment that is seen.
+// Follows a link: starts its flocks, applies its changes, and runs to its moment.
 
 import { changedFlock, linkTo } from "./request.mjs";
 
@@ -9,8 +9,9 @@ export function linkOf(flocks, other, time) {
 }
 
 /**
- * Makes the flocks those of a link, with what changed on the way, and lets them run to its moment. Leaves out what the
- * simulator refuses, one parameter after another, and names it in `linked.ignored`. `isWanted` says whether to go on.
+ * Replaces the flocks by those of a link, with its changes, and lets them run to its moment. Leaves out each
+ * parameter that the simulator refuses, and names it in `linked.ignored`. `isWanted` says whether to
+ * continue.
  */
 export async function follow(flocks, linked, isWanted) {
   const { start = "0", now = start, flocks: copies = "1" } = linked.other;

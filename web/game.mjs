@@ -1,4 +1,4 @@
-// A game in rounds: flocks that the visitor leads, against the same flocks led by the law. The mean over rounds counts.
+// A game in rounds: the visitor and the law lead the same flocks. The mean over rounds counts.
 
 import { fixed } from "../flockenv/replay/shared/words.mjs";
 
@@ -23,7 +23,7 @@ export class Game {
     return seconds >= ROUND_SECONDS;
   }
 
-  /** Starts another game if the flock, as a link has it, is another one. */
+  /** Starts another game if the flock, as described in links, has changed. */
   play({ seed: _, ...flock }) {
     const kind = JSON.stringify(Object.entries(flock).sort());
     if (kind !== this.#flock) {
@@ -40,7 +40,7 @@ export class Game {
     return `Round ${this.rounds.length}: ${you === it ? "a draw" : won}, you ${you}, the law ${it}. “Again” starts round ${this.rounds.length + 1}.`;
   }
 
-  /** The score over all rounds; no words before the first is over. */
+  /** The score over all rounds as a sentence; empty before the first round is over. */
   get words() {
     const { length } = this.rounds;
     if (length === 0) {

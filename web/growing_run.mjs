@@ -1,4 +1,4 @@
-// A run that grows while it is shown, and forgets its oldest samples: memory stays what it is.
+// A run that grows while it is shown, and drops its oldest samples, so that its memory is bounded.
 
 import { Run } from "../flockenv/replay/shared/run.mjs";
 import { CONTACT } from "./core.mjs";
@@ -58,7 +58,7 @@ function view(column, channelOf) {
 }
 
 export class GrowingRun extends Run {
-  /** `described`: what a recording says of its run; `series`: the names of the quantities of each sample. */
+  /** `described`: the description of the run, as in a recording; `series`: the names of the quantities of each sample. */
   constructor(described, series, capacity = Math.min(KEPT_SAMPLES, Math.floor(KEPT_NUMBERS / (6 * described.boats)))) {
     const raw = Object.fromEntries(["time_s", "phase", "in_analysis_window"].map((name) => [name, new GrowingColumn(1, capacity)]));
     raw.pose = new GrowingColumn(3 * described.boats, capacity);
@@ -83,7 +83,7 @@ export class GrowingRun extends Run {
     return this.sums[key] / this.counted;
   }
 
-  /** Takes other parameters from now on. */
+  /** Replaces the parameters. */
   describe(described) {
     Object.assign(this, described, { changedAt: this.end });
     this.restartMeans();
@@ -94,7 +94,7 @@ export class GrowingRun extends Run {
     Object.assign(this, { sums: { psi_o: 0, rotation: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
-  /** Appends what the simulator took; `onCycle` gets the mean order of each analysis window that ends. */
+  /** Appends samples of the simulator; `onCycle` gets the mean order of each analysis window that ends. */
   append(taken, onCycle = () => {}) {
     const count = taken.time_s.length;
     if (this.length + count > this.capacity) {

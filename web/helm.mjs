@@ -1,4 +1,5 @@
-// The heading that a visitor asks of the leaders: a thumb, and the arrow keys wherever the focus is.
+// The heading that a visitor chooses for the leaders, by a slider's thumb or by the arrow keys,
+// wherever the focus is.
 
 /** Elements that need arrow keys themselves: text, and the open list of keys. */
 const KEEPS_ARROWS = "textarea, input[type='text'], input[type='number'], [contenteditable], dialog[open]";
@@ -11,14 +12,14 @@ export class Helm {
   #isYours;
   #onTurn;
 
-  /** `words`: where the heading is said; `isYours`: whether there are boats that the visitor steers; `onTurn`: called after each turn. */
+  /** `words`: element that shows the heading in words; `isYours`: whether the visitor steers any boats; `onTurn`: called after each turn. */
   constructor(thumb, words, isYours, onTurn) {
     this.#thumb = thumb;
     this.#words = words;
     this.#isYours = isYours;
     this.#onTurn = onTurn;
     thumb.addEventListener("input", () => this.#turn(Number(thumb.value)));
-    // Before the focused element, such as a choice that an arrow would change.
+    // Handled before the focused element gets the key: an arrow would change a choice, for example.
     document.addEventListener("keydown", (event) => this.#key(event), { capture: true });
     this.center();
   }
@@ -55,7 +56,7 @@ export class Helm {
   }
 }
 
-/** A heading after a turn, both in degrees: around and around, within ±180. */
+/** A heading after a turn, both in degrees; the result is wrapped to ±180. */
 export function turned(degrees, by) {
   const next = degrees + by;
   return next > 180 || next < -180 ? next - 360 * Math.sign(next) : next;

@@ -1,6 +1,6 @@
 // Steering of leaders: by the laws that the simulator lists, or by the visitor's hand.
 
-/** The visitor, where links and requests have a law's name. */
+/** Stands for the visitor in links and requests, in place of a law's name. */
 export const YOU = "you";
 /** The leaders that the visitor trained. */
 export const TRAINED = "trained";
@@ -13,7 +13,7 @@ export class Laws {
     this.ofEach = names.slice(1);
   }
 
-  /** Choices for all leaders together: the first of laws with the same words, what was trained, and the visitor. */
+  /** Choices for all leaders together: the laws (the first one of those with the same words), the trained leaders, and the visitor. */
   get ofAll() {
     const alike = [this.atEverySubstep, ...this.ofEach].filter((name, index, names) =>
       names.findIndex((other) => this.words(other) === this.words(name)) === index);

@@ -4,7 +4,7 @@ import { fitted } from "../flockenv/replay/shared/scene.mjs";
 import { fixed, plain } from "../flockenv/replay/shared/words.mjs";
 
 const EDGE_OF_CURVE = { left: 34, right: 12, top: 8, bottom: 32 };
-/** The signed orders that are always there. */
+/** The signed orders that the axis always includes. */
 const [LOW, HIGH] = [-0.1, 0.5];
 
 export class LearningCurve {
@@ -23,7 +23,7 @@ export class LearningCurve {
     Object.assign(this, { points: [], end, law });
   }
 
-  /** The flock-hours at which the next judgment is due, of a number from the start to the end of the training. */
+  /** The flock-hours at which the next judgment is due; judgments are equally spaced over the training. */
   next(judgments) {
     return Math.min(this.points.length / (judgments - 1), 1) * this.end;
   }
@@ -65,7 +65,7 @@ export class LearningCurve {
     this.#name(context, palette, EDGE_OF_CURVE.left + 4, y(law) - 6);
   }
 
-  /** Names the line of the law at its start, where no leader has learned to lead better yet; over whatever is there. */
+  /** Labels the law's line at its start, where no leaders lead better yet; drawn on top of everything else. */
   #name(context, palette, x, y) {
     if (Number.isNaN(this.law)) {
       return;

@@ -3,14 +3,14 @@
 
 import { element } from "../flockenv/replay/shared/words.mjs";
 
-/** The flock of the page without a link: it circles. */
+/** The flock of a page that is opened without a link: it circles. */
 export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=6&start=180&speed=4";
 const OPENING_WORDS = {
   before: "These boats only bump into each other, and yet they circle together. How long they back up in each cycle decides it: try the slider.",
   after: "Blue boats head clockwise, orange ones counter-clockwise, gray ones neither.",
 };
 
-/** The name of no lesson: a recording's words. */
+/** Not the name of a lesson: stands for the words of a recording. */
 export const RECORDING = "a recording";
 const RECORDING_WORDS = {
   before: "This is a recording, from a file. The slider goes to any of its times, and “again” returns to the flock where it was.",

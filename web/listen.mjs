@@ -22,13 +22,13 @@ export function listen(page) {
   files(page);
   page.training = trainings(page);
   document.addEventListener("click", (event) => {
-    // A link to the flock that is shown already starts it again.
+    // A link to the flock that is already shown restarts it.
     const link = event.target.closest?.("a[href^='#']");
     if (link && link.getAttribute("href") === location.hash) {
       page.follow(location.hash);
     }
   });
-  // The event's own address: the page may have written its link since.
+  // Uses the event's address, since the page may have changed its own in the meantime.
   window.addEventListener("hashchange", ({ newURL }) => page.follow(new URL(newURL).hash));
   new ResizeObserver(() => { page.show(); page.training.draw(); }).observe(byId("runs"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -111,7 +111,7 @@ function files(page) {
   });
 }
 
-/** Copies, and says so in the button, which keeps its place and width; `said` says it to those who do not see it. */
+/** Copies, and says so in the button, whose position and width stay the same; `said` tells those who cannot see it. */
 async function copy(page, button, said) {
   const { copies } = button.dataset;
   const text = copies === "address" ? new URL(linkOf(page.flocks, page.other, page.time), location.href).href : byId(copies).value;
@@ -157,7 +157,7 @@ async function open(page, file) {
       describe: (answer, named) => flocks.described(answer, named),
       derive: async (arrays, described) => (await simulator.ask("derive", derivedOf(arrays, described, flocks.series))).series,
     });
-    // A flock that still runs ahead, or changes, comes first.
+    // If a flock is still running ahead, or changing, wait for it.
     while (page.changing && !page.broken) {
       await new Promise((resolve) => { setTimeout(resolve, 50); });
     }

@@ -1,4 +1,4 @@
-// The page: what a visitor may do, and the flocks that it does it to.
+// The page: the visitor's actions, applied to the flocks.
 
 import { LinkWriter } from "../flockenv/replay/shared/link.mjs";
 import { byId } from "../flockenv/replay/shared/words.mjs";
@@ -13,19 +13,19 @@ import { readLink } from "./request.mjs";
 import { showTexts } from "./share.mjs";
 import { View } from "./view.mjs";
 
-/** After how long, in ms, the page says that a flock runs ahead. */
+/** Time in ms after which the page says that a flock runs ahead. */
 const LONG = 500;
 
 export class LivePage {
   /** The parts of the link besides the flocks. */
   other = { speed: "8" };
-  /** Names and values that wait for the change before. */
+  /** Changes, by name, that wait until the current one is finished. */
   wanted = [];
   changing = false;
   broken = false;
-  /** Number of the link that is followed now: a later one takes its place. */
+  /** Number of the link that is being followed; a later link replaces it. */
   followed = 0;
-  /** Whether the page paused, for a link that asks for a still picture or a round of the game, and not the visitor. */
+  /** Whether the page itself paused (for a link that asks for a still picture or a round of the game), not the visitor. */
   isHeld = false;
   link = new LinkWriter(() => (this.recorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
 
@@ -92,7 +92,7 @@ export class LivePage {
     this.view.choose(this.other);
   }
 
-  /** Changes one parameter, from where the flock is if that is possible. */
+  /** Changes one parameter; the flock continues from its present state if that is possible. */
   set(name, value) {
     this.wanted = [...this.wanted.filter(([other]) => other !== name), [name, value]];
     this.#change();
@@ -106,7 +106,7 @@ export class LivePage {
     await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open"));
   }
 
-  /** Returns from a recording; or starts again, with a new thread if the old one stopped; after a round, with the next round's flocks. */
+  /** Returns from a recording, or restarts: with a new thread if the old one stopped, and after a round with the next round's flocks. */
   async again() {
     if (this.recorded && !this.broken) {
       this.playback.comeBack();
@@ -122,7 +122,7 @@ export class LivePage {
     }
   }
 
-  /** Makes one change after another. Of changes that came during the one before, only the last of each name counts. */
+  /** Makes one change at a time. Of the changes that arrive meanwhile, only the last one of each name counts. */
   async #change() {
     if (this.changing) {
       return;
@@ -179,7 +179,7 @@ export class LivePage {
     this.training.show();
   }
 
-  /** Says this, and that a training waits that was left. */
+  /** Shows a sentence; also says if a training in another lesson is waiting. */
   say(words) {
     byId("status").textContent = `${words} ${this.training.leave()}`.trim();
   }

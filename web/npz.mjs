@@ -112,7 +112,7 @@ function* entries(view) {
   }
 }
 
-/** The directory's entry of a file, if the file's own header agrees. */
+/** A file's entry in the directory, if it agrees with the file's own header. */
 function directoryEntry(view, offset) {
   if (view.getUint32(offset, true) !== 0x02014b50) {
     throw new Error("Bad magic number for central directory");
@@ -166,7 +166,7 @@ const READERS = {
 function readNpy(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   if (bytes.length < 12 || bytes[0] !== 0x93 || ![1, 2].includes(bytes[6])) {
-    throw new Error("an entry is no array");
+    throw new Error("an entry is not an array");
   }
   const start = bytes[6] === 1 ? 10 : 12;
   const length = bytes[6] === 1 ? view.getUint16(8, true) : view.getUint32(8, true);
@@ -198,7 +198,7 @@ function textsOf(content, width) {
     if (points.some((point) => point > 0x10ffff)) {
       throw new Error("an array holds letters that there are not");
     }
-    // In parts: the number of arguments of a call is limited.
+    // Converted in parts, since the number of arguments of a call is limited.
     const parts = Array.from({ length: Math.ceil(end / PART) }, (_, part) => String.fromCodePoint(...points.subarray(part * PART, Math.min((part + 1) * PART, end))));
     return parts.join("");
   });

@@ -20,7 +20,7 @@ export class OrderMap {
     this.orders = orders;
   }
 
-  /** Shows the order that is expected of a flock, null for none, and forgets another flock's marks. */
+  /** Shows the expected order of a flock (null: none), and removes the marks of other flocks. */
   expect(flock, signature) {
     const { bw_s: _, seed: __, ...rest } = flock ?? {};
     const isOf = ({ points: _, ...curve }) => Object.entries({ n_leaders: "0", ...rest }).every(([name, value]) => String(curve[name]) === value);

@@ -1,4 +1,4 @@
-// The clock of the page: flocks that go on while it plays, and a game that ends.
+// The clock of the page: advances flocks while it plays, and ends rounds of the game.
 
 import { Transport } from "../flockenv/replay/shared/transport.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
@@ -8,7 +8,7 @@ import { Game, scoreOf } from "./game.mjs";
 /** How long the simulator may compute for one frame, in ms, and after how long it is called slow; its first answer takes longer. */
 const [FRAME_WORK, SLOW, SLOW_AT_FIRST] = [12, 1000, 8000];
 
-/** Whether the system asks for less motion, and what the page says then. */
+/** Whether the system asks for reduced motion, and the sentence for that. */
 export const wantsLessMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 export const PAUSED = "Paused, since your system asks for less motion: the button or the space bar plays.";
 
@@ -20,10 +20,10 @@ export class Playback {
   #page;
   #rate = { since: 0, passed: 0, words: "" };
   #isOver = false;
-  /** Where the flocks were that wait behind a recording; null for none. */
+  /** The time of the flocks that wait while a recording is shown; null without a recording. */
   #left = null;
 
-  /** `page`: what is played; it shows sentences. */
+  /** `page` has the flocks to play, and shows sentences. */
   constructor(page) {
     this.#page = page;
     this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
@@ -49,12 +49,12 @@ export class Playback {
     this.#isOver = false;
     this.transport.pause();
     flocks.show(run);
-    // Its picture comes first: those of other flocks have no run any more.
+    // Its picture must come first, since the pictures of the flocks have no run any more.
     this.#page.showRuns();
     this.seek(run.time[0]);
   }
 
-  /** Goes on with the flocks that waited. */
+  /** Continues with the flocks that waited. */
   comeBack() {
     const { time, isHeld, pinned, isOver, plays } = this.#left;
     this.#left = null;
@@ -87,7 +87,7 @@ export class Playback {
     }
   }
 
-  /** The hand was moved: a game that waits for it starts. */
+  /** The visitor has steered: starts a round of the game that waits for it. */
   start() {
     if (this.#page.flocks.areYours && !this.#isOver && !this.transport.playing) {
       this.toggle();
@@ -191,7 +191,7 @@ export class Playback {
     return true;
   }
 
-  /** Counts frames, and what of time passed in them. */
+  /** Counts frames, and the time that passed in them. */
   #note(now, passed) {
     this.costs.frames += 1;
     this.#rate.passed += passed;

@@ -1,5 +1,6 @@
-// Checks of a recording's arrays: the same files are refused as by flockenv.Recording.load, in the same sentences
-// (flockenv/recording/checks.py and stored.py; tests/web/test_damaged_recordings.py compares the two).
+// Checks of a recording's arrays. They refuse the same files as flockenv.Recording.load, with the
+// same sentences (flockenv/recording/checks.py and stored.py; tests/web/test_damaged_recordings.py
+// compares the two).
 
 const TIMES = ["time_s", "phase", "in_analysis_window"];
 const TEXTS = ["format", "version", "parameters", "policy"];
@@ -7,7 +8,7 @@ const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
 /** Bounds of a flock's poses and velocities. */
 const WITHIN_REACH = [-1e9, 1e9];
 const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
-/** NumPy's names of kinds of numbers; texts have the names that files have. */
+/** NumPy's names of dtypes, by their codes in files; for texts both are the same. */
 const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
 
 const kindOf = (descr) => KINDS[descr] ?? descr;

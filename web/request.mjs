@@ -1,4 +1,5 @@
-// The page's link as a request: parameters by name, a seed, the leaders' steering, and a second flock beside the first.
+// Links as requests: parameters by name, a seed, the leaders' steering, and a second flock beside
+// the first.
 
 import { ignoredPart } from "../flockenv/replay/shared/link.mjs";
 import { LESSONS } from "./lessons.mjs";
@@ -21,16 +22,16 @@ export const OTHER = {
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
 /** Largest values of fields on this page, which may be larger elsewhere. */
 const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
-/** Fields of a request that are no parameters. */
+/** Fields of a request that are not parameters. */
 const STRINGS = ["preset", "seed", "leaders"];
 /** Prefix of the fields in which the second flock differs from the first. */
 const BESIDE = "beside.";
-/** A change on the way: its time, and the field that changes then; an empty value is the preset's own. */
+/** A change during the run: its time, and the field that changes then. An empty value means the preset's value. */
 const CHANGE = /^at\.(\d{1,4}(?:\.\d)?)\.(.+)$/;
 
 /**
- * The request in a fragment: `flock` and `beside` (null: none) hold parameters by name, `changes` what changes of the
- * flock on the way, `other` the rest, and `ignored` a sentence for each part that cannot be followed.
+ * The request in a fragment: `flock` and `beside` (null: none) hold parameters by name, `changes` the changes
+ * during the run, `other` the rest, and `ignored` a sentence for each part that cannot be followed.
  */
 export function readLink(fragment, fields) {
   const wanted = { flock: {}, beside: null, changes: [], other: {}, ignored: [] };
@@ -63,7 +64,7 @@ export function readLink(fragment, fields) {
   return wanted;
 }
 
-/** Changes with one more, in their order; those of one time are one. */
+/** Adds a change to a list in order of time; changes at the same time are merged. */
 export function withChange(changes, time, fields) {
   const before = changes.filter((change) => change.time < time);
   const same = changes.find((change) => change.time === time);
@@ -86,7 +87,7 @@ function isWithin([low, high], text) {
   return value >= low && value <= high;
 }
 
-/** The fragment for flocks, what changed of them on the way, and what else is shown. */
+/** The fragment for flocks, their changes during the run, and the rest of what is shown. */
 export function linkTo({ flock, beside, changes = [], other }) {
   const pairs = [...Object.entries(flock), ...Object.entries(beside ?? {}).map(([name, value]) => [BESIDE + name, value]),
     ...changes.flatMap(({ time, fields }) => Object.entries(fields).map(([name, value]) => [`at.${time}.${name}`, value])),
@@ -136,7 +137,7 @@ export function requestsOf({ flock, beside, copies = 1 }, kinds) {
   return kindsOfFlock.flatMap((flockOfKind) => Array.from({ length: copies }, (_, copy) => requestOf({ ...flockOfKind, ...seedOf(flockOfKind, copy) }, kinds)));
 }
 
-/** The seed of a copy of a flock. Other text stays, and the simulator refuses it. */
+/** The seed of a copy of a flock. Text that is not a number is kept, and the simulator refuses it. */
 function seedOf({ seed = "0" }, copy) {
   return copy > 0 && /^\d+$/.test(seed) ? { seed: String(BigInt(seed) + BigInt(copy)) } : {};
 }
@@ -144,7 +145,7 @@ function seedOf({ seed = "0" }, copy) {
 /** Whether a field of a flock is one of its parameters. */
 export const isOwn = (name) => !STRINGS.includes(name);
 
-/** Parameters as TOML, a line each: what JSON and TOML write alike, and infinity. */
+/** Parameters as TOML, one per line. Their values look the same in JSON and TOML, except for infinity. */
 export function tomlOf(values) {
   const line = ([name, value]) => `${name} = ${JSON.stringify(value).replaceAll('"inf"', "inf")}\n`;
   return Object.entries(values).map(line).join("");

@@ -7,7 +7,7 @@ import { checkedArrays } from "./recording.mjs";
 import { tomlOf, valuesOfToml } from "./request.mjs";
 import { commandLine, isSchedule, pythonText } from "./texts.mjs";
 
-/** Least duration of the commands that show the same flock, in s. */
+/** Shortest duration in s of the commands that show the same flock. */
 const SECONDS = 480;
 
 /**
@@ -24,7 +24,7 @@ export function recordingOf(run, { format, version, policy, recorded, statistics
     const values = Float64Array.from({ length: samples }, (_, k) => run.value(name, first + k));
     return [`order_${name}`, array.reals(values, [samples])];
   }));
-  // A recording that is played may not have them.
+  // A recording from a file may not have them.
   const known = statistics.every((_, index) => Number.isFinite(run.statistics[index])) ? statistics : [];
   const counted = Object.fromEntries(known.map(({ name, kind }, index) => {
     const value = run.statistics[index];
@@ -65,10 +65,10 @@ export async function runOfFile(file, about, { check, describe, derive }) {
   const because = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
   const bytes = await file.arrayBuffer();
   const isZip = new TextDecoder("latin1").decode(bytes.slice(0, 4)) === "PK\x03\x04";
-  const arrays = await readNpz(bytes).catch(isZip ? because("is no whole, unharmed .npz file") :
-    () => { throw new Error("is no .npz file, in which recordings are saved"); });
+  const arrays = await readNpz(bytes).catch(isZip ? because("is not a complete, undamaged .npz file") :
+    () => { throw new Error("is not an .npz file, in which recordings are saved"); });
   const checked = await checkedArrays(arrays, about, async (toml) => check({ parameters: valuesOfToml(toml) }))
-    .catch(because("is no recording of flockenv"));
+    .catch(because("is not a recording of flockenv"));
   const described = describe(checked, {
     name: file.name, seed: String(arrays.seed.values[0]), version: arrays.version.values[0],
   });

@@ -1,9 +1,10 @@
-// The simulator as the page sees it: questions and answers, and a new thread if the old one does not answer.
+// The simulator for the page: sends questions, receives answers, and starts a new thread if the old
+// one does not answer.
 
 /** Time in ms after which the thread of an unanswered question counts as lost. */
 const PATIENCE = 15_000;
 
-/** Why the simulator did not answer; `field` names the parameter that is to blame, if one is. */
+/** The error if the simulator does not answer; `field` names the parameter at fault, if there is one. */
 export class Unanswered extends Error {
   constructor({ words, field = "", refused = false }) {
     super(words);
@@ -28,7 +29,7 @@ export class Simulator {
     return oldest ? performance.now() - oldest.asked : 0;
   }
 
-  /** Ends the thread at once: its open questions are answered with these words. */
+  /** Ends the thread at once; its open questions fail with this sentence. */
   stop(words) {
     this.worker?.terminate();
     for (const { reject, waited } of this.open.values()) {
@@ -50,7 +51,7 @@ export class Simulator {
     return described;
   }
 
-  /** Asks; the answer, or an `Unanswered`. */
+  /** Asks a question; returns the answer, or throws an `Unanswered`. */
   ask(kind, message) {
     return new Promise((resolve, reject) => {
       this.next += 1;

@@ -6,7 +6,7 @@ import { isOwn } from "./request.mjs";
 const OPTIONS = { n_boats: "--n-boats", n_leaders: "--n-leaders", pool: "--pool", bw_s: "--bw-s" };
 const shellWord = (text) => (/^[\w.:=+-]+$/.test(text) ? text : `'${text}'`);
 
-/** Whether commands and Python can say what changed on the way. */
+/** Whether commands and Python can express these changes. */
 export function isSchedule(changes) {
   const isFixed = (name) => !isOwn(name) || name === "n_leaders";
   return changes.every(({ fields }) => Object.entries(fields).every(([name, value]) => value !== "" && !isFixed(name)));

@@ -11,26 +11,26 @@ import { trainingCommand } from "./texts.mjs";
 
 /** Settings in which trainings differ from `flockenv train --algorithm branches` with rudders. */
 export const SETTINGS = { flock_hours: 60, hold_s: 0.8, seen_s: 0.8, trial_s: 8, branch_s: 16, offset: 1, step: 0.03 };
-/** For how many s each flock judges, and how often they do until the end. */
+/** Length of a judgment in s, and the number of judgments in a training. */
 const [JUDGED_SECONDS, JUDGMENTS] = [120, 12];
 /** Time in ms between two sentences for those who do not see the curve. */
 const SAY_EVERY = 5000;
 
 export class Training {
-  /** The training's progress; null before the first. The newest policy of the training before, until there is another. */
+  /** The training's progress, null before the first report; and the last policy of the previous training, until there is a new one. */
   progress = null;
   before = null;
   seed = 0;
   isRunning = false;
   settings = { ...SETTINGS };
-  /** Time in ms that the training has between two looks at whether it should go on. */
+  /** Time in ms that the training runs between two checks whether to continue. */
   slice = 200;
-  /** How many flocks judge, by the seeds from 0 on. */
+  /** Number of flocks that judge, with seeds from 0 on. */
   judges = 64;
   curve = new LearningCurve(byId("curve"));
   #page;
   #simulator;
-  /** The flock whose training began, as a link has it, and the request for those that judge. */
+  /** The flock that is being trained, as described in links, and the request for the flocks that judge. */
   #trained = null;
   #judged = null;
   #isAtWork = false;
@@ -61,7 +61,7 @@ export class Training {
     showTexts(this.#page.flocks, this.#page.time);
   }
 
-  /** Stops if the flock that is shown is not one that is trained; says so. */
+  /** Stops if the shown flock cannot be trained, and says so. */
   leave() {
     if (!this.isRunning || this.#page.flocks.areTrained) {
       return "";
@@ -170,7 +170,7 @@ export class Training {
     this.#page.say("policy.json holds your leaders: flockenv run --policy policy.json leads a flock with them.");
   }
 
-  /** Says how it goes beside the curve, and where it is due to those who do not see it. */
+  /** Describes the progress beside the curve and, now and then, to those who cannot see it. */
   #say(words, isDue = true) {
     byId("trained").textContent = words;
     if (isDue) {

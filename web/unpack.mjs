@@ -3,7 +3,7 @@
 /** The digits of Python's base64.b85encode, from 0 to 84. */
 const DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;<=>?@^_`{|}~";
 
-/** The bytes of text in base 85: five digits are four bytes, and the last ones are filled up with the largest digit. */
+/** The bytes of text in base 85: five digits are four bytes; missing digits at the end count as the largest digit. */
 function bytesOf(text) {
   const values = Object.fromEntries(Array.from(DIGITS, (digit, value) => [digit, value]));
   const view = new DataView(new ArrayBuffer(4 * Math.ceil(text.length / 5)));

@@ -69,7 +69,7 @@ export class View {
       byId("story").replaceChildren(...storyOf(before));
       byId("after").replaceChildren(...storyOf(after));
       byId("observes").open = name === "forces";
-      // Until the lesson's flock is there, nothing is said of the one before.
+      // Until the lesson's flock has started, nothing is said about the previous flock.
       byId("doing").textContent = "";
     }
     const lessons = byId("lessons");
@@ -83,7 +83,7 @@ export class View {
     }
   }
 
-  /** Pictures of other runs. `pin`: keeps a boat's numbers, or lets them go. */
+  /** Replaces the pictures by those of other runs. `pin` pins or unpins a boat's numbers. */
   rebuild(pin, redraw) {
     const { runs, seen, besides, areYours, isRecorded, shown } = this.#flocks;
     const isPair = seen.length === 2 && besides === 1;
@@ -115,7 +115,7 @@ export class View {
     }
   }
 
-  /** Lets words be written, and said, with the next picture. */
+  /** Lets the next picture update the words, written and spoken. */
   hurry() {
     this.#worded = this.#told = -Infinity;
   }
@@ -162,7 +162,7 @@ export class View {
     this.#showObserved();
   }
 
-  /** The mean so far, large. Below a pair stand both means, of which a wide window shows the picture's own; in a game, both. */
+  /** Shows the mean so far in large type. A pair of pictures has both means below it, of which a wide window shows one under each picture; a game shows both. */
   #score(index, time) {
     const { areYours, besides, runs, seen } = this.#flocks;
     const line = (words, value, className = "") => {
@@ -206,7 +206,7 @@ export class View {
     }
   }
 
-  /** Statistics of the substeps until the end of each run. */
+  /** Statistics of each run's substeps so far. */
   #showStatistics() {
     const { runs, statistics } = this.#flocks;
     const rows = byId("about-flock").open ? statistics : [];

@@ -20,8 +20,9 @@ export const ANSWERS = {
   check: ({ request }) => ({ values: core.check(request) }),
 
   /**
-   * The rows of all quantities, in the order of their `names`, for a number of samples. Recorded quantities are given,
-   * or computed from the `states`; the others follow from them. The flock is the one that was checked last.
+   * The rows of all quantities, in the order of their `names`, for a number of samples. Recorded quantities
+   * come from the request or are computed from the `states`; the other quantities are derived from them. The
+   * flock is the one that was checked last.
    */
   derive({ names, recorded, states, samples, sign }) {
     const rows = Array.from({ length: samples }, (_, k) => {
@@ -56,7 +57,7 @@ export const ANSWERS = {
     }
   },
 
-  /** Takes samples of all flocks, up to a number and for at most this many milliseconds. */
+  /** Takes up to this many samples of all flocks, for at most this many milliseconds. */
   advance({ samples, milliseconds, boat, heading }) {
     const start = performance.now();
     for (const flock of shown.keys()) {

@@ -323,7 +323,7 @@ def _easy() -> tuple[Plot, str]:
 
 
 DATA: dict[str, Callable[[], tuple[Plot, str]]] = {LEADERS: _leaders, EASY: _easy}
-"""Plots of ids that are no task of the suite."""
+"""Plots of ids that are not tasks of the suite."""
 
 
 def _interval(row: Row, mean: str, ends: str = "") -> Interval:

@@ -17,8 +17,8 @@ _MOST_ITEMS = 1_000_000
 def items(values: object, name: str) -> Sequence[Any]:
     """Return the items of a sequence: a list, an array, a generator or a view of a dictionary.
 
-    A range is returned unchanged. Texts, dictionaries and sets are a TypeError, and sequences
-    without end a ParameterError.
+    A range is returned unchanged. Raises TypeError for texts, dictionaries and sets, and
+    ParameterError for sequences without end.
     """
     if isinstance(values, range):
         return values
@@ -39,7 +39,7 @@ def _iterated(values: Iterable[object], name: str) -> Iterator[object]:
 
 
 def by_name(values: object, name: str) -> dict[Any, Any]:
-    """Return a copy of a dictionary; a TypeError refuses anything else."""
+    """Return a copy of a dictionary; raise TypeError for anything else."""
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a dictionary, not {short_repr(values)}")
     return dict(values)
@@ -72,11 +72,11 @@ def listed(value: object) -> object:
 
 
 def as_int(value: Any, name: str) -> int:
-    """Return a whole number as an int, 8.0 among them.
+    """Return a whole number, such as 8 or 8.0, as an int.
 
-    A ParameterError refuses other real numbers, a TypeError everything else, bools among them.
+    Raises ParameterError for other real numbers, and TypeError for everything else, bools included.
     """
-    # As the core does: NumPy's integers, too, and arrays of one integer without a dimension.
+    # As in the core, NumPy's integers and 0-dimensional arrays of one integer are accepted, too.
     try:
         if not isinstance(value, bool | np.bool_):
             return operator.index(value)
@@ -98,9 +98,9 @@ def _check_no_table(values: object, name: str) -> None:
 
 
 def real_numbers(values: object, name: str) -> np.ma.MaskedArray[Any, Any]:
-    """Return an array, perhaps a masked one, of real numbers; a ParameterError names others.
+    """Return an array of real numbers, which may be masked; raise ParameterError for others.
 
-    NumPy itself makes numbers of text and times, and drops imaginary parts.
+    NumPy itself would turn text and times into numbers, and drop imaginary parts.
     """
     _check_no_table(values, name)
     try:
@@ -133,21 +133,21 @@ def series(values: object, name: str) -> NDArray[np.float64]:
 
 
 def number(value: object, name: str) -> Any:
-    """Return a real number unchanged; a TypeError refuses anything else, bools among them."""
+    """Return a real number unchanged; raise TypeError for anything else, bools included."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a number, not {short_repr(value)}")
     return value
 
 
 def as_bool(value: object, name: str) -> bool:
-    """Return True or False; a TypeError refuses all else, such as "no", which would be true."""
+    """Return True or False; raise TypeError for all else, such as "no", which would be true."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} must be True or False, not {short_repr(value)}")
     return bool(value)
 
 
 def as_bytes(value: object, name: str) -> bytes:
-    """Return bytes unchanged; a TypeError refuses anything else."""
+    """Return bytes unchanged; raise TypeError for anything else."""
     if not isinstance(value, bytes):
         raise TypeError(f"{name} must be bytes, not {short_repr(value)}")
     return value

@@ -20,7 +20,7 @@ _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 def most_held(size: int) -> int:
     """Return the largest number of bytes that the entries of a file of this size may hold.
 
-    Compression makes the numbers of a run ten times smaller at best, and zeros a thousand times.
+    Compression makes the numbers of a run at most ten times smaller, but zeros a thousand times.
     """
     return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_TIMES * size))
 
@@ -30,7 +30,8 @@ def write_arrays(
 ) -> None:
     """Write arrays to a file, as `atomic_write` does.
 
-    Those that compression would make smaller than `read_arrays` accepts are not compressed.
+    If compression would make the file so small that `read_arrays` would refuse it, the arrays are
+    not compressed.
     """
     held = sum(array.nbytes for array in arrays.values())
     with atomic_write(path) as file:
@@ -47,9 +48,9 @@ def read_arrays(
 ) -> dict[str, NDArray[Any]]:
     """Read all arrays of a file; nothing in it is ever executed.
 
-    A ParameterError names a file that is no ``.npz`` file of plain numbers and strings, is cut off
-    or damaged, or whose arrays hold more than `most_bytes` together. The default is a hundred times
-    the file's size, but at least 64 MiB and at most 16 GiB.
+    Raises ParameterError, which names the file, if it is not an ``.npz`` file of plain numbers and
+    strings, if it is cut off or damaged, or if its arrays hold more than `most_bytes` together. The
+    default is a hundred times the file's size, but at least 64 MiB and at most 16 GiB.
     """
     with open_plain(path) as file:
         most = most_bytes or most_held(os.fstat(file.fileno()).st_size)
@@ -62,7 +63,9 @@ def read_arrays(
         except Exception as error:
             # zipfile, zlib and NumPy raise very different things for damaged bytes.
             reason = str(error) or type(error).__name__
-            raise ParameterError(f"{path} is no whole, unharmed .npz file: {reason}") from error
+            raise ParameterError(
+                f"{path} is not a complete, undamaged .npz file: {reason}"
+            ) from error
 
 
 def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:

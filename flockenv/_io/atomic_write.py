@@ -36,7 +36,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     It is removed when the block ends or, at the latest, when Python ends, unless the process is
     killed. The new file keeps the old one's mode. A link stays a link, and the file that it names
     is replaced. If the file cannot be written, an OSError is raised and the old file is still
-    there. A ParameterError refuses to replace a device, a pipe or a socket.
+    there. Raises ParameterError if the path is a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
@@ -79,7 +79,7 @@ def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
 
 
 def _keep_access(target: Path, file: IO[bytes]) -> None:
-    """Give a new file the mode of the one that it will replace, before anything is in it."""
+    """Give a new, empty file the mode of the one that it will replace."""
     if fcntl is None or not target.exists():
         return
     before, now = target.stat(), os.fstat(file.fileno())

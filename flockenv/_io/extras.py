@@ -15,7 +15,7 @@ class MissingExtraError(FlockError, ImportError):
 
 
 def install(extra: str) -> str:
-    """Return how an extra is installed, in words."""
+    """Return a sentence that says how to install an extra."""
     if IS_PUBLISHED:
         return f"pip install 'flockenv[{extra}]'"
     return f"pip install '.[{extra}]' in a clone of flockenv, 'FILE.whl[{extra}]' with its wheel"

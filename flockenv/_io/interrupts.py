@@ -27,7 +27,7 @@ _is_noted = False
 
 
 def interrupted() -> bool:
-    """Return whether Ctrl-C was noted: nothing further is to be started."""
+    """Return whether Ctrl-C was noted, so that nothing more may be started."""
     return _is_noted
 
 

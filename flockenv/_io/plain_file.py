@@ -16,7 +16,7 @@ def is_special(path: str | os.PathLike[str]) -> bool:
     try:
         return _is_special(os.stat(path).st_mode)
     except ValueError as error:
-        raise ParameterError(f"{short_repr(path)} is the name of no file: {error}") from error
+        raise ParameterError(f"{short_repr(path)} is not the name of a file: {error}") from error
 
 
 def _is_special(mode: int) -> bool:
@@ -26,9 +26,10 @@ def _is_special(mode: int) -> bool:
 def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
     """Open a file to read its bytes.
 
-    A ParameterError names a device, a pipe or a socket. A folder or a missing file is an OSError.
+    Raises ParameterError for a device, a pipe or a socket, and OSError for a folder or a missing
+    file.
     """
-    words = f"{os.fspath(path)} is no file but a device, a pipe or a socket"
+    words = f"{os.fspath(path)} is not a file but a device, a pipe or a socket"
     if is_special(path):
         raise ParameterError(words)
     # Without waiting, in case a pipe was created meanwhile.
@@ -49,8 +50,8 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
 def check_writable(path: str | os.PathLike[str]) -> None:
     """Refuse to replace a device, a pipe, a socket or a protected file.
 
-    A write-protected file is a PermissionError, for root too: renaming another file to its name
-    would bypass the protection.
+    Raises PermissionError for a write-protected file, for root too: renaming another file to its
+    name would bypass the protection.
     """
     if not Path(path).exists():
         return

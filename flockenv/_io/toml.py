@@ -1,4 +1,4 @@
-"""TOML as a dictionary, with one kind of error for text that is no TOML."""
+"""TOML as a dictionary, with one kind of error for text that is not TOML."""
 
 import os
 import tomllib
@@ -22,23 +22,23 @@ def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
 def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
     """Return the values in a TOML file of at most 1 MiB; ParameterErrors call the file `what`."""
     try:
-        return read_toml(read_limited(path, f"{what} is no TOML").decode("utf-8-sig"), what)
+        return read_toml(read_limited(path, f"{what} is not TOML").decode("utf-8-sig"), what)
     except OSError as error:
         raise ParameterError(f"{what} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise ParameterError(f"{what} is no TOML: {error}") from error
+        raise ParameterError(f"{what} is not TOML: {error}") from error
 
 
 def read_toml(text: str, what: str) -> dict[str, Any]:
     """Return the values in a TOML text; errors call the text `what`.
 
-    Numbers that are too large and nesting that is too deep are a ParameterError, too.
+    Raises ParameterError also for numbers that are too large and nesting that is too deep.
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} must be a string, not {type(text).__name__}")
     try:
         return tomllib.loads(text.removeprefix("\ufeff"))
     except RecursionError as error:
-        raise ParameterError(f"{what} is no TOML: it is nested too deeply") from error
+        raise ParameterError(f"{what} is not TOML: it is nested too deeply") from error
     except ValueError as error:  # Integers of thousands of digits raise it, too.
-        raise ParameterError(f"{what} is no TOML: {error}") from error
+        raise ParameterError(f"{what} is not TOML: {error}") from error

@@ -59,7 +59,7 @@ def compare_entries(
 
 
 def _show(found: Scored, out: Path, printing: Printing) -> None:
-    """Print the rows, and where they are; warn of overlaps beyond the tolerance."""
+    """Print the rows and the path of their table; warn of overlaps beyond the tolerance."""
     for line in overlap_notes(found.orders):
         warn(line)
     if printing.as_json:
@@ -73,13 +73,13 @@ def _show(found: Scored, out: Path, printing: Printing) -> None:
 
 
 def _levels(tasks: Sequence[str]) -> list[str]:
-    """Return the levels of some names, all of them without names."""
+    """Return the levels with these names, or all levels if there are no names."""
     refuse_unknown(tasks, LEVELS, f"level of suite {SUITE}")
     return [level for level in LEVELS if not tasks or level in tasks]
 
 
 def _check_names(entries: list[SuiteEntry]) -> None:
-    """Refuse two entries of one name and budget: their rows would look the same."""
+    """Refuse two entries with the same name and budget: their rows would look the same."""
     names = [f"{entry.name}, {entry.budget} flock-hours" for entry in entries]
     for name in names:
         if names.count(name) > 1:

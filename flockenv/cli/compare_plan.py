@@ -101,7 +101,7 @@ class Plan:
 
     @classmethod
     def parse(cls, options: CompareOptions) -> Self:
-        """Return the plan of checked options; a ParameterError names one that is not accepted."""
+        """Return the plan of checked options; raise ParameterError for one that is not accepted."""
         for name in ("entry", "trial_flocks"):
             if getattr(options, name) is not None:
                 words = f"is not accepted without --suite {LEVELS_SUITE}"
@@ -149,7 +149,7 @@ def _is_made(given: str) -> bool:
 
 
 def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> dict[str, Steers]:
-    """Return a case's policies by name, the user's first, and names of those for other pools."""
+    """Return a case's policies by name, the user's first; print the names of those left out."""
     found: dict[str, Steers] = {
         name: _read(given, pool, options.trust) for name, given in own.items()
     }

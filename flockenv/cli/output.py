@@ -41,8 +41,9 @@ def load_recording(
     Rows that were left out are printed, unless `quiet`, and passed to `report`.
 
     The layout of tracks is read from the TOML file beside them unless one is given. If there is
-    none, a layout is guessed from the columns, and the lines to check are printed. A ParameterError
-    names a file that cannot be read, is damaged, or is neither a recording nor a table.
+    none, a layout is guessed from the columns, and the lines to check are printed. Raises
+    ParameterError for a file that cannot be read, is damaged, or is neither a recording nor a
+    table.
     """
     from flockenv.tracks import check_ending, description_of, guess_layout, read_layout, read_tracks
 
@@ -72,7 +73,7 @@ def load_recording(
 def prepare(*paths: Path, overwrites: bool = True) -> None:
     """Make the folders of files that will be written, before long work.
 
-    A ParameterError names a file that cannot be written, or one that exists and may not be
+    Raises ParameterError for a file that cannot be written, or that exists and may not be
     overwritten.
     """
     for path in paths:

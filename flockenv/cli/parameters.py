@@ -29,9 +29,9 @@ class Flocks:
     def parameters(self) -> FlockParameters:
         """Return the parameters of the preset, the file and the changes of single fields.
 
-        The preset is the file's own, or "simulation", unless it is given. A ParameterError names an
-        unknown preset or field, a value that is not accepted, or a file that cannot be read or is
-        no TOML.
+        The preset is the file's own, or "simulation", unless it is given. Raises ParameterError for
+        an unknown preset or field, a value that is not accepted, or a file that cannot be read or
+        is not TOML.
         """
         try:
             return FlockParameters.from_dict(self.fields())
@@ -68,10 +68,10 @@ class OneFlock(Flocks):
 
 
 def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, object]:
-    """Return what `--set` options, or others like it, give: ``NAME=VALUE`` each.
+    """Return the fields and values of `--set` options, or of options like it: ``NAME=VALUE``.
 
     Values are as in TOML, also with parentheses for brackets; words need no quotes, as in
-    ``target=cw,cw,ccw``. Texts of another form and names that come twice are refused.
+    ``target=cw,cw,ccw``. Texts of another form and repeated names are refused.
     """
     fields: dict[str, object] = {}
     for change in changes:

@@ -13,7 +13,7 @@ from flockenv.cli.console import echo, errors
 
 
 def held_by(folder: Path) -> str:
-    """Return the sentence by which an interrupted training names its checkpoint."""
+    """Return the sentence that says where an interrupted training left its checkpoint."""
     return f"{folder} holds the last checkpoint: --resume continues from it."
 
 

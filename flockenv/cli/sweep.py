@@ -147,7 +147,7 @@ def _show_critical_noises(table: "pd.DataFrame") -> None:
 
 
 def _check_same(path: Path, work: "SweepSpec") -> None:
-    """Refuse to replace the sweep of a folder by another one; spelling does not make it another."""
+    """Refuse to replace a folder's sweep by another one; the spelling of the file may differ."""
     from flockenv.runs.sweep import read_sweep
 
     try:

@@ -100,7 +100,7 @@ def train(options: TrainOptions) -> None:
 
 
 def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "TrainingSettings"]:
-    """Train with PPO, or go on with a training, and return the model."""
+    """Train with PPO, or continue a training, and return the model."""
     from flockenv.training import ppo
 
     out = options.out

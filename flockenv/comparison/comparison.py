@@ -104,7 +104,7 @@ def _environment(options: Mapping[str, object]) -> dict[str, object]:
     """Return options; refuse those that another argument sets."""
     found = by_name(options, "environment")
     for name, value in found.items():
-        # A range of noises is no parameter of one flock.
+        # A range of noises is not a parameter of one flock.
         if name in _SET_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
             raise ParameterError(
                 f"{name} = {short_repr(value)} is not accepted in the environment of a comparison: "
@@ -127,7 +127,7 @@ def _policies(
     found = by_name(policies, "policies")
     if NO_LEADERS in found:
         raise ParameterError(
-            f"{NO_LEADERS!r} is no name for a policy: it names flocks without leaders"
+            f"{NO_LEADERS!r} is not a name for a policy: it names flocks without leaders"
         )
     return found
 
@@ -176,9 +176,9 @@ def compare_leaders(
         Numbers of leaders; 0 is run once, whatever the policies, as the policy `NO_LEADERS`.
     policies
         How leaders steer, by the name in the table, such as ``{"mine": model, "paper's law":
-        "paper's law"}``: each as `flockenv.policies.policy` takes it, or a dictionary with one for
-        each of ``"leader_0"``, ``"leader_1"`` and so on. A function is called for each number of
-        leaders; anything else is one object for all of them.
+        "paper's law"}``. A value is anything that `flockenv.policies.policy` takes, or a dictionary
+        with one policy for each of ``"leader_0"``, ``"leader_1"`` and so on. A function is called
+        for each number of leaders; anything else is one object for all of them.
     seeds
         One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s

@@ -122,7 +122,7 @@ class Episodes:
 
 
 def _decide_each(leaders: Leaders, batch: LeaderBatch) -> Decide:
-    """Return the function of leaders with a policy each, which observe in layouts of their own."""
+    """Return the function that decides for leaders whose policies differ, as may their layouts."""
     core, decisions = batch.core, leaders.decisions(batch.settings["control_hz"])
 
     def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -133,7 +133,7 @@ def _decide_each(leaders: Leaders, batch: LeaderBatch) -> Decide:
 
 
 def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
-    """Return the environment's options that policies ask for; refuse contradicting ones."""
+    """Return the environment's options that the policies need; refuse contradicting ones."""
     if leaders.is_per_leader:
         if "decision_period_s" in options:
             raise ParameterError(
@@ -184,7 +184,7 @@ def run_episodes(
 ) -> dict[str, NDArray[np.float64]]:
     """Run one episode per seed with leaders that follow a policy; training seeds are accepted.
 
-    The flocks are stepped at once in one batch of the core, also those without leaders.
+    All flocks, including those without leaders, are stepped together in one batch of the core.
 
     Parameters
     ----------

@@ -126,8 +126,8 @@ def score(
     Returns
     -------
     tuple of float
-        The mean, and the ends of its interval. The interval holds the luck of the flocks, also in
-        the two orders of the scale, and the luck of the trainings if there are two or more.
+        The mean, and the ends of its interval. The interval accounts for the luck of the flocks,
+        also in the two references, and for the luck of the trainings if there are two or more.
     """
     led = np.atleast_2d(np.asarray(orders, float))
     scale = float((reference - no_steering).mean())

@@ -51,8 +51,8 @@ class ComparisonReport:
     def means(self) -> "pd.DataFrame":
         """Means with intervals by case, policy and number of leaders.
 
-        Beside them ``ordered``, the share of the episodes that ordered, and the median time to it
-        (infinite if none did).
+        Further columns are ``ordered``, the fraction of the episodes in which the flock ordered,
+        and the median time that these took (infinite if there are none).
         """
         by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
         means = summarize(self.runs, by, list(QUANTITIES))

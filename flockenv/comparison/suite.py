@@ -1,7 +1,7 @@
 """Suite v2: six frozen tasks on which policies of any origin are scored against the tuned law.
 
 If a task or a number in one changes, it is another suite. The seeds follow from the name of the
-release, so that a later release scores all entries again, on flocks that none of them has met.
+release, so that a later release scores all entries again, on flocks that are new to all of them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -87,15 +87,15 @@ def tasks_named(suite: str, names: Iterable[str] = ()) -> list[Case]:
 
 
 def aggregate(differences: Sequence[NDArray[np.float64]]) -> dict[str, tuple[float, float, float]]:
-    """Sum up differences from `REFERENCE`, one array of episodes per task.
+    """Summarize differences from `REFERENCE`, one array of episodes per task.
 
     Returns
     -------
     dict
-        Value, lower and upper end: of the ``interquartile mean`` over the episodes of all tasks;
-        and of the ``probability of improvement``, how often an episode has a higher signed order
-        than with `REFERENCE`, as a mean over the tasks. The intervals are BCa bootstraps that draw
-        episodes within each task (Agarwal et al. 2021 draw runs).
+        Two statistics, each as value, lower and upper end. The ``interquartile mean`` is over the
+        episodes of all tasks. The ``probability of improvement`` is how often an episode has a
+        higher signed order than with `REFERENCE`; it is a mean over the tasks. The intervals are
+        BCa bootstraps that draw episodes within each task (Agarwal et al. 2021 draw runs).
     """
     statistics = {
         "interquartile mean": interquartile_mean,

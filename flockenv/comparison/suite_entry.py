@@ -121,7 +121,7 @@ class SuiteEntry:
     def run(self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
         """Return the flocks of a level's trainings, shape (trainings, flocks).
 
-        A ParameterError names a policy that cannot steer to the end of the episode.
+        Raises ParameterError if a policy cannot steer to the end of the episode.
         """
         found = []
         for training in self.trainings[level]:
@@ -167,7 +167,7 @@ class SuiteEntry:
 
 
 class Scored(NamedTuple):
-    """What has been scored so far."""
+    """The results so far."""
 
     #: The ranked rows of entries.
     rows: "pd.DataFrame"
@@ -185,7 +185,7 @@ def scored(
 ) -> Iterator[Scored]:
     """Score entries one after another, each on the levels for which it has policies.
 
-    Yields after each entry. One that breaks on the way has no row, and the others are scored.
+    Yields after each entry. An entry that fails has no row; the others are still scored.
     """
     pandas = require("pandas", "plot")
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
@@ -267,7 +267,7 @@ def _check_training_seeds(seeds: object) -> None:
 def _levels(levels: object) -> Mapping[str, object]:
     """Return the policies that an entry names, by level."""
     if not isinstance(levels, Mapping) or not levels:
-        raise ParameterError(f"levels = {short_repr(levels)} is no table of levels and policies")
+        raise ParameterError(f"levels = {short_repr(levels)} is not a table of levels and policies")
     refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
     return levels
 
@@ -334,7 +334,7 @@ def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
 
 
 def _sees_as_given(policy: Policy, level: Level) -> bool:
-    """Return whether a policy sees what the level's environment shows, without a wrapper."""
+    """Return whether a policy has the level's own observations, without a wrapper."""
     if isinstance(policy.source, WrappedPolicy):
         return False
     return not differing_options(

@@ -44,9 +44,9 @@ class Resumable(OwnFlocks):
     def set_next_episodes(self, **options: object) -> None:
         """Set ``bw_s`` or ``target`` of all future episodes, until they are set again.
 
-        Values are as for `reset`: bw_s is drawn from a range (low, high). A ParameterError refuses
-        other names, and values that are not accepted. In a vector environment they hold for all
-        flocks.
+        Values are as for `reset`: bw_s is drawn from a range (low, high). In a vector environment
+        they hold for all flocks. Raises ParameterError for other names, and for values that are not
+        accepted.
         """
         self._batch.set_upcoming(range(self._batch.num_flocks), options)
 
@@ -72,7 +72,7 @@ class ManyFlocks(Resumable):
     def snapshots(self) -> list[bytes]:
         """Return each flock's snapshot, as `Flock.snapshot`, for the `snapshot` option of `reset`.
 
-        They hold the flocks, but not how far their episodes are.
+        They hold the flocks, but not the progress of their episodes.
         """
         return [self._batch.flock(flock).snapshot() for flock in range(self._batch.num_flocks)]
 

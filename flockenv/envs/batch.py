@@ -74,10 +74,10 @@ class LeaderBatch:
     def step(
         self, env: object, actions: ArrayLike, precision: DTypeLike = np.float64
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
-        """Take a decision: observations and rewards by row, and by flock whether it ended.
+        """Take a decision; return observations and rewards by row, and whether each flock ended.
 
         A user's own reward function gets `env`. If that function returns anything but rewards that
-        are finite in this precision, the error comes after the flocks have moved.
+        are finite in its precision, an error is raised after the flocks have moved.
         """
         if self._own_reward is None:
             return self.core.step(actions)

@@ -1,4 +1,4 @@
-"""Refuses to set an option as an attribute from outside, which would do nothing."""
+"""Refuses to set an option as an attribute from outside the class: it would have no effect."""
 
 import sys
 from itertools import takewhile
@@ -12,10 +12,9 @@ from flockenv.envs.reset_options import RESET_OPTIONS, UPCOMING_OPTIONS, Spellin
 class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
-    Names in another case or without their unit are refused, too. A subclass may have attributes of
-    any name, except those in `_kept`. Its methods set them on ``self``, and its classmethods on
-    instances that they make. From then on they may be set from outside too, as may attributes of
-    its class.
+    Names in another case or without their unit are refused, too. A user's subclass may still have
+    attributes with such names, except those in `_kept`: either as class attributes, or set by its
+    own methods. Once they exist, they may be set from outside, too.
     """
 
     #: Attributes of this class that are named like an argument.

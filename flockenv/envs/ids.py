@@ -56,7 +56,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         **_TEN_BOATS,
     ),
     "flockenv/Order-noisy-v0": _from_nothing(
-        "Order-easy at half as much noise again: the effect of a rudder is lost sooner.",
+        "Order-easy with one and a half times its noise: the effect of a rudder is lost sooner.",
         0.45,
         120.0,
         **_TEN_BOATS,
@@ -100,8 +100,8 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         delay_frames=1,
     ),
     "flockenv/Noises-v0": _suite(
-        "Does one policy work at any noise? Each episode draws it, from half to 1.25 times the "
-        "critical one.",
+        "Does one policy work at any noise? Each episode draws its own, from half to 1.25 times "
+        "the critical one.",
         3,
         bw_s=(0.155, 0.3875),
     ),

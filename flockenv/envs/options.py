@@ -12,7 +12,7 @@ from flockenv.errors import ParameterError, UnknownOptionError, hint, short_repr
 from flockenv.parameters import FlockParameters
 
 TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
-"""Name and meaning of each term of the reward; every term is larger for better."""
+"""Name and meaning of each term of the reward. The better, the larger every term is."""
 
 
 class Option(NamedTuple):
@@ -83,12 +83,12 @@ class EnvOptions:
     ) -> Self:
         """Return options from keyword arguments.
 
-        Unknown names are an `UnknownOptionError` with the nearest known one.
+        Raises `UnknownOptionError` for unknown names; it suggests the nearest known one.
 
         Parameters
         ----------
         options
-            As a user gives them; arrays are lists.
+            The user's keyword arguments; arrays become lists.
         takes_function
             Whether the reward may be a function.
         counts
@@ -97,7 +97,7 @@ class EnvOptions:
         for name in (option for option in options if option not in NAMES):
             # TorchRL looks for these words.
             raise UnknownOptionError(
-                f"got an unexpected keyword argument {name!r}, which is no option of the "
+                f"got an unexpected keyword argument {name!r}, which is not an option of the "
                 f"environment: {_instead(name, counts)}"
             )
         given: dict[str, Any] = {name: listed(value) for name, value in options.items()}
@@ -158,7 +158,7 @@ def _plain(value: object) -> object:
 
 
 def _physics(given: dict[str, Any]) -> dict[str, Any]:
-    """Take the choice of physics out of the options, and return the fields that it sets."""
+    """Remove the choice of physics from the options, and return the fields that it sets."""
     name = given.pop("physics", "default")
     chosen = _core.physics_fields(name)
     for field in chosen:

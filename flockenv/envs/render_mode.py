@@ -62,7 +62,7 @@ class RenderMode:
         return frame(flock, *self.size)
 
     def show(self, flock: Flock) -> None:
-        """Show a flock in the window, which is opened now if need be, unless it was closed."""
+        """Show a flock in the window, which opens if needed, but never again after `close`."""
         if self._closed:
             return
         if self._window is None:
@@ -76,13 +76,13 @@ class RenderMode:
         """Render the flock, as `render` of an environment with one flock does."""
         if self.mode == "rgb_array":
             return self.frame(flock)
-        # A step that was shown already takes no time again.
+        # A step that was shown already is not shown again, which would take time.
         if self._window is None or flock.time_s != self._shown_s:
             self.show(flock)
         return None
 
     def close(self) -> None:
-        """Close the window, for good."""
+        """Close the window; it is never opened again."""
         self._closed = True
         if self._window is not None:
             self._window.close()

@@ -23,7 +23,7 @@ _UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
 class Spellings:
     """Names that are recognized in any case, with other separators, or without separators.
 
-    But "episodes" is not a spelling of "episode_s", whose s is a unit.
+    "episodes" does not match "episode_s", though, because its s is a unit.
 
     Parameters
     ----------
@@ -66,14 +66,14 @@ def reset_requests(
 ) -> list[dict[str, Any]]:
     """Return the request for each flock's reset.
 
-    Other keys may be meant for a wrapper: Gymnasium passes one dictionary through all wrappers. A
-    ParameterError refuses keys that would be ignored silently: other spellings of the options,
+    Other keys may be meant for a wrapper: Gymnasium passes one dictionary through all wrappers.
+    Raises ParameterError for keys that would be ignored silently: other spellings of the options,
     arguments of the constructor, and keys of ``state``.
 
     Parameters
     ----------
     options
-        As a user gives them; None for none.
+        The user's dictionary, or None.
     flocks
         Number of flocks.
     lists_flocks
@@ -113,7 +113,7 @@ def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Sequen
 
 def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:
     if (meant := _OF_RESET.meant(name)) in takes:
-        raise ParameterError(f"{name!r} is no reset option: did you mean {meant!r}?")
+        raise ParameterError(f"{name!r} is not a reset option: did you mean {meant!r}?")
     meant = meant or _MISPLACED.meant(name)
     if meant is None:
         return
@@ -126,7 +126,7 @@ def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:
     else:
         words = f"{meant!r} is fixed when an environment is made: make another one to change it"
     options = f"{', '.join(takes[:-1])} and {takes[-1]}"
-    raise ParameterError(f"{name!r} is no reset option (these are {options}): {words}")
+    raise ParameterError(f"{name!r} is not a reset option (these are {options}): {words}")
 
 
 _OF_RESET = Spellings((*RESET_OPTIONS, "reset_mask"), RESET_OPTIONS)

@@ -12,7 +12,7 @@ _SEEDS = 2**64
 
 
 class Seed(int):
-    """A seed in infos: JSON takes it, and Gymnasium's arrays too, which end at 2^63 for an int."""
+    """A seed in infos. JSON takes it as an int, and Gymnasium's arrays take it beyond 2^63."""
 
 
 class OwnGenerator:
@@ -50,12 +50,12 @@ class OwnGenerator:
 
 
 def drawn_seed(random: np.random.Generator) -> int:
-    """Draw a seed for an environment that was given none."""
+    """Draw a seed for an environment without one."""
     return int(random.integers(_SEEDS // 2))
 
 
 def seed_of(seed: object) -> int:
-    """Return the seed of one flock as an int; errors name other values."""
+    """Return the seed of one flock as an int; raise an error for anything else."""
     return seeds_from(seed, 1)[0]
 
 

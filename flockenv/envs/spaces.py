@@ -82,10 +82,10 @@ class ObservationSpace(_Box):
         return f"ObservationSpace({self.shape}, leaders={self.leaders}, {words})"
 
     def policy_options(self) -> dict[str, Any]:
-        """Return `options`, also of a space that another build stored in a model's file.
+        """Return `options`, even if another build stored this space in a model's file.
 
-        An option or a block that the file does not know has its default. ParameterError for unknown
-        ones.
+        An option or a block that is missing from the file has its default. Raises ParameterError
+        for unknown options and blocks.
         """
         refuse_unknown(self.options, POLICY_OPTIONS, "option that a policy depends on")
         refuse_unknown(self.options.get("observation", {}), BLOCKS, "block of the observation")
@@ -97,7 +97,7 @@ def differing_options(
 ) -> dict[str, tuple[Any, Any]]:
     """Return the options in which two policies, or a policy and flocks, differ.
 
-    A pair for each name. Options that are not given have their defaults.
+    Each name has a pair of values. Options that are missing count with their defaults.
     """
     one, other = _completed(options), _completed(others)
     names = dict.fromkeys((*one, *other))

@@ -131,8 +131,8 @@ class LeadersVectorEnv(
         Parameters
         ----------
         seed
-            One for flock 0, each following flock having the next; or one per flock; None continues
-            with the next episode.
+            The seed of flock 0, and each further flock has the next number; or a list with a seed
+            per flock. None continues with the next episode.
         options
             Those of `LeadersEnv.reset` for the episodes that start; a list has an entry for each
             flock. ``reset_mask`` (num_envs,) bool.
@@ -240,7 +240,7 @@ class LeadersVectorEnv(
     def leader_rewards(self) -> NDArray[np.float64]:
         """Return each leader's own reward of the last step, shape (num_envs, k).
 
-        Before the first step this is an EpisodeError.
+        Raises EpisodeError before the first step.
         """
         if self._rewards is None:
             raise EpisodeError("leader_rewards was called before the first step")

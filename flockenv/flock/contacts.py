@@ -22,12 +22,13 @@ class _Columns:
 
 @dataclass(frozen=True, eq=False)
 class Contacts(_Columns):
-    """Contacts and near-contacts of a flock's last substep, c of them.
+    """The c contacts and near-contacts of a flock's last substep.
 
     Snapshots do not hold them: a flock that was restored or unpickled has none until its next
     substep, and continues from the same warm-start cache.
 
-    Two nearly parallel hulls, and a hull along the outer wall, touch at two points: two entries.
+    Two nearly parallel hulls, and a hull along the outer wall, touch at two points. They have two
+    entries.
 
     Attributes
     ----------
@@ -46,7 +47,7 @@ class Contacts(_Columns):
     point_cm : float64 array, shape (c, 2)
         Where boat i is pushed: a point of its hull, world axes.
     along_cm : float64 array, shape (c,)
-        The same along its core, from its center to the bow.
+        That point's coordinate along the core of boat i, from its center to the bow.
     """
 
     i: NDArray[np.int64]
@@ -63,7 +64,7 @@ class Contacts(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class ContactSeries(_Columns):
-    """Contacts that carried a force, sample after sample: c of them in t samples.
+    """The c contacts that carried a force in t samples, sample after sample.
 
     Attributes
     ----------

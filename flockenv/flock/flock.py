@@ -66,7 +66,7 @@ class Flock(HintsAtNames):
     def from_snapshot(cls, snapshot: bytes, noise_seed: int | None = None) -> Self:
         """Return the flock of a snapshot; `noise_seed` is as for `restore`.
 
-        A ParameterError refuses bytes that are no whole, unharmed snapshot.
+        Raises ParameterError for bytes that are not a complete, undamaged snapshot.
         """
         return cls._from_core(_core.Flock.from_snapshot(as_bytes(snapshot, "snapshot"), noise_seed))
 
@@ -79,15 +79,15 @@ class Flock(HintsAtNames):
         parameters, seed
             As for the class.
         state
-            ``pose`` (n, 3) and, if need be, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
-            as in `set_state`, whose errors these are. Other keys are refused.
+            ``pose`` (n, 3) and, optionally, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``,
+            as in `set_state`, whose errors this raises. Other keys are refused.
         """
         return cls._from_core(_core.Flock.from_state(parameters, seed, state))
 
     def reset(self, seed: int) -> None:
         """Start over with another seed, as a new flock with these parameters.
 
-        If the boats do not fit the pool, a ParameterError leaves the flock unchanged.
+        Raises ParameterError if the boats do not fit the pool; the flock is unchanged then.
         """
         self._in_core.reset(seed)
 
@@ -184,8 +184,8 @@ class Flock(HintsAtNames):
     def set_target(self, target: str | Sequence[str]) -> None:
         """Change the direction that leaders head for by the paper's law.
 
-        A ParameterError, which leaves the flock unchanged, refuses another name, and a list of
-        another length.
+        Raises ParameterError for another name, and for a list of another length; the flock is
+        unchanged then.
 
         Parameters
         ----------
@@ -242,9 +242,9 @@ class Flock(HintsAtNames):
     def set_step(self, dt_s: float) -> None:
         """Change dt_s from now on.
 
-        White noise stays the same function of time: copies of a flock with different steps meet the
-        same noise, so they differ only by the error of the step. A new flock with another dt_s
-        meets other noise.
+        White noise stays the same function of time: copies of a flock with different steps get the
+        same noise, so they differ only by the error of the step. A new flock with another dt_s gets
+        other noise.
 
         To measure the error of a shorter step, advance by half a second first: the longer step left
         overlaps of up to tolerance_cm, and opening them in a short substep pushes boats apart.
@@ -252,19 +252,19 @@ class Flock(HintsAtNames):
         Parameters
         ----------
         dt_s
-            As for `FlockParameters`. A ParameterError, which leaves the flock unchanged, refuses a
-            step out of range.
+            As for `FlockParameters`. Raises ParameterError for a step out of range; the flock is
+            unchanged then.
         """
         self._in_core.set_step(dt_s)
 
     def steering_law(self) -> NDArray[np.float64]:
-        """Return rudders of the paper's law, eq. (10), for where the leaders are now: (k,)."""
+        """Return rudders of the paper's law, eq. (10), for the leaders' present poses: (k,)."""
         return self._in_core.steering_law()
 
     def order_parameters(self, include_leaders: bool = False) -> OrderParameters:
         """Return the order parameters of the normal boats, or of all boats, now.
 
-        If there is no such boat, this is a ParameterError.
+        Raises ParameterError if there is no such boat.
         """
         every = as_bool(include_leaders, "include_leaders")
         return OrderParameters(*self._in_core.order_parameters(every))
@@ -281,7 +281,7 @@ class Flock(HintsAtNames):
         return self._in_core.snapshot()
 
     def restore(self, snapshot: bytes, noise_seed: int | None = None) -> None:
-        """Continue from a snapshot of a flock with the same parameters, the target aside.
+        """Continue from a snapshot of a flock with the same parameters; only the target may differ.
 
         Parameters
         ----------
@@ -295,10 +295,10 @@ class Flock(HintsAtNames):
         Raises
         ------
         ParameterError
-            For bytes that are no whole, unharmed snapshot, for the snapshot of a flock with other
-            parameters, and for a noise_seed out of range; the flock is unchanged then.
+            For bytes that are not a complete, undamaged snapshot, for the snapshot of a flock with
+            other parameters, and for a noise_seed out of range; the flock is unchanged then.
         TypeError
-            For a noise_seed that is no whole number.
+            For a noise_seed that is not a whole number.
         """
         self._in_core.restore(as_bytes(snapshot, "snapshot"), noise_seed)
 

@@ -55,8 +55,8 @@ class LeaderPolicy(Protocol):
         Raises
         ------
         ParameterError
-            From the policies of this package, if the last axis is no multiple of the observation's
-            size.
+            From the policies of this package, if the last axis is not a multiple of the
+            observation's size.
         """
 
 
@@ -75,15 +75,15 @@ class Policy:
     source
         The object that acts, which has ``predict``.
     name
-        The name in recordings: ``str(source)``, or the class if that is no name, followed by the
-        source's ``digest`` if it has one.
+        The name in recordings: ``str(source)``, or the class's name if that is too long or cannot
+        be printed, followed by the source's ``digest`` if it has one.
     control_hz
         Control steps per second that it is made for; None: it steers at every substep, by the
         paper's law.
     pool
         The pool that it was made for; None: any.
     observation, mirror_to_target, action_mode, decision_period_s
-        The environments' options of those names that it is made for.
+        The values of these environment options that it is made for.
     leaders
         How many leaders it steers at once; 1: any number.
     law
@@ -107,7 +107,7 @@ class Policy:
     ) -> Self:
         """Return the policy of an object with ``predict``, by its attributes.
 
-        A TypeError or a ParameterError names an attribute that holds no value of its option.
+        Raises TypeError or ParameterError for an attribute whose value its option does not accept.
         """
         mode = getattr(source, "action_mode", None) or "rudder"
         refuse_unknown((mode,), _core.ACTION_MODES, "action_mode of a policy")
@@ -145,7 +145,7 @@ class Policy:
         return replace(self, source=copy.deepcopy(self.source))
 
     def check_pool(self, pool: Pool) -> None:
-        """Refuse another pool than the one that it was made for."""
+        """Refuse any pool but the one that the policy was made for."""
         if self.pool is not None and self.pool != pool:
             raise ParameterError(
                 f"pool = {short_repr(pool)} is not accepted with {short_repr(self)}: it was made "
@@ -153,7 +153,7 @@ class Policy:
             )
 
     def check_action_mode(self, mode: str, where: str) -> None:
-        """Refuse another action mode than the one that its actions are for."""
+        """Refuse any action mode but the one that the policy's actions are for."""
         if self.action_mode != mode:
             raise ParameterError(
                 f"{short_repr(self)} gives actions of action_mode {self.action_mode!r}: not "
@@ -161,7 +161,7 @@ class Policy:
             )
 
     def check_leaders(self, n_leaders: int) -> None:
-        """Refuse a number of leaders that it cannot steer at once."""
+        """Refuse a number of leaders that the policy cannot steer at once."""
         if self.leaders not in (1, n_leaders):
             raise ParameterError(
                 f"n_leaders = {n_leaders} is not accepted with {self!r}: it steers {self.leaders} "
@@ -247,7 +247,7 @@ class RowPolicy(ABC):
     Attributes
     ----------
     action_mode, decision_period_s
-        The environments' options of those names that its actions are for.
+        The values of these environment options that its actions are for.
     """
 
     action_mode: str = "rudder"
@@ -270,7 +270,7 @@ class RowPolicy(ABC):
 
     @abstractmethod
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.floating[Any]]:
-        """Return the rudders of rows (leaders, size): as many numbers in [-1, 1]."""
+        """Return a rudder in [-1, 1] for each row of observations (leaders, size)."""
 
     def predict(
         self,

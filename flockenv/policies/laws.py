@@ -38,7 +38,7 @@ class LawPolicy(RowPolicy):
     Parameters
     ----------
     law
-        The core's law, which runs without Python if it alone steers.
+        The core's law. If no other policy steers, it runs without Python.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names.
 
@@ -61,7 +61,7 @@ class LawPolicy(RowPolicy):
         return dict(self.law.gains)
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Set an attribute; an AttributeError refuses those that the core's law depends on."""
+        """Set an attribute; raise AttributeError for those that the core's law depends on."""
         if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)
@@ -174,7 +174,7 @@ class DampedLaw(LawPolicy):
 
     @classmethod
     def tuned(cls, pool: str, **layout: Unpack[Layout]) -> Self:
-        """Return the tuned law of a named pool, for a layout of the observations.
+        """Return the tuned law of a named pool, for observations with this layout.
 
         A ParameterError refuses other pools.
         """
@@ -206,10 +206,10 @@ class LeaningLaw(LawPolicy):
         If it is given, the gains have to be the tuned ones, and the policy's actions are leans, for
         environments with ``action_mode="lean"`` and this ``decision_period_s``.
     judged
-        How well it leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
+        How well the law leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
         ``bw_s``, ``episode_s``, and the first and the last of the ``seeds``.
     provenance
-        Its provenance: short texts by name.
+        The law's origin: short texts by name.
 
     Raises
     ------
@@ -306,9 +306,9 @@ class LeaningLaw(LawPolicy):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the law of a JSON text, as `to_json` gives it.
+        """Return the law of a JSON text from `to_json`.
 
-        A ParameterError refuses a text that is no complete law.
+        Raises ParameterError for a text that is not a complete law.
         """
         law = cls.__new__(cls)
         law._read(text)
@@ -320,11 +320,11 @@ class LeaningLaw(LawPolicy):
 
         Raises the errors of `flockenv.policies.load`.
         """
-        content = read_limited(path, f"{path} is no policy")
+        content = read_limited(path, f"{path} is not a policy")
         try:
             return cls.from_json(content.decode("utf-8-sig"))
         except ValueError as error:
-            raise ParameterError(f"{path} is no whole policy: {error}") from error
+            raise ParameterError(f"{path} is not a complete policy: {error}") from error
 
     @classmethod
     def learned(cls, pool: str) -> Self:
@@ -364,7 +364,7 @@ class LeaningLaw(LawPolicy):
 
     @property
     def digest(self) -> str:
-        """The first digits of the SHA-256 of its numbers alone."""
+        """The first digits of the SHA-256 of the law's numbers."""
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 
@@ -385,4 +385,4 @@ def _json(values: dict[str, object]) -> str:
 def _plain(value: object) -> float:
     if isinstance(value, Real):
         return float(value)
-    raise TypeError(f"{short_repr(value)} is no number")
+    raise TypeError(f"{short_repr(value)} is not a number")

@@ -46,9 +46,9 @@ class Leaders:
     def from_policies(
         cls, given: PolicyLike | Mapping[str, PolicyLike], flock: FlockParameters
     ) -> Self:
-        """Return who steers a flock's leaders, given as a policy or as one for each leader.
+        """Return the policies of a flock's leaders, from one policy or a dictionary by leader.
 
-        Raises the errors of `policy`. A ParameterError also refuses policies without leaders to
+        Raises the errors of `policy`. Also raises ParameterError for policies without leaders to
         steer, policies for another number of leaders, and dictionaries that do not name the
         leaders.
         """
@@ -86,12 +86,12 @@ class Leaders:
         return None if self.is_per_leader else self.seats[0].policy.law
 
     def check_pool(self, pool: Pool) -> None:
-        """Refuse another pool than one that a policy was made for."""
+        """Refuse a pool that one of the policies was not made for."""
         for seat in self.seats:
             seat.policy.check_pool(pool)
 
     def decisions(self, control_hz: float | None = None) -> "Decisions":
-        """Return the decisions of a run, at this rate or at those of the policies."""
+        """Return the decisions of a run, at this rate or at the rates of the policies."""
         return Decisions(self.seats, control_hz)
 
 
@@ -120,7 +120,7 @@ class Decisions:
     Parameters
     ----------
     seats
-        Who steers whom; policies start as they were given.
+        The policies and the leaders that each steers.
     control_hz
         How often per second all of them decide; None: each at its own rate.
     """

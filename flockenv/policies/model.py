@@ -67,7 +67,7 @@ class ModelPolicy:
     Raises
     ------
     ParameterError
-        If its spaces are none of an environment here, or have options that are unknown here.
+        If its spaces are not those of an environment of flockenv, or have unknown options.
     """
 
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:
@@ -94,7 +94,7 @@ class ModelPolicy:
         actions: "gymnasium.Space[Any]",
         provenance: Mapping[str, str] | None,
     ) -> None:
-        """Take a model for environments with these spaces."""
+        """Store a model for environments with these spaces."""
         self.model = model
         self.provenance = dict(provenance or {})
         self.leaders = space.leaders
@@ -117,7 +117,7 @@ class ModelPolicy:
         """Return rudders for observations, as `LeaderPolicy`.
 
         A model of k leaders treats every k consecutive leaders as a flock; `deterministic` is the
-        model's. A ParameterError also refuses numbers of leaders that are no multiple of k.
+        model's. Also raises ParameterError for numbers of leaders that are not a multiple of k.
         """
         if isinstance(observation, Mapping):
             stacked = np.stack([observed(one) for one in observation.values()])
@@ -295,7 +295,7 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     # The file's own code may raise anything.
     except Exception as error:
         raise ParameterError(
-            f"{path} is no model that can be read: {type(error).__name__}: {error}"
+            f"{path} is not a model that can be read: {type(error).__name__}: {error}"
         ) from error
 
 

@@ -52,11 +52,11 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
     "gelu": _gelu,
     "identity": lambda values: values,
 }
-"""Activations after a layer; "identity" is no activation."""
+"""Activations after a layer; "identity" changes nothing."""
 
 Norm = tuple[ArrayLike, ArrayLike, float]
-"""A layer's normalization, as torch's ``LayerNorm``: scale, shift, and what is added to the
-variance."""
+"""A layer's normalization, as in torch's ``LayerNorm``: scale, shift, and the number that is added
+to the variance."""
 
 
 @dataclass(frozen=True)
@@ -86,15 +86,16 @@ class NetworkPolicy(RowPolicy):
     Parameters
     ----------
     weights
-        One matrix a layer, shape (inputs, outputs), float32; the last has one output.
+        One matrix per layer, shape (inputs, outputs), float32; the last has one output.
     biases
-        One vector a layer, shape (outputs,), float32.
+        One vector per layer, shape (outputs,), float32.
     activation
-        A name in `ACTIVATIONS`, between the layers; or one for each layer, which follows it, the
-        last one too. The output is clipped to [-1, 1].
+        A name in `ACTIVATIONS`, for the activation between layers; or a list with one per layer,
+        where the last one follows the last layer. The output is clipped to [-1, 1].
     norms
-        For each layer its normalization before the activation, scale and shift, shape (outputs,),
-        and what is added to the variance, as of torch's ``LayerNorm``; or None.
+        For each layer None, or the normalization before its activation, as in torch's
+        ``LayerNorm``: scale and shift, shape (outputs,), and the number that is added to the
+        variance.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names; the weights have
         to fit it.
@@ -284,7 +285,7 @@ class NetworkPolicy(RowPolicy):
                 else None
                 for index in indices
             ]
-            # An option that the file does not know has its default.
+            # An option that is missing from the file has its default.
             options = {name: header[name] for name in _OPTIONS if name in header}
             return cls(
                 [arrays[f"weight_{index}"] for index in indices],
@@ -295,10 +296,10 @@ class NetworkPolicy(RowPolicy):
                 **options,
             )
         except KeyError as error:
-            raise ParameterError(f"{path} is no whole policy: it has no {error}") from error
+            raise ParameterError(f"{path} is not a complete policy: it has no {error}") from error
         # Deeply nested JSON raises this error, too.
         except (TypeError, ValueError, IndexError, RecursionError) as error:
-            raise ParameterError(f"{path} is no whole policy: {error}") from error
+            raise ParameterError(f"{path} is not a complete policy: {error}") from error
 
     def __repr__(self) -> str:
         sizes = [self._size, *(len(layer.bias) for layer in self._layers)]

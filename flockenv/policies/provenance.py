@@ -40,11 +40,11 @@ def provenance_of(
     seed
         Seed of the training.
     samples
-        Decisions of leaders that the training saw.
+        Number of leaders' decisions in the training.
     cpu_s
         Processor time that it took in s, on all cores together.
     flock_hours
-        Simulated hours of flocks that it saw.
+        Simulated flock-hours of the training.
 
     Returns
     -------

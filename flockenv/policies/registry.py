@@ -40,7 +40,7 @@ POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
     DAMPED_LAW: DampedLaw,
     "straight ahead": StraightAhead,
     "random rudders": RandomRudders,
-    # A law of the core without a class of its own needs no line here.
+    # A law of the core that has no Python class needs no line here.
     **{name: partial(NamedLaw, name) for name in OTHER_LAWS},
 }
 """Policies by name that are the same in every pool."""
@@ -61,7 +61,7 @@ def _named(pool: Pool | None) -> str:
 
 
 def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) -> Policy:
-    """Return the policy for a name, a file or an object: the one door for all policies.
+    """Return the policy for a name, a file or an object. All policies pass through here.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def _no_name(name: str) -> ParameterError:
         hint = "policies are named one by one (on the command line, repeat the option)"
     else:
         hint = f"did you mean {near!r}?" if near else f"there are {quoted(NAMES)}"
-    return ParameterError(f"{name!r} is no policy and no .json, .npz or .zip file: {hint}")
+    return ParameterError(f"{name!r} is not a policy and not a .json, .npz or .zip file: {hint}")
 
 
 def _attribute(name: str, trust: bool) -> object:
@@ -189,8 +189,8 @@ def load(
     OSError
         If the file cannot be opened.
     ParameterError
-        If the file is no policy, is damaged, or was made for other features or another version of
-        the observation; for a model's file without `trust`; for a pool without learned leaders.
+        If the file is not a policy, is damaged, or was made for other features or another version
+        of the observation; for a model's file without `trust`; for a pool without learned leaders.
     MissingExtraError
         For a model's file without the extra ``train``.
     """

@@ -165,7 +165,7 @@ def _tensors(found: object) -> Iterator[Any]:
 
 
 def _computed(layer: ModuleLayer, values: "Tensor") -> "Tensor":
-    """Return the output that torch computes of a layer."""
+    """Return a layer's output, computed by torch."""
     import torch
 
     functions = torch.nn.functional

@@ -41,7 +41,7 @@ class WrappedPolicy(ModelPolicy):
         A function that puts an environment into the wrapper or wrappers, such as
         ``lambda venv: VecFrameStack(venv, 4)``. It must not contain the `VecNormalize` of the
         model's own environment, whose statistics are applied anyway. A wrapper that normalizes
-        itself has to hold the statistics of the training, which stay as they are.
+        observations itself must hold the training's statistics, which are not updated.
     env
         The environment that was wrapped for the training: a `LeaderVecEnv`, or
         ``flockenv/Leaders-v0``. The model is for flocks with its options.
@@ -53,10 +53,10 @@ class WrappedPolicy(ModelPolicy):
     ParameterError
         For other environments than the model's own, for a model that was trained in `VecNormalize`
         and loaded without it, for wrappers that change what actions are or make observations of
-        another shape than the model takes, and for those that normalize by statistics that nobody
-        learned.
+        another shape than the model takes, and for wrappers that normalize with statistics that
+        were never learned.
     TypeError
-        If the wrapper is no function.
+        If the wrapper is not a function.
     """
 
     def __init__(
@@ -184,7 +184,7 @@ class _Run:
         self.actions: Any = None
 
     def observed(self, items: NDArray[np.float32]) -> object:
-        """Return observations as the wrappers change them."""
+        """Return observations after the wrappers have changed them."""
         for index, wrapper in enumerate(self.wrapped):
             wrapper.unwrapped.given = items[index] if self.is_per_item else items
         starts = self.actions is None

@@ -50,7 +50,7 @@ def check_array(
     gaps: bool = False,
     bounds: tuple[float, float] | None = None,
 ) -> None:
-    """Refuse another shape or dtype, and numbers that are not finite, all NaN or within bounds."""
+    """Refuse a wrong shape or dtype, numbers out of bounds, and NaN where it is not allowed."""
     if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
         found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
         raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
@@ -70,7 +70,7 @@ def check_array(
 
 def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
     """Refuse times that do not increase from 0 s to the end of the run."""
-    # Times are rounded to a nanosecond, and may lie beyond the end by that.
+    # Times are rounded to a nanosecond, so they may lie that much beyond the end.
     ends = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
     if not (np.diff(time_s) > 0).all() or not (np.diff(ends) >= 0).all():
         raise ParameterError(
@@ -82,7 +82,7 @@ def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
 def check_order(
     order: OrderSeries, times: tuple[int, ...], normal_boats: int, *, tracked: bool, posed: bool
 ) -> None:
-    """Refuse series that are not finite, unless too few boats are there to define them."""
+    """Refuse series that are not finite, unless too few boats are present to define them."""
     for quantity in RECORDED:
         values = getattr(order, quantity.name)
         undefined = normal_boats < quantity.least_boats
@@ -125,7 +125,7 @@ def check_origin(origin: Mapping[str, Any]) -> None:
 
 
 def check_share(after: object) -> None:
-    """Refuse anything but a share of a run, a number from 0 to 1."""
+    """Refuse anything but a fraction of a run, a number from 0 to 1."""
     if not 0.0 <= number(after, "after") <= 1.0:
         raise ParameterError(f"after = {short_repr(after)} is not accepted: a share, 0 to 1")
 

@@ -1,4 +1,4 @@
-"""Quantities of a user's own: functions of a recording, and their series by name."""
+"""User-defined quantities: functions of a recording, and their series by name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
@@ -15,7 +15,7 @@ from flockenv.recording.stored import ARRAYS, OPTIONAL
 
 
 def check_names(quantities: object, of: str) -> None:
-    """Refuse a user's quantities that are no dictionary, and names that are taken."""
+    """Refuse a user's quantities that are not a dictionary, and names that are taken."""
     if not isinstance(quantities, Mapping):
         raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
     taken = {quantity.name for quantity in QUANTITIES} | {
@@ -58,7 +58,7 @@ def own_series(
 def _series(name: str, function: Callable[[Any], object], recording: object) -> NDArray[np.float64]:
     try:
         values = function(recording)
-    except Exception as error:  # It is the user's.
+    except Exception as error:  # The user's function may raise anything.
         raise ParameterError(
             f"quantity {name!r} failed: {type(error).__name__}: {error}"
         ) from error
@@ -73,7 +73,7 @@ def _series(name: str, function: Callable[[Any], object], recording: object) -> 
 
 
 def check_quantities(quantities: Mapping[str, object], times: tuple[int, ...]) -> None:
-    """Refuse a user's quantities that are no series, and names that are taken."""
+    """Refuse a user's quantities that are not series, and names that are taken."""
     check_names(quantities, "arrays")
     for name, values in quantities.items():
         if not isinstance(values, np.ndarray) or values.dtype != np.float64:

@@ -40,12 +40,12 @@ if TYPE_CHECKING:
     import xarray
 
 DISCARDED_SHARE = 0.1
-"""The share of a run, at its start, that no figure uses."""
+"""The fraction of a run, at its start, that no figure uses."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Recording(HintsAtNames):
-    """A run sampled t times, of n boats; checked on construction.
+    """A run of n boats with t samples; checked on construction.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Recording(HintsAtNames):
         When the run ended, in s from time 0; the samples may be a part of it. The time of the last
         sample if not given.
     quantities : dict of float64 arrays, shape (t,)
-        Quantities of a user's own, by name; see `with_quantities`.
+        User-defined quantities, by name; see `with_quantities`.
     noise_seed : int or None
         Seed of other noise after a snapshot; None for the noise of the snapshot, or of `seed`.
     control_hz : float or None
@@ -188,11 +188,11 @@ class Recording(HintsAtNames):
         return {own.name: getattr(self, own.name) for own in fields(self)}
 
     def flock_at(self, time_s: float) -> Flock:
-        """Return the flock at the last sample up to a time, as far as recorded.
+        """Return the flock at the last sample up to a time, as far as it was recorded.
 
         It has the poses, the velocities and the time of the sample, but neither the contacts nor
-        the state of the noise, so it does not move on as the recorded flock did. Raises what
-        `state_at` raises.
+        the state of the noise, so it does not continue as the recorded flock did. Raises the errors
+        of `state_at`.
         """
         state = self.state_at(time_s)
         present = self._is_present(self._sample_at(time_s))
@@ -256,9 +256,9 @@ class Recording(HintsAtNames):
         -------
         pandas.DataFrame
             Columns ``time_s``, ``phase``, ``in_analysis_window``, then the order parameters and the
-            quantities of your own; or
-            ``boat``, ``is_leader``, ``id`` (of tracked boats), ``x_cm``, ``y_cm``, ``heading_rad``,
-            ``velocity_x_cm_s``, ``velocity_y_cm_s`` and ``angular_velocity_rad_s``.
+            user-defined quantities. With ``boats``: ``boat``, ``is_leader``, ``id`` (of tracked
+            boats), ``x_cm``, ``y_cm``, ``heading_rad``, ``velocity_x_cm_s``, ``velocity_y_cm_s``
+            and ``angular_velocity_rad_s``.
         """
         return table_of(self, as_bool(boats, "boats"))
 
@@ -300,7 +300,7 @@ class Recording(HintsAtNames):
         Parameters
         ----------
         after
-            Share of the run, from its start, that is not used.
+            Fraction of the run, from its start, that is not used.
 
         Returns
         -------
@@ -312,19 +312,19 @@ class Recording(HintsAtNames):
         return self._at(self.in_analysis_window & (self.time_s > after * self.duration_s))
 
     def with_quantities(self, functions: Mapping[str, Callable[[Self], ArrayLike]]) -> Self:
-        """Return the recording with quantities of your own, kept in `quantities`.
+        """Return the recording with user-defined quantities, kept in `quantities`.
 
         Parameters
         ----------
         functions
-            By name: functions that take the recording, whose arrays are read-only then, and return
-            a real number for each sample, shape (t,); NaN if it is undefined.
+            Functions by name. Each takes the recording, with read-only arrays, and returns a real
+            number for each sample, shape (t,), or NaN if it is undefined.
 
         Raises
         ------
         ParameterError
             For functions that fail, for results that have a wrong shape or are not real numbers,
-            and for names that are taken or are no identifiers. The error's attribute ``recording``
+            and for names that are taken or are not identifiers. The error's attribute ``recording``
             is this recording.
         """
         try:
@@ -387,4 +387,4 @@ class Recording(HintsAtNames):
             return cls(**fields_from(arrays))
         except (ParameterError, TypeError) as error:
             kind = LayoutError if isinstance(error, LayoutError) else ParameterError
-            raise kind(f"{path} is no recording of flockenv: {error}") from error
+            raise kind(f"{path} is not a recording of flockenv: {error}") from error

@@ -1,8 +1,8 @@
 """The file of a recording: its arrays, each by its name.
 
-Files of builds that have one quantity, parameter or array more or less can be read. A missing
-quantity is computed from the poses; without poses it is NaN, with a warning. An unknown array is
-dropped with a warning.
+Files of other builds can be read even if these have more or fewer quantities, parameters or arrays.
+A missing quantity is computed from the poses; without poses it is NaN, with a warning. An unknown
+array is dropped with a warning.
 """
 
 import warnings
@@ -43,7 +43,7 @@ class LayoutError(ParameterError):
 
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    """Return the arrays, by name, that a recording's file holds for these fields."""
+    """Return the arrays by name in which a recording's file stores these fields."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
     arrays |= {f"{_OWN}{name}": values for name, values in fields["quantities"].items()}
@@ -109,7 +109,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
 
 
 def _origin(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
-    """Return the noise seed, the rate and the digests of a run, None if the file has none."""
+    """Return the noise seed, the rate and the digests of a run; None for each that is missing."""
     found: dict[str, Any] = dict.fromkeys(ORIGIN)
     for name in ORIGIN.keys() & arrays.keys():
         array, kind = arrays[name], ORIGIN[name]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def table_of(recording: Any, boats: bool) -> "pandas.DataFrame":
-    """Return a recording's samples, or each boat's, as `Recording.to_dataframe` documents."""
+    """Return the table that `Recording.to_dataframe` documents."""
     dataframe: type[pandas.DataFrame] = require("pandas", "plot").DataFrame
     columns: dict[str, NDArray[Any]] = {name: getattr(recording, name) for name in TIMES}
     if not boats:

@@ -80,7 +80,7 @@ def _gif(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
 def _video(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
     ffmpeg = require("imageio_ffmpeg", "video")
     first = next(frames)
-    with TemporaryDirectory() as folder:  # The encoder opens names, not files.
+    with TemporaryDirectory() as folder:  # The encoder opens paths, not open files.
         made = Path(folder, "made.mp4")
         size = first.shape[1::-1]
         video = ffmpeg.write_frames(str(made), size, fps=fps, macro_block_size=2)
@@ -92,7 +92,7 @@ def _video(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
 
 
 def _checked(frames: Iterable[Any]) -> Iterator[NDArray[np.uint8]]:
-    """Yield the frames, if there are any and all are pictures of one shape."""
+    """Yield the frames; refuse no frames at all, and frames that differ in shape."""
     shape: tuple[int, ...] | None = None
     for frame in frames:
         if not isinstance(frame, np.ndarray) or frame.dtype != np.uint8 or frame.ndim != 3:

@@ -33,18 +33,19 @@ def frame(
     along the radius (outward in a jam) gray; leaders have an amber ring. If leaders have opposite
     targets, those with a counter-clockwise one have a plum ring. The corners show the time and
     phase, the target and bw, Ψ_o and the signed order. Without a common target they
-    show the rotation Ψ_o·sin φ_o, positive clockwise, instead. Several threads may draw at a time.
-    A ParameterError refuses a size out of range, other colors, and a time outside the recording.
+    show the rotation Ψ_o·sin φ_o, positive clockwise, instead. Several threads may draw at the same
+    time. Raises ParameterError for a size out of range, unknown colors, and a time outside the
+    recording.
 
     Parameters
     ----------
     flock
-        A `Flock`, or a `Recording` with the time after it; the same flock gives the same bytes.
+        A `Flock`, or a `Recording` followed by a time. The same flock gives the same bytes.
     width, height
         Size in pixels, 64 to 4096 each.
     colors
-        What color shows: "direction", or "role": leaders amber (or plum), other boats blue. In
-        open water, where boats circle around nothing, it is always the role.
+        The property that color shows: "direction", or "role" (leaders amber or plum, other boats
+        blue). In open water, where there is nothing to circle around, it is always the role.
     caption
         Text above the time, cut to fit its corner.
 
@@ -73,5 +74,5 @@ def _frame_of_recording(
 
 @lru_cache(maxsize=4)
 def renderer(width: int, height: int) -> FrameRenderer:
-    """Return a renderer of frames of a size, with its background and letters."""
+    """Return a renderer for frames of this size; it keeps its background and letters."""
     return FrameRenderer(width, height)

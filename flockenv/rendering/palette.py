@@ -8,4 +8,4 @@ PALETTE: Mapping[str, str] = _core.PALETTE
 """Colors of frames, and of pages on light ground: water, boats, leaders, and so on."""
 
 OKABE_ITO: Mapping[str, str] = _core.OKABE_ITO
-"""Colors of plots, in turn, which every kind of eye distinguishes."""
+"""Colors of plots, in their order of use; color-blind people can tell them apart."""

@@ -15,7 +15,7 @@ def require_pygame() -> ModuleType:
 
 
 class Window:
-    """A window that shows a flock in real time; a process has one, and a new one replaces it.
+    """A window that shows a flock in real time. A process has only one: a new one replaces it.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Window:
         self._clock.tick(self._fps)
 
     def close(self) -> None:
-        """Close the window; showing does nothing from then on."""
+        """Close the window; `show` does nothing afterwards."""
         if self.is_open:
             self.is_open = False
             self._pygame.display.quit()

@@ -29,7 +29,7 @@ def demo_runs(
 ) -> dict[str, Recording]:
     """Return the runs of `DEMO_PARAMETERS` by name, both from the same initial state.
 
-    `progress` is called now and then with the flock-seconds simulated since.
+    `progress` is called now and then with the flock-seconds simulated since its last call.
     """
     return {
         name: simulate(
@@ -46,7 +46,7 @@ def live_page() -> Traversable | None:
 
 
 def live_demo(page: Traversable, seed: int) -> str:
-    """Return a live page that opens with the two flocks of the demo, of this seed."""
+    """Return a live page that opens with the demo's two flocks, seeded with `seed`."""
     p = DEMO_PARAMETERS
     flock = f"n_boats={p.n_boats}&n_leaders={p.n_leaders}&pool={p.pool}&bw_s={p.bw_s}&seed={seed}"
     link = f"#lesson=learned&{flock}&beside.leaders={LEARNED}"

@@ -3,7 +3,7 @@
 import { ignoredPart } from "./shared/link.mjs";
 
 /**
- * What a fragment requests: `time` in s and `speed`, null where it says nothing, and `ignored`, a sentence
+ * The request in a fragment: `time` in s and `speed`, each null if it is missing, and `ignored`, a sentence
  * for each part that cannot be followed.
  */
 export function readLink(fragment, { start, end, speeds }) {

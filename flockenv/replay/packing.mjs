@@ -1,4 +1,4 @@
-// Undoes packing.py: base64, gzip, planes of bytes, folded signs, differences along time.
+// Reverses packing.py: base64, gzip, planes of bytes, folded signs, differences along time.
 
 /** One series: `values[channel * length + sample] * quantum`. */
 export class Column {

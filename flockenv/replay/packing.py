@@ -44,7 +44,7 @@ class Packer:
         self._append(name, steps, quantum, _DIFFERENCES)
 
     def add_plain(self, name: str, values: NDArray[Any], quantum: float = 1.0) -> None:
-        """Add numbers that are independent of the ones before them, up to 2^28 quanta."""
+        """Add numbers, up to 2^28 quanta, that are independent of the previous ones."""
         steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
         self._append(name, steps, quantum, 0)
 
@@ -52,7 +52,7 @@ class Packer:
         """Return all of it as base64."""
         header = json.dumps(self._columns, separators=(",", ":")).encode("ascii")
         content = len(header).to_bytes(4, "little") + header + b"".join(self._bytes)
-        # A page of the same recording has the same bytes: no time in the header.
+        # There is no time in the header, so pages of the same recording have the same bytes.
         packed = zlib.compressobj(level=6, wbits=31)
         return base64.b64encode(packed.compress(content) + packed.flush()).decode("ascii")
 

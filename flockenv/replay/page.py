@@ -28,7 +28,7 @@ from flockenv.replay.quantities import decisive_minute, series_of, shown_quantit
 from flockenv.replay.template import as_script_content, digest, filled, joined
 
 MOST_BYTES = 10_000_000
-"""Size that no page exceeds: of longer runs it shows fewer samples per second."""
+"""Largest size of a page. Of longer runs a page shows fewer samples per second."""
 
 # In the order of their imports; on the page they are one script.
 _SCRIPTS = (
@@ -64,7 +64,7 @@ class Replay:
     size : int
         Bytes.
     every : int
-        Which of the samples it shows: 1 for all, 2 for every other one …
+        1 if the page shows all samples, 2 if every other one, and so on.
     """
 
     size: int
@@ -86,9 +86,9 @@ def write_replay(
     path
         The file to write.
     recordings
-        A recording, named after the file; or one or two recordings by their names on the
-        page; two play side by side. Forces are shown if a recording holds contacts (``simulate(...,
-        contacts=True)``).
+        A recording, which is named after the file; or a dictionary of one or two recordings by
+        their names on the page. Two play side by side. Forces are shown if a recording holds
+        contacts (``simulate(..., contacts=True)``).
 
     Returns
     -------
@@ -101,7 +101,7 @@ def write_replay(
         For two recordings without names, for none or more than two, for a recording without samples
         or poses, and for one too large to be shown at all.
     OSError
-        If the file cannot be written; the file from before remains then.
+        If the file cannot be written; an existing file is then unchanged.
     """
     if Path(path).suffix.lower() not in (".html", ".htm"):
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in .html or .htm")
@@ -260,7 +260,7 @@ def _has_phases(recording: Recording) -> bool:
 
 
 def _without_gaps(pose: NDArray[Any]) -> NDArray[Any]:
-    """Return poses in which a missing boat is where it was last, or where it will first appear."""
+    """Return poses in which a missing boat keeps its last position, or has its first one."""
     last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
     last = np.maximum.accumulate(last, axis=0)
     first = np.isfinite(pose[..., 0]).argmax(axis=0)
@@ -277,7 +277,7 @@ def _add_contacts(
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     chosen = sample % every == 0
     normal = contacts.normal[chosen]
-    # The normal is known, so the coordinate along the core gives the point on the hull: one number.
+    # With the normal, one number, the coordinate along the core, gives the point on the hull.
     packer.add_plain("contact_count", contacts.count[::every])
     packer.add_plain("contact_i", contacts.i[chosen])
     packer.add_plain("contact_j", contacts.j[chosen])

@@ -15,7 +15,7 @@ const FIRST_SPEED = 8;
 const FAR = 10;
 const MINUTE = 60;
 
-/** The chart to watch. */
+/** Says which chart to watch. */
 function watchWords(runs) {
   const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
   if (runs.some(({ target }) => target !== null)) {
@@ -174,7 +174,7 @@ export class Player {
     this.pin(this.pinned === null ? first : (this.pinned + by + boats) % boats);
   }
 
-  /** Keeps the card of a boat; null lets it go. */
+  /** Pins the card of a boat; null unpins it. */
   pin(boat) {
     this.pinned = boat;
     this.controls.boat.value = boat ?? "";
@@ -207,7 +207,7 @@ export class Player {
     return Math.max(this.start, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((sampled) => sampled <= time + 1e-9));
   }
 
-  /** One sample back or on, of whichever run has the next one. */
+  /** Steps to the next or the previous sample of any run. */
   step(by) {
     this.#transport.pause();
     const next = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
@@ -237,7 +237,7 @@ export class Player {
     this.show();
   }
 
-  /** Does what the page's link says, and reports what it cannot do. */
+  /** Follows the page's link, and reports the parts that it cannot follow. */
   #followLink() {
     const requested = readLink(location.hash, { start: this.start, end: this.end, speeds: SPEEDS });
     this.controls.status.textContent = requested.ignored.join(" ");

@@ -16,16 +16,17 @@ _SMALL = str.maketrans({"o": "ₒ", "v": "ᵥ", "n": "ₙ"})
 
 
 def series_of(recording: Recording, key: str) -> NDArray[np.float64]:
-    """Return a quantity of a recording, shape (t,), towards the recording's target."""
+    """Return a quantity of a recording, shape (t,); a signed one is towards its target."""
     return recording.order.series(key, recording.parameters.target)
 
 
 def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Return the quantities that a page charts, as its script reads them. It opens with the first.
+    """Return the quantities that a page charts, as its script reads them. The first is shown first.
 
     Each has ``key``, its name in the recording; ``words`` and ``unit``; ``range``, the lowest and
-    highest value of its chart, None for those of the data; and ``decimals``, how many are shown.
-    Order towards the target is among them if leaders have a target in any of the recordings.
+    highest value of its chart, or None for the range of the data; and ``decimals``, the number of
+    decimals. Order towards the target is among them if leaders have a target in any of the
+    recordings.
     """
     has_target = any(recording.parameters.common_target is not None for recording in recordings)
     keys = [*(["signed_order"] if has_target else []), "rotation", *ORDER]
@@ -48,10 +49,10 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
 def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     """Return the start in s of the minute with the largest change, and a description.
 
-    Of one recording it is the minute in which signed order changes most: the mean over its second
-    half minus that over its first, in absolute value. Of two it is the minute in which the mean of
-    their difference in signed order is largest. If the recordings have no whole minute in common,
-    or no normal boats, it is the first sample, with no words.
+    For one recording it is the minute in which signed order changes most: the mean over the
+    minute's second half minus that over its first, in absolute value. For two it is the minute in
+    which their mean difference in signed order is largest. If the recordings have no whole minute
+    in common, or no normal boats, the result is the time of the first sample and an empty text.
     """
     first = max(float(recording.time_s[0]) for recording in recordings)
     end = min(float(recording.time_s[-1]) for recording in recordings)

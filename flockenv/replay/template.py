@@ -1,4 +1,4 @@
-"""Pages of one file: joins scripts, fills a template, and says which scripts may run."""
+"""Self-contained pages: joins scripts, fills a template, and says which scripts may run."""
 
 import base64
 import hashlib
@@ -18,7 +18,7 @@ def digest(source: str) -> str:
 
 
 def as_script_content(json_text: str) -> str:
-    """Return JSON that cannot end the script element it stands in."""
+    """Return JSON that cannot end the script element around it."""
     return json_text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 

@@ -20,18 +20,18 @@ Item = TypeVar("Item")
 Value = TypeVar("Value")
 
 Engine = Callable[[int | None], Executor]
-"""Function that makes an executor with this many workers; None: all that there are."""
+"""Function that makes an executor with this many workers; None: as many as possible."""
 
 
 def cores() -> int:
-    """Return how many cores this process may use, which a container or a queue may limit."""
+    """Return how many cores this process may use; a container or a queue may limit them."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def threads(workers: int | None = None) -> Executor:
-    """Return threads of this process: the simulator lets go of the interpreter while it runs."""
+    """Return threads of this process. The simulator releases the interpreter lock while it runs."""
     return ThreadPoolExecutor(workers or cores())
 
 
@@ -86,7 +86,7 @@ ENGINES: Mapping[str, Engine] = {"local": threads, "ray": RayExecutor}
 
 
 def named(name: str) -> Engine:
-    """Return an engine by its name; the ParameterError for an unknown name lists all."""
+    """Return an engine by its name; the error for an unknown name lists all names."""
     refuse_unknown((name,), ENGINES, "engine")
     return ENGINES[name]
 
@@ -99,8 +99,8 @@ def finished(
 ) -> Generator[tuple[int, Value], None, None]:
     """Yield each item's index and the function's value for it, in the order in which they finish.
 
-    After Ctrl-C no further item is started, and those in progress end. An error of the function
-    ends the work, too.
+    After Ctrl-C no further item is started, and those in progress are finished. An error of the
+    function ends the work, too.
     """
     waiting = itertools.takewhile(lambda _: not interrupted(), enumerate(items))
     indices: dict[Future[Value], int] = {}

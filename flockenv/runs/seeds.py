@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from flockenv.errors import ParameterError, short_repr
 
 FIRST_TRAINING_SEED = 1 << 32
-"""Seeds from here on make policies, those below judge them."""
+"""Seeds from this one on make policies; the seeds below it judge them."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeedRange:
-    """The seeds of one use, in equal parts for its runs."""
+    """The seeds of one use, divided equally among its runs."""
 
     use: str
     #: First seed of run 0.
@@ -54,8 +54,8 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
     seeds.use: seeds
     for seeds in (
         SeedRange("evaluation", 0, 3_000_000_000),
-        # Seeds of studies, with which no policy was made. `release_seeds` may return seeds in this
-        # range, too: for "train_leaders" it does, so trainings were judged with some of them.
+        # Seeds of studies; no policy was made with them. `release_seeds` may return seeds in this
+        # range, too. For "train_leaders" it does, so some of them judged trainings.
         SeedRange("paper", 3_000_000_000, _FIRST_JUDGMENT - 3_000_000_000),
         # Used to judge the model's constants, which were searched and chosen with the two ranges
         # below.
@@ -73,7 +73,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
         SeedRange("calibration choice", FIRST_TRAINING_SEED + 10 * (_RUNS << 24), 1 << 24),
     )
 }
-"""Seeds of what makes and judges policies and constants, by use; no two ranges meet."""
+"""The seeds that make and judge policies and constants, by use; no two ranges overlap."""
 
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:
@@ -88,7 +88,7 @@ def check_evaluation_seeds(seeds: Iterable[int]) -> None:
 
 
 def release_seeds(tag: str, count: int) -> range:
-    """Return the seeds that final tables of a release are made on, given its tag.
+    """Return the seeds for the final tables of a release, given its tag.
 
     The first seed is the first eight bytes of the tag's SHA-256 as a big-endian number, modulo 2^32
     less the count. These are seeds for evaluation that nobody chose.

@@ -23,7 +23,7 @@ _DEFAULTS = FlockParameters().to_dict()
 
 @cache
 def _check_policy(name: str, pool: Pool) -> None:
-    """Refuse a pool that a policy is not made for."""
+    """Refuse a pool that the policy was not made for."""
     policy(name, pool)
 
 
@@ -34,9 +34,9 @@ first tenth; of all samples; or these and all poses and velocities."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSpec:
-    """One run to be made: hashable, picklable, and all that its result depends on.
+    """A run to be made: everything that its result depends on, hashable and picklable.
 
-    A ParameterError refuses a value out of range, and an unknown name.
+    Raises ParameterError for a value out of range, and for an unknown name.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class RunSpec:
             object.__setattr__(self, name, value)
 
     def to_json(self) -> str:
-        """Return the spec as JSON: equal specs, equal text.
+        """Return the spec as JSON; equal specs have equal text.
 
         Defaults are left out, so that a new field changes no run's text.
         """
@@ -102,12 +102,12 @@ class RunSpec:
 
     @property
     def cost(self) -> float:
-        """A rough measure of the work it takes, for progress bars and for the order of starts."""
+        """A rough measure of the run's work, for progress bars and the order of starts."""
         return float(self.duration_s * self.parameters.n_boats**1.2)
 
 
 def execute(spec: RunSpec) -> Recording:
-    """Make a run: a pure function, the same bits in any thread, process and machine.
+    """Make a run. This is a pure function with the same bits in any thread, process and machine.
 
     Raises the errors of `simulate`.
 

@@ -1,4 +1,4 @@
-"""Finished runs on disk: each a recording under the hash of its spec, so that work resumes."""
+"""Finished runs on disk, each a recording named by the hash of its spec, so that work resumes."""
 
 import math
 import os
@@ -24,7 +24,7 @@ RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
 RESULTS_VERSION = 6
-"""Rises when the same specs give other numbers than before: stored runs are then made again."""
+"""Rises when the same specs give other numbers than before; stored runs are then made again."""
 
 
 class StorageError(FlockError, OSError):
@@ -32,7 +32,7 @@ class StorageError(FlockError, OSError):
 
 
 class StoreWarning(UserWarning):
-    """A stored run could not be used; it was moved aside and is done again."""
+    """A stored run could not be used; its file was renamed, and the run is made again."""
 
 
 def _warn(message: str) -> None:
@@ -48,7 +48,7 @@ class RunStore:
     Parameters
     ----------
     folder
-        The folder, which is made with the first run.
+        The folder. It is created with the first run.
     notify
         Called with a line of text for each damaged file. It is renamed to end in ``.damaged``, and
         its run counts as missing. By default a `StoreWarning`.
@@ -68,7 +68,7 @@ class RunStore:
     def save(self, spec: RunSpec, run: Recording) -> None:
         """Keep the finished run of a spec.
 
-        If it cannot be written, for example to a full disk, this is a StorageError.
+        Raises StorageError if the run cannot be written, for example to a full disk.
         """
         path = self.path(spec)
         try:
@@ -83,8 +83,8 @@ class RunStore:
     def load(self, spec: RunSpec) -> Recording | None:
         """Return the stored run of a spec, or None if there is none that can be used.
 
-        A StorageError names a file that can neither be read nor renamed. A ParameterError names an
-        undamaged file that lacks an array or has another format; that file is left as it is.
+        Raises StorageError for a file that can neither be read nor renamed, and ParameterError for
+        an undamaged file that lacks an array or has another format; that file is left unchanged.
         """
         path = self.path(spec)
         if not path.exists():
@@ -148,7 +148,7 @@ def run_missing(
         Where to run, one of `flockenv.runs.executors.ENGINES`, or another function that makes an
         executor. The results are the same on each.
     progress
-        Called with each spec once its run is there.
+        Called with each spec once its run is in the store.
     workers
         How many runs at a time, all cores by default.
 

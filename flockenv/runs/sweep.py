@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_RUNS = 1_000_000
-"""A sweep of more runs is refused: it is a mistake in a list, or needs to be split."""
+"""Largest number of runs of a sweep. A larger sweep has a mistake in a list, or must be split."""
 
 _KEYS = ("preset", "minutes", "seeds", "sample_hz", "policy", "keep", "fixed", "grid")
 _AVERAGED = tuple(quantity.name for quantity in QUANTITIES if quantity.is_averaged)
@@ -64,9 +64,9 @@ class SweepSpec:
 def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
     """Read and check a sweep's file; every value is checked before anything runs.
 
-    A ParameterError names the file that cannot be read or is no TOML, its unknown keys and fields
-    (with the nearest name), axes that are no lists, and values that `FlockParameters` or `RunSpec`
-    refuse.
+    Raises ParameterError for a file that cannot be read or is not TOML, for unknown keys and fields
+    (with the nearest name), for axes that are not lists, and for values that `FlockParameters` or
+    `RunSpec` refuse.
     """
     values = read_toml_file(path, str(path))
     try:
@@ -80,7 +80,7 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     for key in values:
         if key not in _KEYS and key in known:
             raise ParameterError(
-                f"{key!r} is no key of a sweep: it is a field of the parameters, which belongs "
+                f"{key!r} is not a key of a sweep: it is a field of the parameters, which belongs "
                 "under [fixed] or [[grid]]"
             )
     refuse_unknown(values, _KEYS, "key of a sweep")
@@ -107,7 +107,7 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    # No policy steers flocks without leaders, with which the others are compared.
+    # Flocks without leaders, which others are compared with, have no policy.
     leaderless = (
         run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
     )
@@ -139,7 +139,7 @@ def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
 
 
 def _check_pools(pools: list[object], example: str) -> None:
-    """Refuse radii that are written as Python or a command line has them."""
+    """Refuse radii in the spelling of Python or of the command line."""
     for pool in pools:
         is_text = isinstance(pool, str) and any(map(str.isdigit, pool))
         if is_text or isinstance(pool, int | float):
@@ -172,12 +172,13 @@ def summary(run: Recording) -> dict[str, float]:
     Returns
     -------
     dict
-        ``frames``, their number (analysis window, after the first tenth); ``<name>_mean`` and
-        ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v (cm/s), C_v (cm²/s²),
-        the nematic order, milling, the signed order and the rotation m = Ψ_o·sin φ_o.
-        ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock turns round. Over
-        the frames that define them, NaN if none does. Then the run's ``worst_overlap_cm``,
-        ``unsolved`` and ``halved_substeps``, NaN if they are unknown.
+        ``frames``, the number of analyzed frames (analysis window, after the first tenth);
+        ``<name>_mean`` and ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v
+        (cm/s), C_v (cm²/s²), the nematic order, milling, the signed order and the rotation m =
+        Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
+        turns round. A mean is over the frames in which its quantity is defined, NaN if there are
+        none. The last entries are the run's ``worst_overlap_cm``, ``unsolved`` and
+        ``halved_substeps``, NaN if they are unknown.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
@@ -214,12 +215,12 @@ def run_sweep(
     notify
         See `RunStore`.
     engine, progress, workers
-        See `run_missing`, whose errors these are.
+        See `run_missing`, whose errors this raises.
 
     Returns
     -------
     pandas.DataFrame
-        The table, see `load_sweep`.
+        The table, as from `load_sweep`.
     """
     pandas = require("pandas", "plot")
     require("pyarrow", "plot")
@@ -269,10 +270,11 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
     Returns
     -------
     pandas.DataFrame
-        One row per combination of the varied fields but ``bw_s``: these fields, ``critical_bw_s``
-        with the ends of its interval, ``critical_bw_s_low`` and ``critical_bw_s_high`` in s, and
-        ``rotation_size``, the largest of any noise. NaN without order to lose or with fewer than
-        three runs of a noise. No rows if the sweep has fewer than two noises.
+        One row per combination of the varied fields except ``bw_s``: these fields,
+        ``critical_bw_s`` with the ends of its interval, ``critical_bw_s_low`` and
+        ``critical_bw_s_high`` in s, and ``rotation_size``, the largest of any noise. NaN without
+        order to lose or with fewer than three runs of a noise. No rows if the sweep has fewer than
+        two noises.
     """
     pandas = require("pandas", "plot")
     runs = table[table["failure"] == ""]
@@ -303,9 +305,9 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     Returns
     -------
     pandas.DataFrame
-        One row per run: the varied fields (a pool of its own radii as "180x97", a list of targets
-        as "cw,cw,ccw"), ``seed``, the columns of `summary`, and ``failure``: empty, or why there
-        are no numbers.
+        One row per run: the varied fields (a pool without a name as "180x97", a list of targets as
+        "cw,cw,ccw"), ``seed``, the columns of `summary`, and ``failure``, which is empty or says
+        why there are no numbers.
 
     Raises
     ------
@@ -321,16 +323,16 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     try:
         table: pd.DataFrame = pandas.read_parquet(file)
     except (OSError, ValueError, pyarrow.ArrowException) as error:
-        raise ParameterError(f"{file} is no table of a sweep: {error}") from error
+        raise ParameterError(f"{file} is not a table of a sweep: {error}") from error
     if not {"seed", "frames", "failure"} <= set(table):
-        raise ParameterError(f"{file} is no table of a sweep")
+        raise ParameterError(f"{file} is not a table of a sweep")
     return table
 
 
 def to_xarray(table: "pd.DataFrame") -> object:
     """Return the table of a sweep as an `xarray.Dataset` over its fields and seeds.
 
-    Combinations that no grid has are NaN. Without the extra ``sweep`` this is a MissingExtraError.
+    Combinations that no grid has are NaN. Raises MissingExtraError without the extra ``sweep``.
     """
     require("xarray", "sweep")
     axes = [*table.columns[: table.columns.get_loc("seed")], "seed"]

@@ -14,18 +14,18 @@ _TRIAL_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of several shares of many runs, for machines that do not talk to each other.
+    """One of several parts of many runs, for machines that do not talk to each other.
 
     The hash of a run's spec decides which shard makes it. Shards never overlap, hold about equally
-    many runs, and are the same at each call and on each machine. A ParameterError refuses a number
+    many runs, and are the same at each call and on each machine. Raises ParameterError for a number
     outside 1 to `of`.
 
     Attributes
     ----------
     number : int
-        Which share, 1 to `of`.
+        Number of this shard, 1 to `of`.
     of : int
-        How many there are.
+        Number of shards.
     """
 
     number: int
@@ -39,7 +39,7 @@ class Shard:
     def parse(cls, text: str) -> "Shard":
         """Return the shard that a text such as "3/8" names.
 
-        A ParameterError refuses any other text and number.
+        Raises ParameterError for any other text and number.
         """
         found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
         if found is None:
@@ -49,7 +49,7 @@ class Shard:
         return cls(*(int(digits) for digits in found.groups()))
 
     def runs_of(self, specs: Iterable[RunSpec]) -> list[RunSpec]:
-        """Return those runs that are this shard's, in their order."""
+        """Return the runs of this shard, in their order."""
         return [spec for spec in specs if int(spec.key, 16) % self.of == self.number - 1]
 
     def __str__(self) -> str:
@@ -65,12 +65,12 @@ class Workload:
     runs : int
         Different runs.
     stored : int
-        Runs that have a file in the store. Only reading a file shows whether it is whole.
+        Runs that have a file in the store. Only reading a file shows whether it is complete.
     flock_hours : float
-        Simulated hours of the runs that have none.
+        Simulated hours of the runs that have no file.
     core_hours : float or None
-        Time that these take on one core of this machine, extrapolated from trial runs of a minute;
-        None if a trial run failed.
+        Time that these hours take on one core of this machine, extrapolated from trial runs of a
+        minute; None if a trial run failed.
     """
 
     runs: int

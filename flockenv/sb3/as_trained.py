@@ -67,7 +67,7 @@ class AsTrained:
 
 
 def trained(model: object, flocks: VecEnv) -> AsTrained:
-    """Return a model that acts as it was trained, in flocks with the task of its training."""
+    """Return a model that acts as in its training; refuse flocks with another task."""
     (leaders,) = (layer.leaders for layer in layers_of(flocks) if isinstance(layer, PerFlock))
     _check_task(model, flocks, leaders)
     return AsTrained(model, flocks, leaders)
@@ -79,7 +79,7 @@ def normalizing_layers(flocks: VecEnv) -> list[VecNormalize]:
 
 
 def _follow(training: VecNormalize, own: VecNormalize) -> None:
-    """Let a `VecNormalize` normalize as the training's does."""
+    """Let `own` normalize as the training's `VecNormalize` does."""
     own.obs_rms, own.ret_rms = copy.deepcopy((training.obs_rms, training.ret_rms))
     own.clip_obs, own.epsilon = training.clip_obs, training.epsilon
 
@@ -96,7 +96,7 @@ def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     own_policy = Policy.from_source(model)
     own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, options = getattr(model, "observation_space", None), leaders.observation_space.options
-    # A wrapper's space may say nothing about its meaning, or be that of another flock.
+    # A wrapper's space may say nothing about its meaning, or may belong to another flock.
     known = [one for one in (space, space_under_wrappers(model)) if _says_meaning(one)]
     for layer in known:
         _check_options(model, layer.policy_options(), options)
@@ -121,7 +121,7 @@ def _says_meaning(space: object) -> TypeGuard[ObservationSpace]:
 
 
 def _check_options(model: object, stated: dict[str, Any], options: dict[str, Any]) -> None:
-    """Refuse flocks whose options differ from those that a model is made for."""
+    """Refuse flocks whose options differ from those that a model was made for."""
     if differing := differing_options(stated, options):
         raise ParameterError(
             f"{short_repr(model)} is not accepted in these flocks: "

@@ -25,7 +25,7 @@ class FlockEvaluation:
     ----------
     signed_order : float64 array, shape (episodes,)
         Mean signed order of each episode in the analysis window after its first tenth; NaN for an
-        episode that ends before.
+        episode that ends before that.
     returns : float64 array, shape (episodes,)
         Sum of the rewards of each episode, the mean over a flock's leaders.
     lengths : int64 array, shape (episodes,)
@@ -73,8 +73,8 @@ def evaluate_flocks(
         A model or policy whose ``predict`` takes one leader's observation per row, such as ``PPO``
         or ``RecurrentPPO``.
     env
-        A `LeaderVecEnv`, also inside other wrappers. Returns are sums of its rewards, even if a
-        wrapper changes rewards.
+        A `LeaderVecEnv`, possibly inside other wrappers. Returns are sums of its own rewards, even
+        if a wrapper changes rewards.
     n_eval_episodes
         Number of episodes of flocks, shared among the flocks as evenly as possible.
     deterministic
@@ -90,11 +90,11 @@ def evaluate_flocks(
     Raises
     ------
     TypeError
-        If `env` is no `LeaderVecEnv`.
+        If `env` is not a `LeaderVecEnv`.
     ParameterError
         For a model that was trained with other options (such as ``mirror_to_target`` or
         ``control_hz``), is made for another pool, or was trained in a `VecNormalize` but loaded
-        without it; and for no episodes.
+        without it; and for fewer than one episode.
     """
     episodes = as_int(n_eval_episodes, "n_eval_episodes")
     if episodes < 1:
@@ -137,7 +137,7 @@ def evaluated(
 
 @contextmanager
 def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
-    """Keep every `VecNormalize` from learning: an evaluation may use the training's own flocks."""
+    """Stop every `VecNormalize` from learning: an evaluation may use the training's own flocks."""
     layers = normalizing_layers(flocks)
     learned = [layer.training for layer in layers]
     for layer in layers:

@@ -26,17 +26,17 @@ class FlockEvalCallback(EvalCallback):
     """stable-baselines3's `EvalCallback` on a `LeaderVecEnv`, with episodes of flocks.
 
     It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The best
-    model is the one with the highest mean signed order; if episodes end before the analysis window,
-    that with the highest mean return. The file ``evaluations.npz`` has the signed orders as
+    model is the one with the highest mean signed order, or, if episodes end before the analysis
+    window, with the highest mean return. The file ``evaluations.npz`` has the signed orders as
     ``signed_order``, beside the returns. A continued training (``reset_num_timesteps=False``)
     continues the file, and keeps its best.
 
     Parameters
     ----------
     eval_env
-        A `LeaderVecEnv`, also in wrappers. Observations are normalized as in the training.
+        A `LeaderVecEnv`, possibly in wrappers. Observations are normalized as in the training.
     seed
-        Seed of the first flock at each evaluation, so that models meet the same flocks. None
+        Seed of the first flock at each evaluation, so that all models lead the same flocks. None
         continues with the next episodes.
     options
         All other arguments of `EvalCallback`; ``n_eval_episodes`` counts flocks.
@@ -51,10 +51,10 @@ class FlockEvalCallback(EvalCallback):
     Raises
     ------
     TypeError
-        If `eval_env` is no `LeaderVecEnv`.
+        If `eval_env` is not a `LeaderVecEnv`.
     ParameterError
         Before the training, for flocks whose options differ from the training's (see
-        `evaluate_flocks`), and for a file to continue that has another number of episodes.
+        `evaluate_flocks`), and for an existing file with another number of episodes per evaluation.
     OSError
         Before the training, for files that are protected against writing.
     """

@@ -26,8 +26,8 @@ class _Flocks(Protocol):
 class LeaderSlot:
     """The stand-in for one environment in a `LeaderVecEnv`: one leader of one flock.
 
-    ``get_attr`` and ``env_method`` of the vector environment reach these objects, which do not
-    change. ``set_attr`` takes ``bw_s`` and ``target`` alone, for the next episodes.
+    ``get_attr`` and ``env_method`` of the vector environment read these objects, which never
+    change. ``set_attr`` accepts only ``bw_s`` and ``target``, for the next episodes.
     """
 
     _env: _Flocks

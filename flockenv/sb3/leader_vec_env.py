@@ -38,11 +38,11 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     to again.
 
     **A leader is not an episode.** stable-baselines3's `evaluate_policy`, `EvalCallback` and
-    `VecMonitor` count each slot, so that three leaders make three episodes with one and the same
-    order: counts three times too large, deviations and intervals too small. Use `evaluate_flocks`,
-    `FlockEvalCallback` and, for a monitor file, `FlockMonitor` of `flockenv.sb3` instead. No
-    `VecMonitor` is needed: the first slot of a flock has the ``"episode"`` of SB3's logs in its
-    last info, with the return as mean over the flock's leaders.
+    `VecMonitor` count each slot, so that three leaders make three episodes with the same order.
+    Counts are then three times too large, and deviations and intervals are too small. Use
+    `evaluate_flocks`, `FlockEvalCallback` and, for a monitor file, `FlockMonitor` of `flockenv.sb3`
+    instead. No `VecMonitor` is needed: the first slot of a flock has the ``"episode"`` of SB3's
+    logs in its last info, with the return as mean over the flock's leaders.
 
     ## Action space
     A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
@@ -64,8 +64,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     ## Starting state
     `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
     the next reset: a dictionary, or a list of one for each slot, equal for a flock's leaders.
-    Within `learn` nobody calls `reset`: `set_attr("bw_s", 0.6)` and `set_attr("target", "random")`
-    hold for all episodes that start from then on: a curriculum.
+    Within `learn` nobody calls `reset`. For a curriculum, `set_attr("bw_s", 0.6)` and
+    `set_attr("target", "random")` hold for all episodes that start afterwards.
 
     ## Episode end
     A flock's slots end together and start the next episode in the same step. Their infos then have
@@ -183,9 +183,9 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         ------
         ParameterError
             For unknown options, for options that differ between the leaders of a flock, and for
-            flocks with different options; options that were set before are dropped then.
+            flocks with different options. Options that were set before are dropped then.
         TypeError
-            For options that are no dictionaries.
+            For options that are not dictionaries.
         """
         self._reset_options()
         given = materialized({} if options is None else options)
@@ -197,7 +197,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return drawn_seed(self.np_random)
 
     def _requests(self, options: object) -> list[dict[str, Any]]:
-        """Return the request for each flock's reset, of one dictionary for each slot."""
+        """Return the request for each flock's reset, from one dictionary per slot."""
         if (
             not isinstance(options, Sequence)
             or len(options) != self.num_envs
@@ -228,7 +228,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         Returns
         -------
         observations, rewards, dones, infos
-            Shapes (slots, observation size), (slots,), (slots,) and a dictionary a slot. If an
+            Shapes (slots, observation size), (slots,), (slots,), and one dictionary per slot. If an
             episode has ended, the observation is the first of the next one.
 
         Raises
@@ -244,7 +244,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, flat, np.float32)
         except Exception:
-            # The motion of a flock or the reward failed: flocks whose episode is over start again.
+            # After an error in a flock's motion or in the reward, flocks whose episode is over
+            # start again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
@@ -282,7 +283,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             }
             summary = infos[slot]["episode_summary"]
             if leader == 0:
-                # The infos of `Monitor` without its time, so that they depend only on seeds.
+                # As the infos of `Monitor`, but without the time, so that they depend only on
+                # seeds.
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
@@ -293,7 +295,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
     def _chosen(self, indices: VecEnvIndices) -> list[int]:
-        """Return the numbers of slots; an error names other values."""
+        """Return the numbers of slots; raise an error for other values."""
         chosen = [
             as_int(index, "indices") for index in items(self._get_indices(indices), "indices")
         ]
@@ -389,7 +391,7 @@ def _equal(one: object, other: object) -> bool:
 
 
 def _leader_counts(n_leaders: object) -> list[int]:
-    """Numbers of leaders, which the flocks take in turn."""
+    """Return the numbers of leaders that are dealt out to the flocks in turn."""
     dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
     if not isinstance(dealt, Sequence) or isinstance(dealt, str):
         dealt = [dealt]

@@ -29,19 +29,19 @@ class FlockMonitor(VecEnvWrapper):
     filename
         The file; ``.monitor.csv`` is appended if it is missing.
     summary_keywords
-        Numbers of the ``"episode_summary"`` to write too, such as ``"signed_order"``; those that an
-        episode does not have are left empty.
+        Entries of the ``"episode_summary"`` to write, too, such as ``"signed_order"``. Entries that
+        an episode does not have are left empty.
     override_existing
-        Whether a file that has episodes already is replaced (True), or gets more rows (False), as a
-        resumed training needs. None refuses it.
+        What happens to a file that has episodes already: True replaces it, False appends rows, as a
+        resumed training needs, and None refuses it.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     ParameterError
-        If the file has episodes and `override_existing` is None, and for more rows of a file with
-        other columns.
+        If the file has episodes and `override_existing` is None, or if rows would be appended to a
+        file with other columns.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class FlockMonitor(VecEnvWrapper):
 
 
 def _path(filename: str) -> Path:
-    """Return the file that stable-baselines3's writer makes of a name."""
+    """Return the path to which stable-baselines3's writer turns a name."""
     if filename.endswith(Monitor.EXT):
         return Path(filename)
     return (
@@ -101,7 +101,7 @@ def _path(filename: str) -> Path:
 
 
 def _start_of(path: Path, columns: list[str]) -> float | None:
-    """Return when the training of a monitor file started, None if no file has episodes."""
+    """Return when the training of a monitor file started; None without episodes."""
     if not path.is_file():
         return None
     with path.open(encoding="utf-8", newline="") as file:
@@ -111,7 +111,7 @@ def _start_of(path: Path, columns: list[str]) -> float | None:
     try:
         started = float(json.loads(header.removeprefix("#"))["t_start"])
     except (ValueError, KeyError, TypeError) as error:
-        raise ParameterError(f"{path} is no monitor file: give another name") from error
+        raise ParameterError(f"{path} is not a monitor file: give another name") from error
     if found != columns:
         raise ParameterError(
             f"{path} has the columns {', '.join(found)}, and not {', '.join(columns)}: give "

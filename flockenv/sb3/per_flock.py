@@ -27,7 +27,7 @@ class PerFlock(VecEnvWrapper):
     Raises
     ------
     TypeError
-        If it wraps none.
+        If there is no `LeaderVecEnv` inside.
     """
 
     def __init__(self, venv: VecEnv) -> None:
@@ -57,7 +57,7 @@ class PerFlock(VecEnvWrapper):
 
 
 def per_flock(env: VecEnv) -> VecEnv:
-    """Return an environment that counts flocks."""
+    """Return an environment in which episodes and rewards count per flock."""
     return env if any(isinstance(layer, PerFlock) for layer in layers_of(env)) else PerFlock(env)
 
 

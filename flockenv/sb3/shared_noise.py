@@ -37,9 +37,9 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     Raises
     ------
     TypeError
-        If `venv` is no `LeaderVecEnv`.
+        If `venv` is not a `LeaderVecEnv`.
     ParameterError
-        For a time that is no whole number of decisions.
+        For a time that is not a whole number of decisions.
     """
     leaders = venv.unwrapped
     if not isinstance(leaders, LeaderVecEnv):
@@ -82,7 +82,7 @@ class HeldNoise:
 
 
 class SharedNoiseDistribution(DiagGaussianDistribution):
-    """Gaussian actions: a flock's leaders deviate from the mean by one number, held for a time.
+    """Gaussian actions: leaders of a flock share one deviation from the mean, held for a time.
 
     Each action by itself is distributed as with independent noise, and so is its probability. If
     the number of slots differs from the training's, the noise is independent.

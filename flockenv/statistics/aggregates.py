@@ -1,4 +1,4 @@
-"""Differences in several tasks, summed up (Agarwal et al. 2021)."""
+"""Summaries of differences over several tasks (Agarwal et al. 2021)."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from flockenv._io.extras import require
 def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
     """Return the mean of the middle half of the values of all tasks together.
 
-    A few very bad or very good episodes move it less than they move the mean.
+    A few very bad or very good episodes change it less than they change the mean.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
 
 
 def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
-    """Return the share of positive differences (zeros count half), as a mean over the tasks.
+    """Return the fraction of positive differences (zeros count half), as a mean over the tasks.
 
     Takes the arguments of `interquartile_mean`, for paired differences.
     """

@@ -11,7 +11,7 @@ from flockenv.errors import ParameterError
 from flockenv.statistics.intervals import bootstrap_interval
 
 LEAST_ROTATION = 0.5
-"""Mean ``|m|`` that a flock must reach at some noise, or it has no order to lose."""
+"""Mean ``|m|`` that a flock must reach at some noise; otherwise it has no order to lose."""
 
 _FEWEST_RUNS = 3
 
@@ -26,7 +26,7 @@ def critical_noise(
     Parameters
     ----------
     noise
-        Shape (levels,), rising, such as ``bw_s`` in s. The flock is disordered at the last one.
+        Shape (levels,), rising, such as ``bw_s`` in s. At the last level the flock is disordered.
     runs
         For each level an array of shape (runs, 2): a run's means of Ψ_o and of the rotation's size
         ``|m| = |Ψ_o sin φ_o|``, over the analysis window.
@@ -36,9 +36,9 @@ def critical_noise(
     Returns
     -------
     tuple of float
-        The noise and both ends of its interval. All are NaN if there is no order to lose: if mean
-        ``|m|`` is below `LEAST_ROTATION` at every noise, as in a flock that is jammed or
-        disordered; and if a level has fewer than three runs.
+        The noise and both ends of its interval. All are NaN if a level has fewer than three runs,
+        or if there is no order to lose: mean ``|m|`` is below `LEAST_ROTATION` at every noise, as
+        in a flock that is jammed or disordered.
 
     Raises
     ------
@@ -77,7 +77,8 @@ def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> ND
 
     The ordered level is mean Ψ_o at the noise of the strongest rotation, so that a jam, which has a
     high Ψ_o too, is not taken for order. The disordered level is mean Ψ_o at the last noise. The
-    curve is straight between levels; of several crossings the last one counts.
+    curve is straight between levels. If it crosses the middle several times, the last crossing
+    counts.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ The mean of a few values has Student's interval, the mean of more values a BCa b
 (`mean_interval`). `bootstrap_interval` takes any statistic, and `two_way_interval` a table of runs
 that share two sources of luck.
 
-An interval from 24 normal values holds the true mean 93 times of 100, and one from 64 values 94
+An interval from 24 normal values holds the true mean 93 times out of 100, and one from 64 values 94
 times.
 """
 
@@ -30,19 +30,19 @@ CONFIDENCE = 0.95
 
 FEW = 12
 """Below this number of values a mean has Student's interval: BCa intervals hold the mean of 4, 8
-and 12 normal values 80, 89 and 93 times of 100."""
+and 12 normal values 80, 89 and 93 times out of 100."""
 
 _BCA_RESAMPLES = 9999
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The gain of one policy on another, on the same seeds.
+    """The gain of one policy over another on the same seeds.
 
     Attributes
     ----------
     mean, low, high : float
-        Mean difference and its interval, as of `mean_interval`, at level `CONFIDENCE`.
+        Mean difference and its interval from `mean_interval`, at level `CONFIDENCE`.
     effect : float
         Cohen's d of paired differences: mean over standard deviation; NaN without spread.
     n : int
@@ -59,18 +59,18 @@ class Difference:
 def paired_difference(ours: Iterable[float], theirs: Iterable[float], seed: int = 0) -> Difference:
     """Compare two policies seed by seed.
 
-    A ParameterError refuses different numbers of values.
+    Raises ParameterError if the numbers of values differ.
 
     Parameters
     ----------
     ours, theirs
-        One value a seed, in the same order.
+        One value per seed, in the same order.
     seed
         Seed of the bootstrap.
     """
     ours, theirs = series(ours, "ours"), series(theirs, "theirs")
     if ours.shape != theirs.shape:
-        raise ParameterError(f"{len(ours)} and {len(theirs)} values are no pairs")
+        raise ParameterError(f"{len(ours)} and {len(theirs)} values are not pairs")
     differences = ours - theirs
     mean, low, high = mean_interval(differences, seed)
     spread = float(differences.std(ddof=1)) if len(differences) > 1 else 0.0
@@ -93,7 +93,7 @@ def mean_interval(values: Iterable[float], seed: int = 0) -> tuple[float, float,
     Raises
     ------
     ParameterError
-        Without values, and for anything else than numbers.
+        If there are no values, and for anything but numbers.
     """
     data = series(values, "values")
     if len(data) == 0:
@@ -154,14 +154,14 @@ def bootstrap_interval(
 
 
 def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, float]:
-    """Return the mean of a table whose rows share its columns, with its interval.
+    """Return the mean of a table whose rows share the luck of its columns, with its interval.
 
-    Trainings that are judged in the same flocks are such rows: an interval over their means ignores
-    the luck of the flocks, which all of them share. Here the bootstrap draws both, rows and
-    columns, 9999 times. Deviations are scaled by the ratio of Student's interval to the
-    bootstrap's, so that few rows or columns get intervals as wide as those of `mean_interval`. The
-    residual beside both effects is counted twice, so a table of pure noise gets an interval 1.4
-    times too wide.
+    For example, each row is a training and each column a flock in which all trainings are judged.
+    An interval over the trainings' means would ignore the luck of the flocks, which all trainings
+    share. Here the bootstrap draws both rows and columns, 9999 times. Deviations are scaled by the
+    ratio of Student's interval to the bootstrap's, so that intervals for few rows or columns are as
+    wide as those of `mean_interval`. The residual that neither effect explains is counted twice, so
+    a table of pure noise gets an interval 1.4 times too wide.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     try:
         table = np.asarray(values, float)
     except (TypeError, ValueError) as error:
-        raise ParameterError("values is no table of numbers") from error
+        raise ParameterError("values is not a table of numbers") from error
     if table.ndim != 2 or min(table.shape) < 2:
         raise ParameterError(
             f"values has shape {table.shape}, expected (rows, columns) with two of each"
@@ -228,8 +228,8 @@ def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]
     Returns
     -------
     pandas.DataFrame
-        One row a group: ``runs`` (their number) and, for each quantity, ``<q>``, ``<q>_low`` and
-        ``<q>_high``.
+        One row per group: ``runs``, the number of runs, and, for each quantity, ``<q>``,
+        ``<q>_low`` and ``<q>_high``.
     """
     pandas = require("pandas", "plot")
     by, quantities = list(items(by, "by")), items(quantities, "quantities")
@@ -246,7 +246,7 @@ def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]
 
 
 def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return the mean of a few independent values with Student's interval; NaN ends for one."""
+    """Return the mean of a few independent values with Student's interval, NaN for one value."""
     mean, count = float(values.mean()), len(values)
     if count < 2:
         return mean, math.nan, math.nan

@@ -18,10 +18,10 @@ class Line:
     Attributes
     ----------
     slope, intercept : float
-        In units of y over x, and of y.
+        The slope in units of y over x, and the intercept in units of y.
     f : float
         F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN if all y
-        are the same. It is blind to the sign of the slope.
+        are the same. It does not depend on the sign of the slope.
     p : float
         Probability of such an F or a larger one if y did not depend on x; NaN likewise.
     n : int
@@ -47,7 +47,7 @@ class Line:
 def fit_line(x: Iterable[float], y: Iterable[float]) -> Line:
     """Fit y = intercept + slope x, one point per run.
 
-    A ParameterError refuses fewer than three points, a single x, and numbers that are not finite.
+    Raises ParameterError for fewer than three points, a single x, and numbers that are not finite.
     """
     stats = require("scipy.stats", "plot")
     x, y = series(x, "x"), series(y, "y")

@@ -22,7 +22,7 @@ def structure_series(
         some 0.886/√n if n headings are independent (Vicsek et al. 1995). Unlike Ψ_o, whose
         orientations are relative to the pool, it is small if boats go around the pool.
     parameters
-        Parameters of the flock; hull and pool matter.
+        Parameters of the flock; only the hull and the pool matter.
     pose
         Shape (t, n, 3), as in a `Recording`.
 
@@ -39,7 +39,7 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 
-    Takes the arguments of `structure_series`, and raises its errors.
+    The arguments and errors are those of `structure_series`.
     """
     found = _core.jam_sizes(parameters, _poses(pose))
     return [np.sort(np.array(sizes, np.int64)) for sizes in found]

@@ -1,7 +1,7 @@
 """Times of events that some runs never reach, such as ordering times (Kaplan and Meier 1958).
 
 A run without the event only says that its time is longer than the run: its time is censored. If you
-leave such runs out, or count them with the length of the run, all times come out too short.
+leave such runs out, or count the length of the run as their time, all times come out too short.
 """
 
 import warnings
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Survival:
-    """The share of runs that still wait for an event, against time.
+    """The fraction of runs that still wait for an event, against time.
 
     Attributes
     ----------
     time_s : float64 array, shape (m,)
-        Times at which events came, ascending, in s.
+        Times at which events happened, ascending, in s.
     share : float64 array, shape (m,)
-        Share of the runs that wait longer than that, as Kaplan and Meier estimate it.
+        Fraction of the runs that wait longer than that time, as Kaplan and Meier estimate it.
     low, high : float64 array, shape (m,)
         Its pointwise interval at level `CONFIDENCE` (exponential Greenwood, the log-log transform);
         0 and 1 if it is undefined.
     runs, events : int
-        Number of runs, and of those to which the event came.
+        Number of runs, and number of runs in which the event happened.
     """
 
     time_s: NDArray[np.float64]
@@ -45,7 +45,7 @@ class Survival:
     events: int
 
     def share_at(self, time_s: float) -> float:
-        """Return the share of the runs that wait longer than a time in s."""
+        """Return the fraction of the runs that wait longer than a time in s."""
         if not number(time_s, "time_s") >= 0.0:
             raise ParameterError(f"time_s = {short_repr(time_s)} is not accepted: at least 0 s")
         index = int(np.searchsorted(self.time_s, time_s, side="right"))
@@ -58,15 +58,16 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
     Parameters
     ----------
     times_s
-        Shape (n,): when the event came to each run, in s; infinite if it did not, like ordering
-        times.
+        Shape (n,): when the event happened in each run, in s; infinite if it did not, as for
+        ordering times.
     until_s
         How long each run was watched, in s: one number, or one per run.
 
     Raises
     ------
     ParameterError
-        Without runs, for times that are NaN or negative, and for events after the end of their run.
+        If there are no runs, for times that are NaN or negative, and for events after the end of
+        their run.
     """
     found = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
     came = np.diff(found.probabilities, prepend=1.0) < 0.0

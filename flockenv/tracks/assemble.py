@@ -50,20 +50,20 @@ def recording_of(
     pool
         "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
     hull
-        Radius in cm, and half the length of the straight part in radii; (r, 0) is a disc.
+        Radius in cm, and half the length of the straight part over the radius; (r, 0) is a disc.
     velocity
         Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central if there is
         a pose before and after, weighted by the steps in time. No difference is taken across a gap;
         a boat with a single pose has no velocity.
     phase
-        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: they are unknown, and all
-        samples count as analyzed.
+        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: the phases are unknown, and all
+        samples are analyzed.
     ids
         A name for each boat, shape (n,); "0", "1", … by default.
     leaders
         Names of the leaders. They come first in the recording.
     target
-        Where they lead, "cw" or "ccw"; the direction that signed order counts towards.
+        The direction in which they lead, "cw" or "ccw", and in which signed order is positive.
     discs, walls
         Obstacles in the pool, as in `FlockParameters`; replay pages show them.
 
@@ -104,7 +104,7 @@ def recording_of(
 
 
 def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
-    """Return times and poses that a recording can have."""
+    """Return times and poses after checking them."""
     times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)
     check_array("time_s", times, shape[:1], PRECISIONS)
@@ -125,7 +125,7 @@ def _hull(hull: tuple[float, float]) -> dict[str, Any]:
 
 
 def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-    """Return the phase of each sample and whether it is analyzed, as all are without phases."""
+    """Return each sample's phase, and whether it is analyzed; without phases all samples are."""
     phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
     if phase is not None:
         phases = np.array([*map(str, items(phase, "phase"))])
@@ -134,7 +134,7 @@ def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArr
 
 
 def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int]:
-    """Return the indices of leaders, in their order, and then those of the others."""
+    """Return the indices of the leaders, in their order, followed by those of the other boats."""
     if len(names) != boats:
         raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
     refuse_unknown(leaders, names, "leader among the ids")

@@ -21,7 +21,7 @@ _STOPWATCH = re.compile(r"^\s*(\d+:\d+\.\d*)\s*$")
 
 
 def times_of(table: Table) -> Floats:
-    """Return the times of all boats' rows in s, from the least."""
+    """Return the times of all boats' rows in s, from the earliest one on."""
     layout, found = table.layout, table.column(table.layout.frame)
     times = _typed(require("pandas", "plot"), found)
     if times is None:
@@ -39,7 +39,7 @@ def times_of(table: Table) -> Floats:
 
 
 def _typed(pandas: ModuleType, found: "pd.Series[Any]") -> Floats | None:
-    """Return dates, clock times and durations in s, and None for anything else."""
+    """Return dates, clock times or durations in s; None for anything else."""
     types = pandas.api.types
     if types.is_datetime64_any_dtype(found):
         found = found - found.min()
@@ -60,13 +60,13 @@ def _typed(pandas: ModuleType, found: "pd.Series[Any]") -> Floats | None:
         if dates[texts.index].notna().all():
             return _typed(pandas, dates)
     raise ParameterError(
-        f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is no number, no "
-        "time 12:34:56.7 and no date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
+        f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is not a number, "
+        "a time 12:34:56.7 or a date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
     )
 
 
 def _past_midnight(seconds: Floats) -> Floats:
-    """Return clock times with a day added to those past midnight, which come before a long gap."""
+    """Return clock times, with a day added to those past midnight: the ones before a long gap."""
     stamps = np.unique(seconds[np.isfinite(seconds)])
     gap = int(np.diff(stamps).argmax()) if len(stamps) > 1 else 0
     if len(stamps) < 2 or stamps[-1] > _DAY_S or stamps[gap + 1] - stamps[gap] < _DAY_S / 2:
@@ -82,7 +82,7 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
         return
     is_whole = bool((stamps == np.rint(stamps)).all())
     per_s = PER_S.get(unit_of(layout.frame))
-    # Steps of 12 may be seconds if the name says so, and 0, 1, 2 are frames whatever it says.
+    # Steps of 12 may be seconds if the column's name says so; 0, 1, 2 are frames whatever it says.
     says_s = per_s == 1.0 and steps.min() > 1.0
     missing = f"fps is missing: column {layout.frame!r}"
     if layout.fps is None and per_s not in (None, 1.0):
@@ -92,15 +92,15 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
-            f"{np.median(steps):.4g}, which are no frames: leave fps out if it holds times in s"
+            f"{np.median(steps):.4g}, which are not frames: leave fps out if it holds times in s"
         )
 
 
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
     """Return the frame of each row, of rows in the order of time.
 
-    Rows of one time are one frame. If each boat has time stamps of its own, a frame ends when one
-    of its boats is seen again, and is shorter than a boat's own step.
+    Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
+    one of its boats is seen again, and is shorter than the time between two rows of a boat.
     """
     stamps, frames = np.unique(rows["time"], return_inverse=True)
     own = rows.groupby("id", sort=False)["time"].diff()

@@ -1,4 +1,4 @@
-"""Datasets of the package `movement` as tables: its own form of poses and of boxes."""
+"""Datasets of the package `movement` as tables; they hold poses or boxes."""
 
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
@@ -21,10 +21,10 @@ def is_dataset(source: object) -> bool:
 
 
 def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
-    """Return a dataset as a table, by the layout with the dataset's own fields.
+    """Return a dataset as a table, whose layout is completed by the dataset.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
-    such as ``nose_x``. A ParameterError names a missing variable or coordinate.
+    such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
     """
     if "position" not in dataset.data_vars:
         raise ParameterError(
@@ -50,10 +50,10 @@ def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
 
 
 def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
-    """Return a variable by time, its own dimensions, individuals and key points."""
+    """Return a variable with the dimensions time, `own`, individuals and key points."""
     order = ("time", *own, "individuals", "keypoints")
     for name in order[-2:]:
-        # Later versions of movement call them by one: individual, keypoint.
+        # Later versions of movement have the names in the singular: individual, keypoint.
         one = name.removesuffix("s")
         variable = variable.rename({one: name}) if one in variable.dims else variable
         variable = variable if name in variable.dims else variable.expand_dims(name)
@@ -66,7 +66,7 @@ def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
 
 
 def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
-    """Return the names along a dimension; without them one is "0", and one key point is ""."""
+    """Return the names along a dimension; a single unnamed one is "0", or "" for a key point."""
     if dimension not in position.coords:
         only = dimension == "keypoints" and position.sizes[dimension] == 1
         return [""] if only else [str(n) for n in range(position.sizes[dimension])]

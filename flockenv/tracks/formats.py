@@ -1,4 +1,4 @@
-"""Tables of other programs: a row of facts for each, words for columns, marks of lost animals.
+"""Tables of other programs: their columns, usual names of columns, and marks of lost animals.
 
 In a pattern ``{id}`` stands for the name of a boat, ``{n}`` for its number, ``{part}`` for a key
 point and ``*`` for anything. The column of y is that of x with one letter exchanged.
@@ -57,13 +57,13 @@ FORMATS = (
 """A row for each program, the more special ones first."""
 
 NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
-"""Cells that stand for no number, in small letters."""
+"""Cells that stand for a missing number, in lower case."""
 
 NOBODY = (
     *("-1", "nan", "none", "null", "<na>", "unassigned", "not assigned", "unknown"),
     *("unidentified", "untracked", "unlabeled", "?", "undefined", "lost"),
 )
-"""Names of detections that are no boat, in small letters."""
+"""Names of detections that are not boats, in lower case."""
 
 LOST = ([0.0, 0.0], [-1.0, -1.0])
 """Points that many programs write for a lost animal."""
@@ -91,7 +91,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
         *("winkel", "richtung"),
     ),
 }
-"""Frequent names of columns, in small letters without a unit, the better names first."""
+"""Frequent names of columns, in lower case without a unit, the better names first."""
 
 _PARTS = {
     "head": ("head", "nose", "snout", "bow", "front"),
@@ -106,7 +106,7 @@ PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
 _LONGEST = 200
-"""Longest name of a column that is compared: longer ones take long, and tell nothing."""
+"""Longest name of a column that is compared: longer ones take time and match nothing."""
 
 _TELLING = {"heading", "confidence", "quaternion", "box", "fps"}
 """Fields that make key points and numbered columns better than plain columns of x and y."""
@@ -121,7 +121,7 @@ _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$"
 
 
 def plain(name: str) -> tuple[str, str]:
-    """Return a column's name without its unit, in small letters, and the unit."""
+    """Return a column's name without its unit, in lower case, and the unit."""
     name = name[:_LONGEST]
     found = _UNIT.search(name)
     unit = next(filter(None, found.groups()), "") if found else ""
@@ -162,7 +162,7 @@ def _as_written(found: re.Match[str]) -> str:
 
 
 def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
-    """Return the column of y for one of x, or None; `boat` takes the place of {id}."""
+    """Return the y column that belongs to an x column, or None; `boat` stands in place of {id}."""
     swapped = name.replace("x", "y").replace("X", "Y")
     at = [index for index, letter in enumerate(name) if letter in "xX"]
     by_letter = [f"{name[:index]}{swapped[index]}{name[index + 1 :]}" for index in reversed(at)]
@@ -184,11 +184,11 @@ def quaternion(names: Iterable[str]) -> list[str] | None:
 def key_points(
     stems: Mapping[str, str], present: Set[str] = frozenset(), boat: str = ""
 ) -> dict[str, Any]:
-    """Return the fields x, y, heading and confidence, from the first parts of key points' columns.
+    """Return the fields x, y, heading and confidence that follow from key points.
 
     The center is a point in the middle, or the middle of head and tail, or the only point. If there
-    are several others, the center is ambiguous, and no fields are returned. A confidence is among
-    the columns `present`, with `boat` in the place of {id}.
+    are several others, the center is ambiguous, and no fields are returned. The column of a
+    confidence must be in `present`, with `boat` in place of {id}.
     """
     by_part = {
         part: next((stem for name, stem in stems.items() if plain(name)[0] in words), None)
@@ -212,7 +212,7 @@ def key_points(
 
 
 def _fields_of(program: Format, names: list[str], present: Set[str]) -> dict[str, Any] | None:
-    """Return the fields of a layout for a program's table, None if it is another's."""
+    """Return the fields of a layout if the table is this program's, otherwise None."""
     columns = dict(program.columns)
     y, x_pattern = columns.pop("y", None), columns.pop("x")
     found = {field: _first([pattern], names) for field, pattern in columns.items()}
@@ -235,7 +235,7 @@ def _fields_of(program: Format, names: list[str], present: Set[str]) -> dict[str
 
 
 def recognized(names: list[str]) -> dict[str, Any]:
-    """Return the fields of a layout that names of columns tell, "" for none."""
+    """Return the fields of a layout that follow from names of columns; some may be empty."""
     names = [name for name in names if len(name) <= _LONGEST]
     present, by_plain = set(names), dict[str, str]()
     for name in names:
@@ -248,7 +248,7 @@ def recognized(names: list[str]) -> dict[str, Any]:
         form.pop("x", None)
     for program in FORMATS:
         known = _fields_of(program, names, present)
-        # Any pair of columns may be a key point's.
+        # Any pair of columns looks like a key point of the general formats.
         if known is None or ("id" in form and _are_corners(known, names)):
             continue
         if "y" not in form or "{" not in program.columns["x"] or _TELLING & known.keys():
@@ -260,7 +260,7 @@ def recognized(names: list[str]) -> dict[str, Any]:
 
 
 def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:
-    """Return whether x1, y1, x2 and y2 may be a box around each named boat, and not two boats."""
+    """Return whether x1, y1, x2 and y2 may be a box around a named boat instead of two boats."""
     x = known.get("x", "")
     if "{id}" not in x:
         return False

@@ -29,9 +29,9 @@ Doubts = dict[str, tuple[Any, str]]
 def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     """Write a description of tracks beside their table, guessed from the table.
 
-    The description is a TOML file with the table's name. The function returns the lines that it
-    could not read from the table, each with what to check or to fill in. A ParameterError names a
-    file that is no table, and a description that exists already.
+    The description is a TOML file with the table's name. Returns the lines that the user has to
+    check or to fill in, since they do not follow from the table. Raises ParameterError for a file
+    that is not a table, and for a description that exists already.
     """
     path = Path(path)
     description = description_of(path)
@@ -52,7 +52,7 @@ def _toml(value: object) -> str:
 
 
 def _guessed(path: Path) -> tuple[Form, Doubts]:
-    """Return the fields of a layout, and those that are doubtful with what to do about them."""
+    """Return the fields of a layout, and the doubtful ones with a hint what to do about them."""
     form, doubts = spelling_of(path), Doubts()
     table = read_table(path, TrackLayout(pool="wide", **form))
     if all(is_value(name) or name.startswith("unnamed") for name in table.names):
@@ -114,7 +114,7 @@ def _guess_pool(table: Table, form: Form, doubts: Doubts) -> None:
     else:
         word = "fill in" if unit else "check"
         doubts["cm_per_unit"] = (1.0, f"{word}: how many cm a unit of x and y has")
-    # Pictures count from their upper left corner.
+    # Pixel coordinates count from the upper left corner.
     is_down = form.get("y_down", bool((low >= 0.0).all()))
     words = "check: whether y points down; compare `analyze --plot` with the video"
     doubts["y_down"] = (is_down, words)

@@ -1,4 +1,4 @@
-"""Headings in rad of columns in any convention; columns and units that cannot be are refused."""
+"""Headings in rad from columns in any convention; impossible columns and units are refused."""
 
 from itertools import combinations
 
@@ -24,7 +24,7 @@ _AXIS_JUMP = 0.8
 
 
 def headings_of(table: Table) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return headings in rad from x, y up, 0 without a column, and which exceed a full turn."""
+    """Return headings in rad from x (0 without a column), and which exceed a full turn."""
     layout, columns = table.layout, table.layout.columns["heading"]
     strange = np.zeros(len(table.index), bool)
     if len(columns) == 4:
@@ -47,7 +47,7 @@ def headings_of(table: Table) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
-    """Return the angle about the vertical of quaternions, whose length is 1."""
+    """Return the angle about the vertical of unit quaternions."""
     x, y, z, w = map(table.numbers, columns)
     off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
     if np.nanmedian(off) > 0.01:
@@ -55,7 +55,7 @@ def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
             f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
             "add up to 1"
         )
-    # Turns counted from y to x are about an axis of a mirrored system.
+    # If turns are counted from y to x, the axis belongs to a mirrored system.
     is_mirrored = table.layout.turns == ("ccw" if table.layout.y_down else "cw")
     across = -x * y if is_mirrored else x * y
     heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
@@ -63,9 +63,9 @@ def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
 
 
 def _check_no_part(table: Table) -> None:
-    """Refuse a part of a quaternion, a sine or a cosine in place of a heading.
+    """Refuse a component of a quaternion, a sine or a cosine as a heading.
 
-    Names of columns do not matter: the squares of neighboring parts add up to 1.
+    They are recognized without names of columns: the squares of neighboring columns add up to 1.
     """
     heading = table.layout.columns["heading"][0]
     own = table.index_of(heading.replace("{id}", table.boats[0]))
@@ -84,7 +84,7 @@ def _check_no_part(table: Table) -> None:
 
 
 def _squares(table: Table, name: str) -> Floats | None:
-    """Return the squares of a column that may be a part of turns, 0 for missing numbers."""
+    """Return the squares of a column if it may be such a component; 0 for missing numbers."""
     try:
         values = np.nan_to_num(table.numbers(name))
     except ParameterError:  # A column of remarks, or a repeated name.
@@ -98,7 +98,7 @@ def direction(x: Floats, y: Floats) -> Floats:
 
 
 def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLayout) -> None:
-    """Refuse headings if many exceed a full turn; a single value may mark lost boats."""
+    """Refuse headings if many exceed a full turn; a single such value may mark lost boats."""
     share = strange.sum() / max(1, np.isfinite(heading).sum())
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
         return
@@ -127,7 +127,7 @@ def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> Non
 
 
 def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
-    """Refuse headings that never reach a turn of a smaller one of the units, if they fit it."""
+    """Refuse headings that stay within a full turn of a smaller unit, if they fit that unit."""
     zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
     turned = heading - zero
     for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
@@ -145,7 +145,7 @@ def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
 
 
 def _is_half(heading: Floats) -> bool:
-    """Whether headings, up to whole turns, lie within half a turn as axes are given."""
+    """Return whether headings lie within half a turn, as axes do, apart from whole turns."""
     wrapped = np.mod(heading[~np.isnan(heading)], np.pi * 2)
     return any(
         (np.mod(wrapped - start, 2 * np.pi) <= np.pi + 1e-6).all()
@@ -165,7 +165,7 @@ def bows_of(axis: Floats, motion: Motion) -> Floats:
 
 
 def unwrapped(heading: Floats) -> Floats:
-    """Return headings without jumps of full turns, each boat's from sample to sample it is in."""
+    """Return headings without jumps of full turns between successive samples of a boat."""
     continuous = heading.copy()
     for boat in continuous.T:
         present = ~np.isnan(boat)

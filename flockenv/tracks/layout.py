@@ -30,13 +30,13 @@ _ACCEPTED: dict[Any, str] = {
     tuple[str, ...]: "a list of names",
     tuple[tuple[float, float], ...]: "a list of points [x, y]",
 }
-"""What a field accepts, by its annotation without None; FlockParameters checks the others."""
+"""Accepted values by a field's annotation without None; FlockParameters checks other fields."""
 
 
 def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
     """Return whether a value is of an annotated kind.
 
-    Names are not blank and numbers positive, but for those inside of a list.
+    Names must not be blank, and numbers must be positive, except inside a list.
     """
     origin, kinds = get_origin(kind), get_args(kind)
     if origin is Literal:
@@ -84,7 +84,7 @@ class TrackLayout:
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
     columns such as ``nose_x``, and missing fields are found by their names. A list becomes a tuple,
-    and "" None. A ParameterError refuses a value out of range or of another kind.
+    and "" becomes None. Raises ParameterError for a value out of range or of another kind.
 
     Attributes
     ----------
@@ -96,32 +96,31 @@ class TrackLayout:
         Column of frame numbers, or of times in s if `fps` is None. Dates, clock times and
         durations are converted. Rows may be in any order.
     fps : float or None
-        Units of that column per second: frames, 1000 if it counts ms, 1/60 if it counts minutes.
-        Whole numbers need it: 1 if they count s.
+        Units of that column per second: frames per second, 1000 if it counts ms, 1/60 if it counts
+        minutes. Whole numbers need it, for example 1 if they count seconds.
     id : str or None
-        Column of names; None if the table has one boat, or names its boats in its columns. A column
-        in which no row has a name is of one boat.
+        Column of names; None if the table has one boat, or has the boats' names in those of its
+        columns. If no row has a name, all rows belong to one boat.
     x, y : str or tuple of str
         Column of the center, or several whose mean it is.
     box : tuple of two str, or None
         Columns of width and height, if x and y are the least corner of a box around the boat.
     heading : str, or tuple of four str, or None
-        Column of headings; or the columns x, y of the tail and x, y of the head, two key points
-        that the heading joins; or None for the direction of motion: wrong for robots that are
-        pushed sideways.
+        Column of headings; or the columns x, y of the tail and x, y of the head, two key points; or
+        None for the direction of motion, which is wrong for robots that are pushed sideways.
     quaternion : tuple of four str, or None
-        Columns x, y, z and w of a turn, of which z is about the vertical, in place of `heading`; of
-        a system in which y is up, the columns x, z, y and w.
+        Columns x, y, z and w of a rotation, in place of `heading`, where z is the vertical. In a
+        system in which y is up these are the columns x, z, y and w.
     heading_unit : str
         "rad", "deg" or "turn", a full turn.
     heading_zero : str
         Where heading 0 points in the picture: "right", "up" (a compass's north), "left", "down".
     heading_turns : str or None
-        "cw" or "ccw", the way in which headings grow in the picture. None: from x to y of the file,
-        clockwise if y points down.
+        "cw" or "ccw", the direction in which headings grow in the picture. None: from x to y of the
+        file, clockwise if y points down.
     axis : bool
-        Whether headings are axes without a bow, such as of ellipses. The bow is then at the end to
-        which a boat mostly moves, so it must not move backward for longer than forward.
+        Whether headings are axes without a bow, such as of ellipses. The bow is then the end
+        towards which a boat mostly moves, so a boat must not move backward for longer than forward.
     wrapped : bool
         Whether headings are within a full turn.
     cm_per_unit : float or None
@@ -135,7 +134,7 @@ class TrackLayout:
     confidence : str or tuple of str, and least_confidence : float
         Columns, and the least value with which a row counts.
     unassigned : tuple of str
-        Names of detections that are no boat, in any case.
+        Names of detections that are not boats, in any case.
     lost : tuple of points
         Points, in units of the file, that stand for a missing boat.
     missing : tuple of str
@@ -203,7 +202,7 @@ class TrackLayout:
             )
         except TypeError as error:
             raise ParameterError(str(error)) from error
-        # An iterator is used up.
+        # An iterator can be read only once.
         object.__setattr__(self, "pool", flock.pool)
         object.__setattr__(self, "target", flock.target)
 
@@ -224,12 +223,12 @@ class TrackLayout:
 
     @property
     def turns(self) -> str:
-        """The way in which headings grow, "cw" or "ccw"."""
+        """The direction in which headings grow, "cw" or "ccw"."""
         return self.heading_turns or ("cw" if self.y_down else "ccw")
 
     @property
     def columns(self) -> dict[str, tuple[str, ...]]:
-        """The columns of each field but those of times and names."""
+        """The columns of each field, without those of times and names."""
         heading = self.heading if self.quaternion is None else None
         of_boats = {"x": self.x, "y": self.y, "box": self.box, "heading": heading}
         of_boats |= {"quaternion": self.quaternion, "confidence": self.confidence}
@@ -244,7 +243,7 @@ def columns_of(value: _Columns | None) -> tuple[str, ...]:
 def description_of(path: Path) -> Path:
     """Return the default path of a table's description."""
     if not path.name:
-        raise ParameterError(f"{os.fspath(path)!r} is the name of no table")
+        raise ParameterError(f"{os.fspath(path)!r} is not the name of a table")
     bare = path.with_suffix("") if path.suffix.lower() == ".gz" else path
     return bare.with_suffix(".toml")
 
@@ -252,7 +251,7 @@ def description_of(path: Path) -> Path:
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     """Return the layout in a TOML file, in which "" means None and a pool is needed.
 
-    A ParameterError names a file that cannot be read, or is no layout.
+    Raises ParameterError for a file that cannot be read, or is not a layout.
     """
     values = read_toml_file(path, str(path))
     with naming(path):

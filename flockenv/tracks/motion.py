@@ -44,7 +44,7 @@ class Motion:
         return cls(stamps, present, rows.reshape(pose.shape), broken, longest_s)
 
     def gaps(self) -> Floats:
-        """Return the length of each gap in s: between two poses of a boat that are no neighbors."""
+        """Return the length in s of each gap between two successive poses of a boat."""
         ends = [
             self.stamps[[before[-1], after[0]], boat]
             for boat in range(self.stamps.shape[1])
@@ -53,13 +53,13 @@ class Motion:
         return np.diff(np.reshape(ends, (-1, 2)))[:, 0]
 
     def parts(self, boat: int) -> list[NDArray[np.intp]]:
-        """Return the frames of a boat's poses, from gap to gap."""
+        """Return the frames of a boat's poses, split at its gaps."""
         frames = np.flatnonzero(self.present[:, boat])
         is_gap = np.diff(self.stamps[frames, boat]) > self.longest_s
         return np.split(frames, np.flatnonzero((np.diff(frames) > 1) | is_gap) + 1)
 
     def empty_frames(self, time_s: Floats) -> int:
-        """Return the number of empty frames, of those that a regular clock has."""
+        """Return the number of empty frames on a regular clock."""
         steps = np.diff(time_s)
         long = steps[steps > self.longest_s]
         return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0

@@ -36,8 +36,8 @@ def read_tracks(
 ) -> Recording:
     """Read tracks as a recording, to analyze and replay it like a simulated one.
 
-    Rows without a name, a position or a heading, in no water, with too little confidence, or twice
-    in the table are left out and counted. Rows may be in any order.
+    Rows without a name, a position or a heading, outside the water, with too little confidence, or
+    repeated in the table are left out and counted. Rows may be in any order.
 
     Parameters
     ----------
@@ -46,16 +46,16 @@ def read_tracks(
         ``position`` and ``confidence`` as the package `movement` makes it (extra ``sweep``); or a
         file in which nothing is executed: text (.csv, .tsv, .txt, also with .gz) or Parquet.
     layout
-        How tracks lie in it; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
+        The layout of the source; None for the TOML file beside it: ``a.toml`` for ``a.csv``.
     report
         Called with a report of what was used and left out; it prints as a few lines.
 
     Raises
     ------
     ParameterError
-        If the file cannot be read, a column is missing or holds other things than numbers, a boat
-        is in two places in a frame, units contradict the layout, everything is missing, the arrays
-        would be too large or there is no layout, and as for `recording_of`.
+        If the file cannot be read, a column is missing or holds anything but numbers, a boat has
+        two positions in one frame, units contradict the layout, all data are missing, the arrays
+        would be too large, or there is no layout. Also for the reasons of `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
     """
@@ -95,7 +95,7 @@ def _recording(table: Table, report: Callable[[TrackReport], object]) -> Recordi
 
 
 def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
-    """Return the motion of poses, whose headings become continuous directions of the bows."""
+    """Return the motion of poses, after turning their headings into continuous ones of the bows."""
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if layout.heading is None and layout.quaternion is None:
         pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
@@ -161,10 +161,10 @@ def _poses(every: "pd.DataFrame", table: Table) -> tuple[list[str], Floats, Floa
             "was the clock set back? Give each film a table of its own"
         )
     _check_names(rows)
-    # By their length, then alphabet, so that 2 comes before 10.
+    # Sorted by length, then alphabetically, so that 2 comes before 10.
     names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
     frames = every.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1)
-    # Arrays hold a pose for each frame and name: in large ones every sixteenth must be there.
+    # Arrays hold a pose for each frame and name; in large ones at least a sixteenth must exist.
     if len(frames) * len(names) > max(1 << 22, 16 * len(every)):
         raise ParameterError(
             f"{len(names)} names in {len(frames)} frames are too many for {len(every)} rows: join "
@@ -179,7 +179,7 @@ def _poses(every: "pd.DataFrame", table: Table) -> tuple[list[str], Floats, Floa
 
 
 def _check_names(rows: "pd.DataFrame") -> None:
-    """Refuse spellings of one name that are never there at once: they would be two boats."""
+    """Refuse two spellings of a name that never appear in one frame: they would be two boats."""
     names = rows["id"].drop_duplicates()
     plain = names.str.normalize("NFKC").str.casefold()
     plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
@@ -192,7 +192,7 @@ def _check_names(rows: "pd.DataFrame") -> None:
 
 
 def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
-    """Return boats that are at the very same point in many samples, in units of the file."""
+    """Return boats that stay at exactly one point in many samples, in units of the file."""
     used = rows[rows["why"] == ""]
     counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10
@@ -207,8 +207,8 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
 
 
 def _stuck_headings(rows: "pd.DataFrame") -> dict[str, int]:
-    """Return boats that move with one heading in many samples, and with any other in few."""
-    # A boat seen at a single point keeps its heading, too.
+    """Return boats that move with one heading in many samples, and with other headings in few."""
+    # A boat that never moves keeps its heading, too.
     used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
     counts: Any = used.value_counts(["id", "heading"]).groupby("id")
     most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))

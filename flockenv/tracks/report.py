@@ -66,7 +66,7 @@ class TrackReport:
             f"samples without a velocity: {self.lone}",
             f"mean cosine between heading and motion: {self.cosine:.2f}",
         ]
-        return "\n  ".join([*lines, *self._doubts(counts.get("in no water", 0))])
+        return "\n  ".join([*lines, *self._doubts(counts.get("outside the water", 0))])
 
     def _doubts(self, outside: int) -> Iterator[str]:
         """Yield a line about each unusual value, which may be correct."""

@@ -21,8 +21,8 @@ _MOST_OUTSIDE = 0.5
 def rows_of(table: Table) -> "pd.DataFrame":
     """Return the columns id, time, x, y, heading and why of rows, in the order of the table.
 
-    Times are in s from the least, positions in cm from the pool's center, y up, headings in rad.
-    `why` says why a row is omitted; it is "" for rows that count.
+    Times are in s from the earliest one, positions in cm from the pool's center with y up, headings
+    in rad. `why` says why a row is omitted; it is "" for rows that count.
     """
     layout, names = table.layout, _names(table)
     x, y, is_lost = table.points(layout.columns["x"], layout.columns["y"])
@@ -46,7 +46,9 @@ def rows_of(table: Table) -> "pd.DataFrame":
         "with too little confidence": ~is_sure,
         "with a heading beyond a full turn": is_strange,
         "without a heading": np.isnan(heading),
-        "in no water": ~in_water(layout.pool, rows[["x", "y"]].to_numpy(), 2 * layout.hull[0]),
+        "outside the water": ~in_water(
+            layout.pool, rows[["x", "y"]].to_numpy(), 2 * layout.hull[0]
+        ),
     }
     rows["why"] = np.select(list(reasons.values()), list(reasons), "")
     _check_water(rows)
@@ -54,7 +56,7 @@ def rows_of(table: Table) -> "pd.DataFrame":
 
 
 def _names(table: Table) -> NDArray[np.object_]:
-    """Return the names as text, None for rows without a boat; whole numbers have no point."""
+    """Return the names as text, 1.0 as "1"; None for rows without a boat."""
     layout, pandas = table.layout, require("pandas", "plot")
     if table.is_named:
         ids = table.column(str(layout.id))
@@ -67,8 +69,8 @@ def _names(table: Table) -> NDArray[np.object_]:
 
 
 def _check_water(rows: "pd.DataFrame") -> None:
-    """Refuse a pool in another position; a few points in many rows mark lost boats."""
-    counts = rows[rows["why"] == "in no water"].value_counts(["x", "y"])
+    """Refuse a pool in the wrong position; a few points with many rows each mark lost boats."""
+    counts = rows[rows["why"] == "outside the water"].value_counts(["x", "y"])
     others = counts.sum() - counts[counts > 1].head(3).sum()
     share = others / max(1, others + (rows["why"] == "").sum())
     if share > _MOST_OUTSIDE:

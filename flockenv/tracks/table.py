@@ -37,7 +37,7 @@ class Table:
     """Rows of tracks, numbered by their line or row, as a layout reads them.
 
     Columns are found by their names in any case. A column whose name in the layout holds {id}
-    stands for those of all boats, one after the other.
+    stands for the columns of all boats, one after the other.
     """
 
     def __init__(self, rows: "pd.DataFrame", layout: TrackLayout) -> None:
@@ -64,7 +64,7 @@ class Table:
 
     @cached_property
     def is_named(self) -> bool:
-        """Whether a column names the boats. One in which no row has a name is of one boat."""
+        """Whether a column names the boats. If no row has a name, all rows belong to one boat."""
         if self.layout.id is None or self.layout.is_wide:
             return False
         ids = self.column(self.layout.id)
@@ -109,7 +109,7 @@ class Table:
         return values
 
     def points(self, x: Iterable[str], y: Iterable[str]) -> tuple[Floats, Floats, Any]:
-        """Return means of columns of x and of y, and whether any of them marks a lost boat."""
+        """Return the means of x and of y columns, and whether any of them marks a lost boat."""
         points = np.array([[self.numbers(name) for name in names] for names in (x, y)])
         is_lost = np.zeros(points.shape[-1], bool)
         for mark in self.layout.lost:
@@ -117,7 +117,7 @@ class Table:
         return *points.mean(axis=1), is_lost
 
     def _check_words(self, name: str, texts: "pd.Series[Any]") -> None:
-        """Refuse texts that are no numbers and do not stand for a missing one."""
+        """Refuse texts that are not numbers and do not stand for a missing one."""
         none = NO_NUMBER | {word.strip().lower() for word in self.layout.missing}
         strange = texts[~texts.str.lower().isin(none)]
         if len(strange):
@@ -136,18 +136,18 @@ def _has_decimal(cell: str, mark: str) -> bool:
 
 
 def ending(path: Path) -> str:
-    """Return the ending of a file in small letters, with that under .gz."""
+    """Return a file's ending in lower case, such as .csv or .csv.gz."""
     suffixes = [suffix.lower() for suffix in path.suffixes[-2:]]
     return "".join(suffixes if suffixes[-1:] == [".gz"] else suffixes[-1:])
 
 
 def check_ending(path: Path) -> None:
-    """Refuse a missing file, and another ending."""
+    """Refuse a missing file, and a file with another ending."""
     if not path.exists():
         raise ParameterError(f"{path} cannot be read: No such file or directory")
     if ending(path) not in SUFFIXES:
         raise ParameterError(
-            f"{path} is no table of tracks: its name ends in none of {', '.join(SUFFIXES)} "
+            f"{path} is not a table of tracks: its name ends in none of {', '.join(SUFFIXES)} "
             "(recordings end in .npz)"
         )
 
@@ -170,7 +170,7 @@ def _is_text(path: Path) -> bool:
 
 
 def _usual_separator(path: Path) -> str:
-    """Return the separator of a text file that its ending says."""
+    """Return the separator that follows from a text file's ending."""
     return "\t" if ending(path).startswith(".tsv") else ","
 
 
@@ -204,14 +204,14 @@ def _text_of(path: Path) -> str:
 
 
 def spelling_of(path: Path) -> dict[str, Any]:
-    """Return separator, decimal and skip of the text file of a table, if they are not usual."""
+    """Return the unusual ones among the separator, decimal and skip of a text file."""
     if not _is_text(path):
         return {}
     lines = _text_of(path).splitlines()[:100] or [""]
     mark = _separator_of(lines)
     rows = [line.split(None if mark == " " else mark) for line in lines]
     widths = [*map(len, rows)]
-    # The header is the first line with as many cells as the following ones, or begins in levels.
+    # The header is the first line with as many cells as the next ones, or the first of its levels.
     in_levels = (line for line in range(4) if _levels(rows[line : line + 10])[0])
     skip = next(in_levels, widths.index(max(widths)))
     form: dict[str, Any] = {"skip": skip} if skip else {}
@@ -223,7 +223,7 @@ def spelling_of(path: Path) -> dict[str, Any]:
 
 
 def _separator_of(lines: list[str]) -> str:
-    """Return the mark that stands most often in a line."""
+    """Return the separator that is most frequent in the lines."""
     counts = {mark: max(line.count(mark) for line in lines) for mark in ";\t|,"}
     if max(counts.values()) < 2:  # Names may hold blanks, too.
         counts[" "] = max(len(line.split()) - 1 for line in lines)
@@ -261,13 +261,13 @@ def _read_text(pandas: ModuleType, text: str, layout: TrackLayout, separator: st
     table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
     if layout.header:
         return Table(table, layout)
-    # Some write units, or longer names, into the lines under the header.
+    # Some programs write units, or longer names, into the lines under the header.
     under = [line for line, row in table.head(4).iterrows() if not any(map(is_value, row))]
     return Table(table.drop(index=under), layout)
 
 
 def _cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
-    """Return the cells of the first lines after those that are skipped."""
+    """Return the cells of the first lines after the skipped ones."""
     lines = itertools.islice(io.StringIO(text), skip, skip + count)
     if separator == " ":
         return [line.split() for line in lines]
@@ -276,7 +276,7 @@ def _cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
-    """Return the names of columns, and how many lines they take: some write them in levels."""
+    """Return the names of columns, and the number of lines that they take."""
     if not rows or not any(rows[0]):
         raise ParameterError("there is no header in its first line")
     lines, own = _levels(rows)
@@ -288,7 +288,7 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
 
 
 def _levels(rows: list[list[str]]) -> tuple[list[int], int]:
-    """Return the lines that hold the levels of a header, and how many columns stand before boats.
+    """Return the lines with the levels of a header, and the number of columns before the boats.
 
     There are no lines if the header has no levels. The columns before the boats hold times; in a
     header they hold the names of its levels.
@@ -309,12 +309,12 @@ def _joined(levels: Iterable[object]) -> str:
 
 
 def is_value(cell: object) -> bool:
-    """Return whether a cell begins as a number does."""
+    """Return whether a cell begins like a number."""
     return str(cell).lstrip("-+.")[:1].isdigit()
 
 
 def plain_table(table: "pd.DataFrame", layout: TrackLayout) -> Table:
-    """Return a table with one name per column, the index among the columns."""
+    """Return a table with one name per column, in which the index is a column, too."""
     if not hasattr(table, "columns") or not hasattr(table, "index"):
         raise TypeError(
             f"tracks must be a file, a DataFrame of pandas or a Dataset of xarray, not "
@@ -346,7 +346,7 @@ def _key(name: object) -> str:
 
 
 def listed(names: list[str]) -> str:
-    """Return names with commas between them; of very many only the first ones."""
+    """Return names separated by commas; of very many names only the first ones."""
     more = f" and {len(names) - 40} more" if len(names) > 40 else ""
     return f"{', '.join(names[:40])}{more}"
 

@@ -29,8 +29,8 @@ def export(
     and boat, with the columns of `Recording.to_dataframe`, and beside it a layout in TOML, with
     which `read_tracks` reads it. A GSD file (extra ``tracks``) has one frame per sample in the
     schema of HOOMD-blue: positions and the box in cm, orientations as quaternions about z,
-    velocities in cm/s, the types "boat" and "leader" with their hull, and ``time_s`` and the number
-    of each boat in the log.
+    velocities in cm/s, and the types "boat" and "leader" with their hull. Its log has ``time_s``
+    and each boat's number.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def export(
     MissingExtraError
         Without the extra.
     OSError
-        If a file cannot be written; an old one is still there.
+        If a file cannot be written; an existing file is then unchanged.
     """
     path = Path(path)
     ending = path.suffix.lower()
@@ -100,7 +100,7 @@ def _write_gsd(recording: Recording, path: Path) -> None:
     if math.isinf(reach):  # Open water: as far as there are boats.
         reach = float(np.nanmax(np.abs(recording.pose[..., :2])))
     side = 2 * reach + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm
-    # The library opens names, not files.
+    # The library opens paths, not open files.
     with atomic_write(path) as file, hoomd.open(file.name, "w") as frames:
         for sample in range(len(recording)):
             frame = hoomd.Frame()
@@ -131,7 +131,7 @@ def _put_boats(frame: Any, recording: Recording, sample: int) -> None:
 
 
 def _shape(parameters: FlockParameters) -> dict[str, Any]:
-    """Return the hull as GSD's schema has it: a line swept by a disc."""
+    """Return the hull in GSD's schema, where it is a line swept by a disc."""
     radius, half = parameters.boat_radius_cm, parameters.boat_shape * parameters.boat_radius_cm
     if half == 0.0:
         return {"type": "Sphere", "diameter": 2 * radius}

@@ -33,7 +33,7 @@ TRAINED = "trained"
 """Name of the trained leaders in a comparison."""
 
 OPTIONS: tuple[str, ...] = tuple(option["name"] for option in _core.BRANCH_OPTIONS)
-"""Names of the options of a training; docs/training_reference.md says what each is."""
+"""Names of the options of a training; docs/training_reference.md describes them."""
 
 #: Between two checkpoints, in s.
 _PATIENCE_S = 5.0
@@ -62,10 +62,10 @@ Report = Callable[[Progress], object]
 
 
 class BranchTraining:
-    """A training under way: `advance` it, and take its `policy` whenever you like.
+    """A training in progress: `advance` it, and take its `policy` at any time.
 
-    The same seed gives the same weights to the bit, on any number of threads. The leaders' leans or
-    rudders are linear in the 29 lean features.
+    The same seed gives the same weights, bit for bit, on any number of threads. The leaders' leans
+    or rudders are linear in the 29 lean features.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class BranchTraining:
 
     @property
     def has_ended(self) -> bool:
-        """Whether it has taken its flock-hours."""
+        """Whether the training has used all its flock-hours."""
         return self._core.has_ended
 
     @property
@@ -106,18 +106,18 @@ class BranchTraining:
 
     @property
     def progress(self) -> Progress:
-        """Its progress."""
+        """Progress of the training."""
         done, total = self._core.flock_hours
         order = self.curve["signed_order"]
         return Progress(done, total, float(order[-1]) if len(order) else math.nan)
 
     @property
     def overlaps(self) -> tuple[int, int, float]:
-        """Branches, those with overlaps beyond ``tolerance_cm``, and the deepest overlap."""
+        """Branches, those with overlaps beyond ``tolerance_cm``, and the deepest overlap in cm."""
         return self._core.overlaps
 
     def advance(self) -> None:
-        """Take a round: a branch of every pair, and a step of the weights.
+        """Run a round: one branch of every pair, then a step of the weights.
 
         If Ctrl-C ends it early, the training is as before the round.
         """
@@ -140,9 +140,9 @@ class BranchTraining:
 
     @classmethod
     def from_bytes(cls, state: bytes, *, flock_hours: float | None = None) -> Self:
-        """Return a continued training: to the same bits, or until other `flock_hours`.
+        """Return a stored training, which continues bit for bit, or until other `flock_hours`.
 
-        A FlockError refuses a state that is damaged, of another format, or not finite.
+        Raises FlockError for a state that is damaged, has another format, or is not finite.
         """
         training = cls.__new__(cls)
         training._core = _core.Trainer.from_bytes(state, flock_hours)
@@ -151,7 +151,7 @@ class BranchTraining:
 
 
 def training_flocks(pool: str = "wide", **changes: Any) -> FlockParameters:
-    """Return 27 boats with three leaders at a pool's critical noise, with the physics of trainings.
+    """Return the parameters of 27 boats with three leaders at a pool's critical noise.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def train(
     command: str = "",
     report: Report = lambda progress: None,
 ) -> LeaningLaw:
-    """Go on with a training to its end, and return the policy.
+    """Continue a training to its end, and return the policy.
 
     The folder gets ``checkpoint.bin`` every few seconds, and ``policy.json``, ``curve.csv`` and
     ``settings.toml``. Ctrl-C leaves a checkpoint of the last whole round.
@@ -237,13 +237,13 @@ def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTra
     try:
         return BranchTraining.from_bytes(state, flock_hours=flock_hours)
     except FlockError as error:
-        raise ParameterError(f"{path} is no checkpoint: {error}") from error
+        raise ParameterError(f"{path} is not a checkpoint: {error}") from error
 
 
 def compare_with_laws(
     policy: LeaningLaw, parameters: FlockParameters, flocks: int
 ) -> dict[str, dict[str, NDArray[np.float64]]]:
-    """Return the measurements of `run_episodes` in fresh flocks, by the policy that leads them.
+    """Return the measurements of `run_episodes` in new flocks, by the policy that leads them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Flocks that branch from one state and meet one noise: only their leaders differ."""
+"""Flocks that branch from one state and have the same noise: only their leaders differ."""
 
 from collections.abc import Callable
 from typing import Any
@@ -19,7 +19,7 @@ _OBSERVATION: dict[str, Any] = {
 }
 
 Leans = Callable[[NDArray[np.float32]], NDArray[np.floating]]
-"""Decides leans, shape (flocks, leaders), by features of the shape (flocks, leaders, features)."""
+"""Function from features (flocks, leaders, features) to leans (flocks, leaders)."""
 
 
 def branch_seed(run: int) -> int:
@@ -31,7 +31,7 @@ class BranchingFlocks:
     """Groups of flocks of 27 boats with three leaders, at the pool's critical noise.
 
     Flocks i, i + groups, i + 2·groups and so on are a group: they start each branch from the same
-    state and meet the same noise. After a branch one of them is drawn, and all continue from its
+    state and have the same noise. After a branch one of them is drawn, and all continue from its
     state. When their episode is over they start again at rest.
 
     Parameters
@@ -43,7 +43,7 @@ class BranchingFlocks:
     branch_s, episode_s
         Whole seconds of a branch and of an episode.
     seed
-        Seed of the training that they serve, from 0 to 2³² - 1.
+        Seed of the training for which they are used, from 0 to 2³² - 1.
     """
 
     def __init__(
@@ -86,7 +86,8 @@ class BranchingFlocks:
         Parameters
         ----------
         leans
-            Decides once per second, by the 29 lean features; clipped to [-1, 1].
+            Function that decides once per second, by the 29 lean features; leans are clipped to
+            [-1, 1].
 
         Returns
         -------
@@ -116,7 +117,7 @@ class BranchingFlocks:
         return self.env.observe()
 
     def _rest(self, groups: NDArray[np.bool_]) -> None:
-        """Start the episodes of these groups at rest, all flocks of one with one seed."""
+        """Start the episodes of these groups at rest; all flocks of a group have the same seed."""
         seeds = [next(self._seeds) if starts else None for starts in groups]
         self._targets[groups] = self._coins.choice(["cw", "ccw"], groups.sum())
         options = {"target": self._target_of_flocks(), "reset_mask": np.tile(groups, self.size)}

@@ -51,7 +51,7 @@ candidates without the target of jams; its best, 83, lost order at 1.52 and 1.85
 # without leaders and at 2.0 s with three; Ψ_o is near 1 in order and below 0.3 in disorder; jams
 # dominate at very low noise. There is order to lose where |m| reaches 0.5. The caption of figure 9
 # says 1.4 and 2.0 s of the density of φ_o, and this fit asks the middle of the fall of Ψ_o for
-# them, by mistake: a small misfit is no agreement with the paper.
+# them, by mistake: a small misfit is not agreement with the paper.
 LOST_S, TOLERANCE_S = {0: 1.4, 3: 2.0}, 0.1
 ORDERED, DISORDERED, LEAST_M, TOLERANCE = 0.9, 0.3, 0.5, 0.1
 JAMMED = 0.5

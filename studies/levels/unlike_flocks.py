@@ -8,7 +8,7 @@ Rule, fixed before any policy was judged by it:
   of suite v2, each put upon a level: what a cell names replaces the level's own, and all else stays
   the level's, its observation, episode, target, control steps and coarse physics. No cell needs an
   observation of another size, since leaders see a fixed number of neighbors or none.
-- Cells that are no condition. "As trained" is the level's own flock. So are four leaders in
+- Cells that are not conditions. "As trained" is the level's own flock. So are four leaders in
   `order-easy` and `order-noisy`. They leave 18 cells in those two levels and 19 in `order-narrow`
   and `order-wide`. Nothing stands in for them.
 - Cells that say another thing here. The numbers of a cell are absolute: 15 boats are more than the

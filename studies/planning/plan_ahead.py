@@ -6,7 +6,7 @@
 In 64 flocks, seeds 2917986337 to 2917986400, the planner that knows the noise reaches an order of
 0.753, the other one 0.494, and the pretrained leaders 0.503.
 
-This is no policy: it clones the whole flock, which no robot can do. It shows how much more order
+This is not a policy: it clones the whole flock, which no robot can do. It shows how much more order
 the dynamics and the leans allow than the learned leaders reach. Every 8 s each flock is branched
 from its snapshot. The first candidate is what the learned leaders do. The others add a constant
 offset to each leader's lean for 16 s. A candidate's score is the mean signed order from 24 s to

@@ -195,7 +195,7 @@ def test_what_cannot_be_computed_is_named_where_it_is_missing():
 ])  # fmt: skip
 @pytest.mark.filterwarnings("ignore::flockenv.recording.RecordingWarning")
 def test_files_of_something_else_are_refused(change):
-    with pytest.raises(ParameterError, match=r"run\.npz is no recording of flockenv"):
+    with pytest.raises(ParameterError, match=r"run\.npz is not a recording of flockenv"):
         load(with_arrays(**change))
 
 

@@ -50,7 +50,7 @@ class Masked(Held):
     ("schedule", "words"),
     [
         ([(1.0, {"n_boats": 11})], "n_boats does not change"),
-        ([(1.0, {"bw": 1.0})], "'bw' is no field.*'bw_s'"),
+        ([(1.0, {"bw": 1.0})], "'bw' is not a field.*'bw_s'"),
         ([(1.0, {"bw_s": -1.0})], "bw_s"),
         ([(1.0, {"target": "left"})], "target"),
         ([(1.0, {"pool": (20.0, 15.0)})], "n_boats"),
@@ -60,7 +60,7 @@ class Masked(Held):
         ([(1.0, {})], "a dictionary of fields"),
         ([(1.0, {"bw_s": 1.0, "c4": 2.0}), (1, {"bw_s": 2.0})], "bw_s changes twice"),
         ([(1.0, {"pool": (60.0, 0.0), "boat_radius_cm": 30.0})], "schedule = .*do not fit"),
-        ([(1.0, {1: 2})], "'1' is no field"),
+        ([(1.0, {1: 2})], "'1' is not a field"),
         ([(True, {"bw_s": 1.0})], "a time in s"),
         ([(np.timedelta64(1, "s"), {"bw_s": 1.0})], "a time in s"),
         ([(7.0, {"bw_s": PARAMETERS.bw_s})], "a change at 7 s"),
@@ -259,7 +259,7 @@ def test_a_mirrored_policy_follows_a_target_that_changes():
     ("policy", "words"),
     [
         ({"leader_0": "paper's law"}, "a policy for each of leader_0, leader_1"),
-        ({"leader_0": "paper's law", "leader_1": "low"}, "'low' is no policy"),
+        ({"leader_0": "paper's law", "leader_1": "low"}, "'low' is not a policy"),
         ({"leader_0": Held(0.0), "leader_1": Held(0.0, 1 / 997)}, "no common multiple"),
         ({"leader_0": Held(0.0), "leader_1": 7}, "policy = 7"),
         (Held(1j), "what a policy returns is not accepted: real numbers, not complex128"),

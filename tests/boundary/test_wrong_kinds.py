@@ -110,7 +110,10 @@ def test_values_of_runs_are_series_of_numbers(values, words):
         (lambda: kaplan_meier([1.0, 2.0], [3.0]), "until_s has shape"),
         (lambda: kaplan_meier(["1"], 3.0), "times_s is not accepted: real numbers"),
         (lambda: kaplan_meier([1.0], 3.0).share_at(float("nan")), "at least 0 s"),
-        (lambda: summarize(RUNS, ["policies"], ["order"]), "'policies' is no column of the runs"),
+        (
+            lambda: summarize(RUNS, ["policies"], ["order"]),
+            "'policies' is not a column of the runs",
+        ),
         (lambda: summarize(RUNS, ["policy"], ["Order"]), "did you mean 'order'"),
     ],
 )

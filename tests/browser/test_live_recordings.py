@@ -151,10 +151,10 @@ def test_a_file_is_dropped_onto_the_page(live, tmp_path, recording):
         live.until(
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )
-        assert ("is no .npz file" in live.status()) == (name != "dropped.npz")
+        assert ("is not an .npz file" in live.status()) == (name != "dropped.npz")
     # What was shown before stays.
     assert np.array_equal(live.rows("pose").reshape(-1, 5, 3), recording.pose)
-    # Words that are no file are dropped in vain.
+    # Text that is dropped, not a file, is ignored.
     live.script("document.body.dispatchEvent(new DragEvent('drop', {bubbles: true}))")
     assert live.complaints() == []
 
@@ -179,10 +179,10 @@ def test_what_is_no_recording_is_refused_in_words(live, tmp_path):
             "return document.getElementById('status').textContent.startsWith(arguments[0])", name
         )
         why = {
-            "half.npz": "is no whole, unharmed .npz file: its end is missing.",
-            "other.npz": "is no recording",
+            "half.npz": "is not a complete, undamaged .npz file: its end is missing.",
+            "other.npz": "is not a recording",
         }
-        assert live.status().startswith(f"{name} {why.get(name, 'is no .npz file')}")
+        assert live.status().startswith(f"{name} {why.get(name, 'is not an .npz file')}")
         assert not live.script("return page.recorded")
     live.run_to(2.0)
     assert live.complaints() == []

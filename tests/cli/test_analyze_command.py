@@ -102,12 +102,13 @@ def test_what_was_left_out_is_said_by_boat(cli, tracks):
     done = cli.succeeds("analyze", tracks)
     assert "missing: 30 of 1206 boat-frames" in done.stderr
     assert (
-        "left out: 30 rows (30 in no water: 5 5, 4 5, 3 5, 2 5, 1 5, 1 more boats)" in done.stderr
+        "left out: 30 rows (30 outside the water: 5 5, 4 5, 3 5, 2 5, 1 5, 1 more boats)"
+        in done.stderr
     )
     assert "gaps: 6, the longest 0.6 s" in done.stderr
     named = json.loads(cli("analyze", tracks, "--json", "--quiet").stdout)["tracks"]
     counted = {"5": 5, "4": 5, "3": 5, "2": 5, "1": 5, "0": 5}
-    assert named.pop("left_out") == {"in no water": counted}
+    assert named.pop("left_out") == {"outside the water": counted}
     cosine = named.pop("cosine")
     assert f"mean cosine between heading and motion: {cosine:.2f}" in done.stderr
     assert named.pop("longest_gap_s") == pytest.approx(0.6)
@@ -148,10 +149,10 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
         (["replay", "nothere.tsv"], "nothere.tsv cannot be read: No such file or directory"),
         (
             ["analyze", "film.xlsx"],
-            "film.xlsx is no table of tracks: its name ends in none of .csv",
+            "film.xlsx is not a table of tracks: its name ends in none of .csv",
         ),
         (["analyze", "README.md"], ".parquet, .pq (recordings end in .npz)"),
-        (["analyze", "film"], "film is no table of tracks"),
+        (["analyze", "film"], "film is not a table of tracks"),
         (["analyze", "run.npz", "--out", "run.xlsx"], ".npz, .csv, .parquet, .gsd"),
         (
             ["analyze", "run.npz", "--plot", "order.xyz"],

@@ -121,7 +121,10 @@ def test_a_broken_entry_alone_writes_nothing(cli, entry: str, tmp_path: Path, mo
         (["--suite", "v2", "--entry", "{}"], "--entry is not accepted without --suite v3"),
         (["--trial-flocks", "9"], "--trial-flocks is not accepted without --suite v3"),
         (["--suite", "v3", "--entry", "{}", "--trial-flocks", "513"], "at most 512"),
-        (["--suite", "v3", "--entry", "{}", "--task", "camera"], "'camera' is no level of suite"),
+        (
+            ["--suite", "v3", "--entry", "{}", "--task", "camera"],
+            "'camera' is not a level of suite",
+        ),
         (["--suite", "v3", "--entry", "{}", "--task", "order-wide"], "no entry has a policy"),
         (["--suite", "v3", "--entry", "{}", "--entry", "{}"], "two entries are called mine"),
         (["--suite", "v3", "--entry", "none.toml"], "none.toml cannot be read"),

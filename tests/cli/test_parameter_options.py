@@ -72,7 +72,7 @@ def test_bad_changes_are_named(changes, words):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"n_boats = ", "is no TOML"),
+        (b"n_boats = ", "is not TOML"),
         (b"n_bots = 3", "did you mean 'n_boats'"),
         (b"preset = 'papr'", "paper"),
         (None, "cannot be read"),

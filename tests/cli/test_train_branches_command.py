@@ -107,7 +107,7 @@ def test_overlaps_of_the_comparison_are_said_in_one_line(
 
 def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     for arguments, words in (
-        (["--algorithm", "branch"], "'branch' is no algorithm"),
+        (["--algorithm", "branch"], "'branch' is not an algorithm"),
         (["--algorithm", "branches", "--flock-hours", "0"], "flock_hours = 0"),
         (["--algorithm", "branches", "--set", "holds=8"], "did you mean 'hold_s'"),
         (["--algorithm", "branches", "--ppo", "gamma=0.9"], "--ppo is for --algorithm ppo"),

@@ -42,7 +42,7 @@ REFUSED = [
     ({"policies": {}}, ParameterError, "nothing to compare"),
     ({"policies": ["paper's law"]}, TypeError, "policies must be a dictionary"),
     ({"policies": zip(["a"], ["law"], strict=True)}, TypeError, "policies must be a dictionary"),
-    ({"policies": {"no leaders": "paper's law"}}, ParameterError, "is no name for a policy"),
+    ({"policies": {"no leaders": "paper's law"}}, ParameterError, "is not a name for a policy"),
     *(
         ({"policies": {"mine": given}}, ParameterError, "policy = .* is not accepted: a policy's")
         for given in (5, {"leader_0": 5}, lambda: 5, np)

@@ -67,12 +67,17 @@ def test_episodes_are_scored_as_a_comparison_does():
 @pytest.mark.parametrize(
     ("orders", "reference", "error", "words"),
     [
-        (ORDERS, "tuned", flockenv.ParameterError, "'tuned' is no policy of these: .*'tuned law'"),
+        (
+            ORDERS,
+            "tuned",
+            flockenv.ParameterError,
+            "'tuned' is not a policy of these: .*'tuned law'",
+        ),
         (
             {"a": [0.1, 0.2], "b": [0.1]},
             "b",
             flockenv.ParameterError,
-            "2 and 1 values are no pairs",
+            "2 and 1 values are not pairs",
         ),
         ({"a": []}, None, flockenv.ParameterError, "no values to average"),
         ({"a": [[0.1]]}, None, flockenv.ParameterError, r"orders\['a'\] has shape"),

@@ -74,8 +74,11 @@ class Wrong:
     [
         ({"suite": "v2"}, "suite = 'v2' is not accepted"),
         ({"results_version": RESULTS_VERSION - 1}, f"results_version = {RESULTS_VERSION - 1} is"),
-        ({"levels": {"order-esy": ["a.npz"]}}, "'order-esy' is no level of suite v3: did you mean"),
-        ({"levels": {}}, "no table of levels"),
+        (
+            {"levels": {"order-esy": ["a.npz"]}},
+            "'order-esy' is not a level of suite v3: did you mean",
+        ),
+        ({"levels": {}}, "not a table of levels"),
         ({"levels": {LEVEL: []}}, "order-easy = [] is not accepted"),
         ({"levels": {LEVEL: ["a.npz", "a.npz"]}}, "names a policy twice"),
         ({"levels": {LEVEL: ["b.npz"]}}, "b.npz cannot be read"),
@@ -87,7 +90,7 @@ class Wrong:
         ({"flock_hours": float("nan")}, "flock_hours = nan is not accepted"),
         ({"flock_hours": None}, "flock_hours is missing"),
         ({"name": ""}, "name = '' is not accepted"),
-        ({"clas": "x"}, "'clas' is no key of an entry: did you mean 'class'?"),
+        ({"clas": "x"}, "'clas' is not a key of an entry: did you mean 'class'?"),
     ],
 )
 def test_what_is_no_entry_is_refused_by_name(entered, changes, words) -> None:

@@ -183,7 +183,7 @@ def steps() -> list[Number]:
         return shifts[["low", "high"]].abs().max(axis=None)
 
     return [
-        *interval(page, "8 minutes have {} at 0.1 s", table, alone, form=".3f"),
+        *interval(page, "8 minutes show a change of {} at 0.1 s", table, alone, form=".3f"),
         Number(page, "order is lost by at most {} s", table, {}, farthest),
     ]
 
@@ -396,9 +396,9 @@ def trainings() -> list[Number]:
     gains = ("gain", "gain_low", "gain_high")
     for means, words, end in ((TRAININGS, "seeds", " more than the"), (EARLY, "they", " more.")):
         reached = (
-            f"{words} reach {{}} in",
-            f"{words} reach # in the mean ({{}} to",
-            f"{words} reach # in the mean (# to {{}})",
+            f"{words} reach {{}} on",
+            f"{words} reach # on average ({{}} to",
+            f"{words} reach # on average (# to {{}})",
         )
         found += [
             Number(page, text, means, column=column, form=".3f")

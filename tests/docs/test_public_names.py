@@ -66,7 +66,7 @@ def is_listed(module: str, name: str) -> bool:
 @pytest.mark.parametrize(("module", "name"), sorted({each[1:] for each in imports()}))
 def test_what_is_imported_is_in_the_reference(module, name):
     files = [file for file, *each in imports() if each == [module, name]]
-    assert is_listed(module, name), f"{', '.join(files)}: {module}.{name} is no public name"
+    assert is_listed(module, name), f"{', '.join(files)}: {module}.{name} is not a public name"
 
 
 def test_the_check_would_notice():

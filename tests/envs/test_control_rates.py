@@ -1,4 +1,4 @@
-"""Any control rate gives the same physics, also where its period is no whole number of ticks."""
+"""Any control rate gives the same physics, also where its period is not a whole number of ticks."""
 
 import numpy as np
 import pytest

@@ -238,7 +238,7 @@ def test_a_file_that_says_less_than_it_holds_fills_no_memory(tmp_path):
     path.write_bytes(data)
     tracemalloc.start()
     try:
-        with pytest.raises(ParameterError, match="no whole, unharmed"):
+        with pytest.raises(ParameterError, match="not a complete, undamaged"):
             Recording.load(path)
         assert tracemalloc.get_traced_memory()[1] < 10 << 20
     finally:

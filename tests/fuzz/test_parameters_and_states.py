@@ -99,7 +99,7 @@ def test_toml_that_is_no_text(text):
 
 @pytest.mark.parametrize("text", ["n_boats = " + "9" * 5000, "a = " + "[" * 9999, "n_boats = "])
 def test_toml_that_is_none(text):
-    with pytest.raises(flockenv.ParameterError, match="is no TOML"):
+    with pytest.raises(flockenv.ParameterError, match="is not TOML"):
         FlockParameters.from_toml(text)
 
 

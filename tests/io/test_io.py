@@ -116,7 +116,7 @@ def test_what_is_no_file_is_named_and_not_waited_for(suffix, read, kind, tmp_pat
     assert path.name in words
     if kind in ("pipe", "socket", "device", "link to a pipe"):
         assert isinstance(raised.value, ParameterError)
-        assert "no file but a device, a pipe or a socket" in words
+        assert "not a file but a device, a pipe or a socket" in words
 
 
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "link to a pipe", "folder"])
@@ -214,7 +214,7 @@ def test_toml_with_a_byte_order_mark_is_read(tmp_path):
     (tmp_path / "a.toml").write_bytes(b"\xef\xbb\xbfn_boats = 7\n")
     assert read_toml_file(tmp_path / "a.toml", "it") == {"n_boats": 7}
     assert FlockParameters.from_toml("\ufeffn_boats = 7").n_boats == 7
-    for data, words in [(b"\xff\xfe", "is no TOML"), (b"\0", "is no TOML")]:
+    for data, words in [(b"\xff\xfe", "is not TOML"), (b"\0", "is not TOML")]:
         (tmp_path / "a.toml").write_bytes(data)
         with pytest.raises(ParameterError, match=words):
             read_toml_file(tmp_path / "a.toml", "it")

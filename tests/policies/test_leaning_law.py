@@ -135,7 +135,7 @@ def test_damaged_files_are_named(tmp_path, change, message):
     path.write_text(text(change))
     with pytest.raises(flockenv.ParameterError) as raised:
         load(path)
-    assert str(raised.value).startswith(f"{path} is no whole policy: ")
+    assert str(raised.value).startswith(f"{path} is not a complete policy: ")
     assert message in str(raised.value)
 
 
@@ -146,7 +146,7 @@ def test_damaged_files_are_named(tmp_path, change, message):
         (b"cos\nsystem\n(S'true'\ntR.", "expected value"),
         (b"\x80\x04\x95", "utf-8"),
         (b"[" * 100_000, "invalid type: sequence"),
-        (b" " * (1 << 20) + b"{}", "is no policy: it is larger than"),
+        (b" " * (1 << 20) + b"{}", "is not a policy: it is larger than"),
         (b'{"format": 1e999}', "number out of range"),
     ],
 )
@@ -167,7 +167,7 @@ def test_other_content_is_refused_and_nothing_in_it_is_executed(tmp_path, conten
         (("bath", 0.0, {}), {"gains": GAINS}, "pools wide and narrow"),
         (("wide", 0.0, {}), {"gains": {"gain": 1.0}}, "missing field `backward_gain`"),
         (("wide", "many", {}), {}, "invalid type"),
-        (("wide", {1, 2}, {}), {}, "is no number"),
+        (("wide", {1, 2}, {}), {}, "is not a number"),
     ],
 )
 def test_bad_numbers(arguments, options, message):

@@ -143,7 +143,7 @@ def test_files_are_not_read_without_trust(file, tmp_path):
         with pytest.raises(ParameterError, match=r"reading it executes the code in it.*trust=True"):
             read()
     assert not (tmp_path / "executed").exists()
-    with pytest.raises(ParameterError, match="is no model that can be read"):
+    with pytest.raises(ParameterError, match="is not a model that can be read"):
         flockenv.policies.load(file, trust=True)
     # The test would notice.
     assert (tmp_path / "executed").exists()
@@ -157,7 +157,7 @@ def test_damaged_files_are_refused(file, tmp_path):
             flockenv.policies.load(tmp_path / "part.zip", trust=True)
     with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
         archive.writestr("policy.pth", b"")
-    with pytest.raises(ParameterError, match=r"other.zip is no model"):
+    with pytest.raises(ParameterError, match=r"other.zip is not a model"):
         flockenv.policies.load(tmp_path / "other.zip", trust=True)
 
 
@@ -190,7 +190,9 @@ def test_blocks_and_options_of_other_builds_are_defaults_or_refused_by_name(tmp_
     for more in (options, options["observation"]):
         more["new_option"] = 3
         model.save(tmp_path / "newer.zip")
-        with pytest.raises(ParameterError, match=r"newer\.zip is not accepted: 'new_option' is no"):
+        with pytest.raises(
+            ParameterError, match=r"newer\.zip is not accepted: 'new_option' is not"
+        ):
             flockenv.policies.load(tmp_path / "newer.zip", trust=True)
         del more["new_option"]
 

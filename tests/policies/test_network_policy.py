@@ -223,7 +223,7 @@ def test_a_torch_network_of_all_leaders_at_once_is_refused():
     with pytest.raises(flockenv.ParameterError, match=rf"layer 0 has weights \({2 * SIZE}, 3\)"):
         NetworkPolicy.from_module(torch.nn.Sequential(*layers), two)
     two.options["new_option"] = 3
-    with pytest.raises(flockenv.ParameterError, match="'new_option' is no option that a policy"):
+    with pytest.raises(flockenv.ParameterError, match="'new_option' is not an option that"):
         NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), two)
     with pytest.raises(flockenv.ParameterError, match="space = Box"):
         NetworkPolicy.from_module(torch.nn.Linear(SIZE, 1), type(two).__mro__[1](-1, 1, (SIZE,)))
@@ -284,19 +284,22 @@ def changed(policy, tmp_path, **entries):
         ({"observation_version": str(OBSERVATION_VERSION)}, "version '1' of the observation"),
         ({"format": "something else"}, "format = 'something else'"),
         ({"weight_1": np.zeros((8, 3))}, "layer 1 has weights"),
-        ({"other": np.zeros(3), "another": np.zeros(3)}, "'other' is no array of a network"),
-        ({"pools": "wide"}, "'pools' is no entry of a network's header"),
-        ({"activations": ["exec", "tanh", "tanh"]}, "'exec' is no activation"),
-        ({"activations": [["tanh"]] * 3}, r"\['tanh'\] is no activation"),
+        ({"other": np.zeros(3), "another": np.zeros(3)}, "'other' is not an array of a network"),
+        ({"pools": "wide"}, "'pools' is not an entry of a network's header"),
+        ({"activations": ["exec", "tanh", "tanh"]}, "'exec' is not an activation"),
+        ({"activations": [["tanh"]] * 3}, r"\['tanh'\] is not an activation"),
         ({"activations": "tanh"}, "activations must be a sequence"),
-        ({"activations": ["tanh"]}, "'bias_1' is no array of a network|'weight_1' is no array"),
+        (
+            {"activations": ["tanh"]},
+            "'(bias|weight)_1' is not an array of a network",
+        ),
         ({"norms": [1.0, None, None]}, "it has no 'scale_0'"),
-        ({"norms": [None]}, "no whole policy"),
-        ({"norms": 3}, "no whole policy"),
+        ({"norms": [None]}, "not a complete policy"),
+        ({"norms": 3}, "not a complete policy"),
         ({"observation": {"neighbor": 3}}, "neighbor"),
         ({"observation": {"neighbors": 3}}, "layer 0"),
         ({"observation": 3}, "observation = 3 is not accepted: blocks by name"),
-        ({"made": 3}, "no whole policy"),
+        ({"made": 3}, "not a complete policy"),
         ({"mirror_to_target": "no"}, "mirror_to_target = 'no' is not accepted: True or False"),
         ({"weight_0": np.full((SIZE, 8), np.nan)}, "not finite"),
         ({"weight_0": np.full((SIZE, 8), 1e300)}, "not finite"),
@@ -333,7 +336,7 @@ def test_damaged_and_foreign_files(tmp_path):
     with pytest.raises(FileNotFoundError):
         load(tmp_path / "nowhere.npz")
     flockenv.simulate(flockenv.FlockParameters(), 1, 1.0).save(tmp_path / "run.npz")
-    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is no .*: it has no 'header'"):
+    with pytest.raises(flockenv.ParameterError, match=r"run\.npz is not a .*: it has no 'header'"):
         load(tmp_path / "run.npz")
 
 

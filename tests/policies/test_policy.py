@@ -94,7 +94,7 @@ REFUSED = [
     (lambda: Held, None, ParameterError, "policy = <class .*Held'> is not accepted"),
     (LeaningLaw, None, ParameterError, "policy = <class .*LeaningLaw'> is not accepted"),
     ("papers law", None, ParameterError, 'did you mean "paper\'s law"'),
-    ("", None, ParameterError, "'' is no policy"),
+    ("", None, ParameterError, "'' is not a policy"),
     ("tuned law", None, ParameterError, "pool = None .* pools with a name"),
     ("learned", "narrow", ParameterError, "learned leaders are for wide"),
     ("learned", (90.0, 30.0), ParameterError, "pools with a name"),

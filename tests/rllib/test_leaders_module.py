@@ -132,7 +132,7 @@ def test_ppo_on_the_parallel_environment():
     ("model_config", "options", "message"),
     [
         ({"hiddens": (8,)}, {}, "did you mean 'hidden'"),
-        ({"activation": "gelu"}, {}, "'gelu' is no activation"),
+        ({"activation": "gelu"}, {}, "'gelu' is not an activation"),
         ({}, {"rudder_levels": 3}, "with continuous actions"),
     ],
 )

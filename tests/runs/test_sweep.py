@@ -108,7 +108,7 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
         ("minutes = 1\nseeds = 1\n[fixed]\nbw_s = 0.2\n" + GRID, "both under"),
         ("minutes = 1\nseeds = 1\n" + GRID + "[[grid]]\nc4 = [0.1]", "same fields.*bw_s, c4"),
         ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
-        ("minutes = \n", "no TOML"),
+        ("minutes = \n", "not TOML"),
         (
             "minutes = 1\nseeds = 1\n[[grid]]\npool = [130, 70]",
             r'pool = 130 is not accepted: .* as in pool = \[\[130, 70\], "wide"\]$',
@@ -146,7 +146,7 @@ def test_a_missing_or_foreign_table_is_named(tmp_path: Path) -> None:
     with pytest.raises(flockenv.ParameterError, match=r"sweep\.parquet"):
         load_sweep(tmp_path)
     (tmp_path / "sweep.parquet").write_bytes(b"PAR1 nonsense")
-    with pytest.raises(flockenv.ParameterError, match="no table of a sweep"):
+    with pytest.raises(flockenv.ParameterError, match="not a table of a sweep"):
         load_sweep(tmp_path)
 
 

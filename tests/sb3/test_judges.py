@@ -315,7 +315,7 @@ def test_files_of_an_evaluation_that_somebody_protected_stay(tmp_path, name):
 def test_a_damaged_file_of_evaluations_is_named(tmp_path):
     model = ppo(make()).learn(96)
     (tmp_path / "evaluations.npz").write_bytes(b"PK")
-    with pytest.raises(ParameterError, match=r"evaluations\.npz is no whole, unharmed \.npz file"):
+    with pytest.raises(ParameterError, match=r"evaluations\.npz is not a complete, undamaged"):
         model.learn(96, evaluation(make(), str(tmp_path)), reset_num_timesteps=False)
 
 
@@ -349,7 +349,7 @@ def test_a_monitor_file_that_has_episodes_is_neither_lost_nor_mixed_up(tmp_path)
     with open(tmp_path / "run.monitor.csv", encoding="utf-8") as file:
         assert json.loads(file.readline()[1:])["env_id"] == "None"
     (tmp_path / "other.monitor.csv").write_text("a,b\n1,2\n3,4\n")
-    with pytest.raises(ParameterError, match="is no monitor file"):
+    with pytest.raises(ParameterError, match="is not a monitor file"):
         FlockMonitor(make(), str(tmp_path / "other"), override_existing=False)
 
 

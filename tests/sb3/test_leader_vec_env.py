@@ -81,7 +81,7 @@ def test_set_options_refuses_what_it_does_not_know_and_forgets_it():
         {"reset_mask": np.ones(2, bool)},
         [{"target": "cw", "C0": 1}] * 4,
     ):
-        with pytest.raises(flockenv.ParameterError, match="no reset option"):
+        with pytest.raises(flockenv.ParameterError, match="not a reset option"):
             venv.set_options(options)
         venv.reset()
     # It may be meant for a wrapper.

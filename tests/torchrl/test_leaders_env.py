@@ -158,7 +158,7 @@ def test_copies_and_pickles_continue_with_the_same_bits(state):
     [
         ({"num_flocks": 0}, "num_flocks = 0 is not accepted"),
         ({"num_flocks": 10**9}, "num_flocks = 1000000000 is not accepted"),
-        ({"state": "boat"}, "'boat' is no state: did you mean 'boats'"),
+        ({"state": "boat"}, "'boat' is not a state: did you mean 'boats'"),
     ],
 )
 def test_bad_options_are_named(options, message):

@@ -54,7 +54,7 @@ def test_whole_numbers_in_a_row_are_no_times_whatever_their_name(name):
     ):
         read_tracks(table, layout)
     assert read_tracks(table, but(layout, fps=10.0)) == read_tracks(rows(), SMALL)
-    # Every third frame is no time either, unless the name says so: pictures every 3 s.
+    # Every third frame is not a time either, unless the name says so: pictures every 3 s.
     third = table.assign(**{name: 3 * table[name]})
     if name in ("seconds", "time_s", "Time [s]"):
         assert read_and_counted(third, layout)[1].step_s == 3.0
@@ -126,7 +126,7 @@ def test_small_headings_beside_a_column_of_ones_are_headings():
     [("time_ms", 1e3), ("Time [ms]", 1e3), ("time_min", 1 / 60), ("t (h)", 1 / 3600), ("us", 1e6)],
 )
 def test_a_unit_in_the_name_of_times_is_not_passed_over(name, per_s):
-    """Times of slow animals that are no whole numbers would pass as s."""
+    """Times of slow animals that are not whole numbers would pass as s."""
     table = rows().rename(columns={"frame": name})
     table[name] = table[name] / 10.0 * per_s + 0.25
     layout = TrackLayout(**PLACE, heading="angle", heading_unit="deg", frame=name)

@@ -168,7 +168,7 @@ def test_names_of_spots_are_no_names_of_boats(seen):
 
 
 def test_boats_beside_each_other_have_all_columns_of_a_layout():
-    """Blanks around names do not matter, and a column that only looks like one is no boat's."""
+    """Blanks around names do not matter, and a column that only looks like one is not a boat's."""
     k = np.arange(30.0)
     table = pd.DataFrame({"frame": k, " x1 ": k, "y1": 5.0, "x2": k, "Y2": 20.0, "xtra": "good"})
     layout = TrackLayout(pool=(90.0, 0.0), fps=10.0, x="x{id}", y="y{id}", heading=None)

@@ -1,4 +1,4 @@
-"""What trackers write for a boat they lost is no boat: it is left out, and counted by boat."""
+"""What trackers write for a boat they lost is not a boat: it is left out, and counted by boat."""
 
 import numpy as np
 import pandas as pd
@@ -23,17 +23,17 @@ def lost_rows(table):
 @pytest.mark.parametrize(
     ("values", "reason"),
     [
-        ({"x_px": 0.0, "y_px": 0.0}, "in no water"),
-        ({"x_px": -1.0, "y_px": -1.0}, "in no water"),
-        ({"x_px": -1.0, "y_px": -1.0, "angle": -1.0}, "in no water"),
-        ({"x_px": 812.0, "y_px": 604.5}, "in no water"),
+        ({"x_px": 0.0, "y_px": 0.0}, "outside the water"),
+        ({"x_px": -1.0, "y_px": -1.0}, "outside the water"),
+        ({"x_px": -1.0, "y_px": -1.0, "angle": -1.0}, "outside the water"),
+        ({"x_px": 812.0, "y_px": 604.5}, "outside the water"),
         ({"x_px": np.inf, "y_px": np.inf}, "without a position"),
         ({"x_px": np.inf, "y_px": np.inf, "angle": np.inf}, "without a position"),
         ({"x_px": np.nan}, "without a position"),
         ({"angle": np.inf}, "without a heading"),
         ({"angle": -np.inf}, "without a heading"),
         ({"angle": 9999.0}, "with a heading beyond a full turn"),
-        ({"x_px": 1e300}, "in no water"),
+        ({"x_px": 1e300}, "outside the water"),
     ],
 )
 def test_a_lost_boat_is_none(seen, values, reason):
@@ -234,7 +234,7 @@ def test_arrays_with_a_boat_in_no_water_are_refused():
 def test_everything_in_no_water_is_named():
     table = pd.DataFrame({"frame": [0, 1, 2], "id": "a", "x": 0.0, "y": 0.0, "heading": 0.0})
     layout = TrackLayout(pool="narrow", fps=10.0)
-    with pytest.raises(flockenv.ParameterError, match="heading in the water: 3 in no water"):
+    with pytest.raises(flockenv.ParameterError, match="heading in the water: 3 outside the water"):
         read_tracks(table, layout)
     with pytest.raises(flockenv.ParameterError, match="water: 3 without a heading"):
         read_tracks(table.assign(heading=np.nan, x=60.0), layout)
@@ -249,4 +249,4 @@ def test_centers_within_a_hull_of_a_wall_are_kept(seen):
     for distance, is_kept in ((99.9, True), (100.3, False), (38.7, True), (38.2, False)):
         table.loc[row, "x_px"], table.loc[row, "y_px"] = 812.0 + distance / PIXEL_CM, 604.5
         _, report = read_and_counted(table, LAYOUT)
-        assert report.left_out == ({} if is_kept else {"in no water": {"boat5": row.sum()}})
+        assert report.left_out == ({} if is_kept else {"outside the water": {"boat5": row.sum()}})

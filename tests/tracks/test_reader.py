@@ -183,7 +183,7 @@ def test_names_are_sorted_as_numbers():
         (line(), {"fps": -1.0}, "fps = -1.0"),
         (line(), {"heading_unit": "grad"}, "'grad' is not accepted: rad or deg"),
         (line(), {"heading": ("x", "y")}, "the tail and x, y of the head"),
-        (line(), {"leaders": ("7",)}, "'7' is no leader among the ids"),
+        (line(), {"leaders": ("7",)}, "'7' is not a leader among the ids"),
         (
             line(),
             {"cm_per_unit": 200.0, "max_speed_cm_s": 1e9, "pool": (np.inf, 0.0)},
@@ -244,14 +244,14 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(flockenv.ParameterError, match="cannot be read as a table"):
         read_tracks(tmp_path / "noise.parquet", OPEN)
     (tmp_path / "wrong.toml").write_text("pool = 'narrow'\nfbs = 25\n")
-    with pytest.raises(flockenv.ParameterError, match="'fbs' is no field of a layout"):
+    with pytest.raises(flockenv.ParameterError, match="'fbs' is not a field of a layout"):
         read_layout(tmp_path / "wrong.toml")
     with pytest.raises(flockenv.ParameterError, match="layout is missing"):
         read_tracks(line())
     for read in (read_tracks, guess_layout):
-        with pytest.raises(flockenv.ParameterError, match="is the name of no table"):
+        with pytest.raises(flockenv.ParameterError, match="is not the name of a table"):
             read("")
-    with pytest.raises(flockenv.ParameterError, match="is the name of no file"):
+    with pytest.raises(flockenv.ParameterError, match="is not the name of a file"):
         read_layout("a\0.toml")
 
 
@@ -263,7 +263,7 @@ def test_files_that_are_none(tmp_path):
         ("pool = 'narrow'\nleaders = 5", "leaders = 5 is not accepted: a list of names"),
         ("pool = 'narrow'\nleaders = [true]", "leaders = (True,) is not accepted"),
         ("fps = 5", "pool is missing"),
-        ("pool = ", "is no TOML"),
+        ("pool = ", "is not TOML"),
     ],
 )
 def test_a_layout_of_the_wrong_kind_names_its_file(tmp_path, text, words):

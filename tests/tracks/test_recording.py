@@ -81,7 +81,7 @@ def test_phases_that_are_known_have_their_analysis_window():
         ({"phase": ["forward"] * 3}, 'phase = "forward" is not accepted'),
         ({"ids": ["a", "a"]}, "more than once"),
         ({"ids": ["a"]}, "1 names for 2 boats"),
-        ({"leaders": ["c"]}, "'c' is no leader among the ids"),
+        ({"leaders": ["c"]}, "'c' is not a leader among the ids"),
         ({"leaders": ["0", "0"]}, "more than once"),
         ({"hull": (-1.0, 0.5)}, "boat_radius_cm"),
         ({"target": "north"}, "north"),

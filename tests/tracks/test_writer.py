@@ -29,7 +29,7 @@ def test_a_layout_that_is_there_is_kept(seen, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["run.toml"]
     assert "measured on 3 May" in (tmp_path / "run.toml").read_text()
     export(seen.truth, tmp_path / "run.csv", overwrite=True)
-    # What says the same is no other layout.
+    # What says the same is not another layout.
     export(seen.truth, tmp_path / "run.csv")
     export(seen.truth, tmp_path / "run.parquet")
     with pytest.raises(flockenv.ParameterError, match="with another layout"):

@@ -157,7 +157,7 @@ def test_a_harmed_checkpoint_is_refused(tmp_path: Path, harm, words):
 def test_what_is_no_training_is_refused_by_its_name():
     for options, words in (
         ({"flock_hours": 0.0}, "flock_hours = 0"),
-        ({"pair": 3}, "'pair' is no option of the training"),
+        ({"pair": 3}, "'pair' is not an option of the training"),
         ({"hold_s": 5.0}, "trial_s = 16"),
         ({"action_mode": "heading"}, "action_mode = heading"),
         ({"seed": -1}, "seed = -1"),

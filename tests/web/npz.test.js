@@ -77,7 +77,7 @@ test("texts keep their zeros, but for those at the end, which NumPy leaves out",
   assert.deepEqual(names.values, ["a\0b", "c"]);
 });
 
-test("bytes after the archive are no part of it, as for NumPy", async () => {
+test("bytes after the archive are not a part of it, as for NumPy", async () => {
   const whole = writeNpz({ numbers: array.reals([1, 2], [2]) });
   const { numbers } = await readNpz(Uint8Array.of(...whole, 1, 2, 3).buffer);
   assert.deepEqual([...numbers.values], [1, 2]);

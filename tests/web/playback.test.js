@@ -119,7 +119,7 @@ test("pausing writes the moment into the link", () => {
   assert.equal(noted.links, 1);
 });
 
-test("a slow first answer is no simulator without one", async () => {
+test("a slow first answer does not count as a missing one", async () => {
   const { playback, noted, tick } = played({ end: 5, waiting: 1500 });
   playback.toggle();
   await tick(0);

@@ -1,4 +1,4 @@
-// Law: what is no recording is refused by a sentence, and what rounding leaves of one is not.
+// Law: what is not a recording is refused by a sentence, and what rounding leaves of one is not.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -96,7 +96,7 @@ test("a link's text is a value of its kind, and the value is the text again", ()
   }
 });
 
-test("what is no value of its kind stays text, for the simulator to refuse", () => {
+test("what is not a value of its kind stays text, for the simulator to refuse", () => {
   for (const [kind, text] of [["real", "NaN"], ["real", "Infinity"], ["real", ""], ["count", "many"], ["flag", "1"], ["real", "1,2"]]) {
     assert.equal(valueFrom(kind, text), text);
   }
@@ -132,7 +132,7 @@ test("what changes on the way is an option of the command, and a schedule in Pyt
   }
 });
 
-test("leaders with policies of their own are no command, and a dictionary in Python", () => {
+test("leaders with policies of their own have no command, and are a dictionary in Python", () => {
   const flock = { n_leaders: "2", leaders: "learned,paper's law" };
   assert.equal(commandLine(flock, 60), "");
   assert.match(pythonText([flock], 60, { n_leaders: "count" }), /policy=\{"leader_0": "learned", "leader_1": "paper's law"\}\)\n$/);

@@ -57,11 +57,11 @@ def test_flipped_bytes(recording, said_of, tmp_path, compressed):
         if is_refused:
             assert each["refusal"] is not None, path.name
             faults = (
-                "whole, unharmed .npz file: ",
-                ".npz file, in which",
-                "recording of flockenv: ",
+                "a complete, undamaged .npz file: ",
+                "an .npz file, in which",
+                "a recording of flockenv: ",
             )
-            assert each["refusal"].startswith(tuple(f"{path} is no {fault}" for fault in faults))
+            assert each["refusal"].startswith(tuple(f"{path} is not {fault}" for fault in faults))
 
 
 def changes(recording: flockenv.Recording) -> dict[str, dict]:
@@ -92,7 +92,7 @@ def changed_origins(recording: flockenv.Recording) -> dict[str, dict]:
         "parameters out of range": {
             "parameters": np.array(toml.replace("n_boats = 5", "n_boats = 0"))
         },
-        "noise that is no number": {"parameters": np.array(toml.replace("bw_s = ", "bw_s = -"))},
+        "noise that is not a number": {"parameters": np.array(toml.replace("bw_s = ", "bw_s = -"))},
     }
 
 
@@ -102,7 +102,7 @@ def changed_times(time: np.ndarray) -> dict[str, dict]:
         "times that stand still": {"time_s": np.where(time > 3, 3.0, time)},
         "times before the start": {"time_s": time - 1.0},
         "times beyond the end": {"time_s": time + 1.0},
-        "times that are no numbers": {"time_s": np.where(time > 3, np.nan, time)},
+        "times that are not numbers": {"time_s": np.where(time > 3, np.nan, time)},
         "times in single precision": {"time_s": time.astype(np.float32)},
     }
 
@@ -110,7 +110,7 @@ def changed_times(time: np.ndarray) -> dict[str, dict]:
 def changed_motions(recording: flockenv.Recording) -> dict[str, dict]:
     far = np.full_like(recording.pose, 1e300)
     return {
-        "poses that are no numbers": {"pose": half_there(recording)},
+        "poses that are not numbers": {"pose": half_there(recording)},
         "velocities without end": {"velocity": np.full_like(recording.velocity, np.inf)},
         "fewer poses": {"pose": recording.pose[:-1]},
         "poses of more boats": {"pose": np.zeros((len(recording), 6, 3))},
@@ -135,7 +135,7 @@ def changed_series(recording: flockenv.Recording) -> dict[str, dict]:
         "longer names of phases": {"phase": recording.phase.astype("<U8")},
         "phases that are not there": {"phase": np.full(n, "", "<U4")},
         "a window in numbers": {"in_analysis_window": np.zeros(n)},
-        "an order that is no number": {"order_psi_o": np.full(n, np.nan)},
+        "an order that is not a number": {"order_psi_o": np.full(n, np.nan)},
         "an order above its range": {"order_psi_o": np.full(n, 1.5)},
         "an angle below its range": {"order_phi_v": np.full(n, -4.0)},
         "an order without end": {"order_phi_o": np.full(n, np.inf)},
@@ -156,7 +156,7 @@ def changed_contacts(contacts: flockenv.ContactSeries) -> dict[str, dict]:
         "contacts of no obstacle": {"contacts_j": np.full_like(contacts.j, -9)},
         "contacts that pull": {"contacts_force": -contacts.force},
         "more contacts than there are": {"contacts_count": contacts.count + 1},
-        "contacts that are no numbers": {"contacts_normal": contacts.normal * np.nan},
+        "contacts that are not numbers": {"contacts_normal": contacts.normal * np.nan},
         "contacts in double precision": {"contacts_force": contacts.force.astype(np.float64)},
     }
 

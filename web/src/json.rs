@@ -3,7 +3,7 @@
 use flockenv::parameters::{Kind, Value};
 use serde_json::{Value as Json, json};
 
-/// A value as JSON; numbers that are not finite are text.
+/// A value as JSON. Numbers that are not finite become text.
 pub(crate) fn written(value: &Value) -> Json {
     match value {
         Value::None | Value::Other => Json::Null,

@@ -86,7 +86,7 @@ impl Leaders {
         own.collect::<Result<_>>().map(Self::Each)
     }
 
-    /// The rudders from now on, given those until now; `None` for the law at every substep. `yours`: the heading that the
+    /// The next rudders, given the `held` ones; `None` for the law at every substep. `yours`: the heading that the
     /// visitor asks of all leaders, clockwise from outward, over π.
     ///
     /// # Errors
@@ -129,7 +129,7 @@ fn refused(name: &str, accepted: &str) -> FlockError {
     FlockError::parameter("leaders", name, accepted)
 }
 
-/// The law of a name, which acts at every decision.
+/// The law with this name, which acts at every decision.
 fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
     let names: Vec<_> = Law::NAMED.iter().map(|each| each.name).collect();
     if name == EVERY_SUBSTEP || !names.contains(&name) {

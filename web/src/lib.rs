@@ -1,8 +1,8 @@
 //! The simulator as the live page calls it: a plain C interface to a few flocks.
 //!
 //! JSON goes in through [`input`] and comes out through [`text`]; numbers come out as columns of `f64`. A call that
-//! fails returns 0 (or −1 where it counts) and leaves the name of a parameter, if one is to blame, and a sentence as
-//! the text. The flocks are numbered, and each fails alone.
+//! fails returns 0 (−1 if it returns a count). The text is then a sentence, with the name of the parameter at fault,
+//! if there is one. The flocks are numbered, and each fails alone.
 
 mod describe;
 mod json;
@@ -84,7 +84,7 @@ pub extern "C" fn text() -> *const u8 {
     with(|page| page.text.as_ptr())
 }
 
-/// Number of bytes of that text.
+/// Number of bytes of the last call's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_length() -> usize {
     with(|page| page.text.len())
@@ -110,8 +110,8 @@ pub extern "C" fn check() -> u32 {
     })
 }
 
-/// Answers with the recorded quantities of the flock that was checked last, in a state: JSON with the lists `pose` and
-/// `velocity`, three numbers a boat; null for a quantity that is undefined.
+/// Answers with the recorded quantities of the flock that was checked last, in a state from JSON: the lists `pose` and
+/// `velocity`, three numbers per boat. An undefined quantity is null.
 #[unsafe(no_mangle)]
 pub extern "C" fn recorded() -> u32 {
     with(|page| {
@@ -219,8 +219,8 @@ pub extern "C" fn learn(branches: u32) -> u32 {
     })
 }
 
-/// The derived quantity at this index of the table, of boats with an order Ψ_o at an angle φ_o in rad and a target,
-/// clockwise for a positive sign; NaN for a quantity that depends on more.
+/// The derived quantity at this index of the table, for an order Ψ_o, its angle φ_o in rad, and a target that is
+/// clockwise if `sign` is positive. NaN for a quantity that depends on more.
 #[unsafe(no_mangle)]
 pub extern "C" fn derived(index: usize, psi_o: f64, phi_o: f64, sign: f64) -> f64 {
     let target = if sign < 0.0 {
@@ -242,7 +242,7 @@ pub extern "C" fn derived(index: usize, psi_o: f64, phi_o: f64, sign: f64) -> f6
     }
 }
 
-/// Keeps the heading of the leaders that the visitor steers, from the next control step on.
+/// Sets the heading of the leaders that the visitor steers, from the next control step on.
 #[unsafe(no_mangle)]
 pub extern "C" fn steer(flock: usize, heading: f64) -> u32 {
     with(|page| {
@@ -266,8 +266,8 @@ pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32
     })
 }
 
-/// Fills the columns of contacts and of a leader's observation, as they are now; a boat that is no leader observes
-///nothing.
+/// Fills the columns of contacts and of a leader's observation, as they are now. A boat that is not a leader observes
+/// nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
     with(|page| {
@@ -292,7 +292,7 @@ pub extern "C" fn column(flock: usize, column: usize) -> *const f64 {
     column_of(flock, column).0
 }
 
-/// Number of numbers in that column.
+/// Length of a column of a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn column_length(flock: usize, column: usize) -> usize {
     column_of(flock, column).1

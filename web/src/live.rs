@@ -24,7 +24,7 @@ pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
     all.filter(|each| !matches!(each.formula, Formula::Structure(_)))
 }
 
-/// Present values of [`quantities`]; NaN for those that a flock without normal boats does not have.
+/// Present values of [`quantities`]; NaN if the flock has no normal boats.
 fn measured(flock: &Flock) -> impl Iterator<Item = f64> {
     let recorded = flock.recorded(false).ok();
     let order = flock.order_parameters(false).ok();
@@ -95,8 +95,8 @@ impl Live {
         &mut self.columns
     }
 
-    /// Changes the flock to what is wanted, from where it is if that is possible, and otherwise from its start. Returns
-    /// whether it continued.
+    /// Changes the flock as requested. It continues from its present state if that is possible, and otherwise restarts.
+    /// Returns whether it continued.
     ///
     /// # Errors
     /// As for [`Live::new`]; the flock is unchanged then.
@@ -120,7 +120,7 @@ impl Live {
         }
         self.leaders = leaders;
         self.start_steering();
-        // Decisions of this time were made before the change.
+        // The decisions at this time were made before the change.
         let now = self.rudders();
         self.rudder = self.leaders.decide(&self.flock, &now, self.yours)?;
         Ok(true)
@@ -137,7 +137,7 @@ impl Live {
         self.rudder = is_held.then(|| held.unwrap_or(amidships));
     }
 
-    /// Keeps the heading that the visitor asks for, from the next decision on: clockwise from outward, over π.
+    /// Sets the heading that the visitor asks for, from the next decision on: clockwise from outward, over π.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a heading beyond −1 and 1.

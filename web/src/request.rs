@@ -7,7 +7,7 @@ use flockenv::parameters::{Field, FlockParameters, Preset};
 use flockenv::{FlockError, Result};
 use serde_json::{Map, Value as Json};
 
-/// Letters of a value that a message shows.
+/// Largest number of letters of a value in a message.
 const SHOWN: usize = 40;
 
 /// A request as JSON holds it. The seed is text: JavaScript has no whole numbers of 64 bits.
@@ -22,7 +22,7 @@ pub(crate) struct Written {
     parameters: Map<String, Json>,
 }
 
-/// A flock that is wanted.
+/// A requested flock.
 pub(crate) struct Request {
     /// Its parameters, checked.
     pub parameters: FlockParameters,
@@ -71,7 +71,7 @@ impl Request {
         Self::checked(written)
     }
 
-    /// A request that has been read.
+    /// Checks a request that was read from JSON.
     ///
     /// # Errors
     /// As for [`Self::read`].

@@ -13,7 +13,7 @@ const SEEDS: (u64, u64) = ((1 << 32) + (6 << 56), 1 << 24);
 /// Seeds of trainings.
 const RUNS: u64 = 1 << 32;
 
-/// A training as it is asked for: the flock with the training's seed, settings by name, and texts for the policy.
+/// A request for a training: the flock with the training's seed, settings by name, and texts for the policy.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
@@ -64,8 +64,8 @@ impl Training {
         self.trainer.advance(&|| true, 1)
     }
 
-    /// Flock-hours until now and at the end, whether that is reached, the physics of the flocks, and the policy of now as
-    /// a file's text.
+    /// Flock-hours so far and at the end, whether the end is reached, the flocks' physics, and the present policy as a
+    /// file's text.
     ///
     /// # Errors
     /// As for [`Trainer::law`].

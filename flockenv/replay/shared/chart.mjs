@@ -70,7 +70,7 @@ export class Chart {
     context.stroke();
   }
 
-  /** Draws the whole run from a kept picture, which changes only with the size, the series and the colors. */
+  /** Draws the whole run from a cached picture, which is drawn again only if the size, the series or the colors change. */
   #drawKept(context, quantity, palette) {
     const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
     if (this.cached?.key !== key) {
@@ -146,7 +146,7 @@ export class Chart {
   }
 }
 
-/** The line above a chart: the series' words, its value in each run at a time, and `hasMeans` its mean so far. */
+/** The line above a chart: the name of the series, its value in each run at a time and, with `hasMeans`, its mean so far. */
 export function legendOf(runs, quantity, time, hasMeans = false) {
   const parts = runs.map((run) => {
     const part = element("span", "value");
@@ -212,7 +212,7 @@ function drawLine(chart, context, run, column, color) {
   context.restore();
 }
 
-/** For each pixel the range of its samples, pale, and their mean. */
+/** Draws, for each pixel, the range of its samples in a pale color, and their mean. */
 function drawBand(chart, context, run, column, color) {
   const right = Math.min(chart.xOf(run.time.at(-1)), chart.width - EDGE.right);
   const means = [];

@@ -2,18 +2,18 @@
 
 import { roundNumber } from "./words.mjs";
 
-/** Length of the bar of the scale's force, and width of all bars but those of the greatest length, in widths of a hull. */
+/** Length of the bar of the scale's force, and width of all bars below the greatest length, in hull widths. */
 const [LENGTH, NARROWEST] = [0.5, 0.2];
-/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam are no line. */
+/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam do not join to one line. */
 const LONGEST = 0.45;
-/** Bars shorter than this part of a hull's width are left out. */
+/** Bars shorter than this fraction of a hull's width are left out. */
 const SHORTEST = 0.025;
 /** Largest number of forces that the scale is chosen from. */
 const MOST_SAMPLES = 20_000;
 
 /**
- * The force, in cm/s², that is drawn half as long as a hull is wide: a round number near what nine in ten contacts
- * stay below. The runs of a page share it.
+ * The force, in cm/s², that is drawn half as long as a hull is wide: a round number that about nine in ten
+ * contacts stay below. All runs of a page share it.
  */
 export function forceScale(runs) {
   const forces = [];
@@ -29,7 +29,7 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 is no bar. */
+/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 is not a bar. */
 export function barOf(force, scale, boat) {
   const [widths, longest] = [(LENGTH * force) / scale, LONGEST * boat];
   const length = widths < SHORTEST ? 0 : Math.min(widths, longest);
@@ -37,8 +37,8 @@ export function barOf(force, scale, boat) {
 }
 
 /**
- * Draws the bars of a sample. Each starts where hulls, or a hull and a wall, press, and lies on the boat that is
- * pushed, the way it is pushed.
+ * Draws the bars of a sample. Each starts at the contact and lies on the boat that is pushed, in the
+ * direction of the push.
  */
 export function drawForces(scene, sample, scale) {
   const { run } = scene;

@@ -10,12 +10,12 @@ export const cut = (text) => (text.length > SHOWN ? `${text.slice(0, SHOWN)}…`
 /** Says that a part of a link is ignored, and why. */
 export const ignoredPart = (key, text, why) => `The link's ${cut(key)}=${cut(text)} is ignored: ${why}.`;
 
-/** Brings the page's address up to date, soon after it is asked to. */
+/** Updates the page's address soon after a request. */
 export class LinkWriter {
   #link;
   #due = null;
 
-  /** `link`: returns the fragment as it should be then, or null for no change. */
+  /** `link` returns the new fragment, or null for no change. */
   constructor(link) {
     this.#link = link;
   }

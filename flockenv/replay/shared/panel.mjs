@@ -4,7 +4,7 @@ import { barOf } from "./forces.mjs";
 import { Scene } from "./scene.mjs";
 import { element, fixed, wrapped } from "./words.mjs";
 
-/** The motors' work in each phase of their cycle. */
+/** What the motors do in each phase of their cycle. */
 const PHASES = {
   fw: ["forward", "the motors drive the boats forward"],
   nop1: ["off", "the motors are off, and the boats drift forward"],
@@ -17,7 +17,7 @@ function targetWords(run, boat) {
   return run.targets ? ` ${run.targets[boat] === "cw" ? "↻ cw" : "↺ ccw"}` : "";
 }
 
-/** Colors of the leaders: the role, how many have it, and where they head. */
+/** A key of the leaders' colors: their role, number and target. */
 function leaderKey(run) {
   if (!run.targets) {
     return [["leader", run.leaders, ""]];
@@ -60,7 +60,7 @@ export function runSwitch(runs, show) {
 
 /** A run's canvas with everything around it. */
 export class Panel {
-  /** The boat and the size of the hole for which the card's place was chosen. */
+  /** The boat and the size of the hole for which the card's position was chosen. */
   #placed = "";
 
   constructor(run, index, several) {
@@ -219,7 +219,7 @@ export class Panel {
     this.#placeCard(boat);
   }
 
-  /** Puts the card into the hole of the pool if it fits, otherwise below the picture: never over the flock. */
+  /** Puts the card into the hole of the pool if it fits, otherwise below the picture, so that it never covers the flock. */
   #placeCard(boat) {
     const { card, canvas, scene } = this;
     const hole = (this.run.lengths.inner_radius_cm ?? 0) * scene.scale;
@@ -230,7 +230,7 @@ export class Panel {
       const copy = card.cloneNode(true);
       copy.className = "card inside";
       this.picture.append(copy);
-      // With some margin for longer numbers, which come later.
+      // With some margin for longer numbers that may follow.
       card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < 0.96 * hole);
       copy.remove();
     }

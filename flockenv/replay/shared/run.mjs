@@ -1,7 +1,7 @@
-// A run: the recording's numbers at each sample, and poses in between for the picture.
+// A run: the recording's numbers at each sample, and interpolated poses for the picture.
 
 export class Run {
-  /** `time`: the time of each sample in s, if it is no series in quanta. */
+  /** `time` has the time of each sample in s, unless it is a series in quanta. */
   constructor(described, columns, time = timesOf(columns.get("time_s"))) {
     Object.assign(this, described);
     this.columns = columns;
@@ -40,7 +40,7 @@ export class Run {
     return low;
   }
 
-  /** Poses at a time: [x, y, heading] a boat, on straight lines between samples; NaN for none. */
+  /** Poses at a time, [x, y, heading] for each boat, interpolated linearly between samples; NaN for a missing boat. */
   posesAt(time) {
     const sample = this.sampleAt(time);
     const next = Math.min(sample + 1, this.length - 1);
@@ -65,7 +65,7 @@ export class Run {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }
 
-  /** The kind of a boat in pictures; an opponent leads counter-clockwise while others lead clockwise. */
+  /** The kind of a boat in pictures. An opponent leads counter-clockwise while other leaders lead clockwise. */
   roleOf(boat) {
     if (boat >= this.leaders) {
       return "normal";
@@ -110,7 +110,7 @@ export class Run {
     return this.columns.get("in_analysis_window").at(sample) === 1;
   }
 
-  /** A leader's rudder command at a sample; undefined where it was not recorded. */
+  /** A leader's rudder command at a sample; undefined if it was not recorded. */
   rudder(boat, sample) {
     return boat < this.leaders ? this.columns.get("rudder")?.at(sample, boat) : undefined;
   }

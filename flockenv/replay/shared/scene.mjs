@@ -9,11 +9,11 @@ const TRAIL_PIECES = 6;
 const LAWS = ["paper-law", "damped-law", "tuned-law", "learned"];
 const OTHERS = ["run-1", "run-2"];
 
-/** Gives each run the color of the law that leads it, unless a run of another name has it. */
+/** Gives each run the color of the law that leads it, unless a run with another name has that color already. */
 export function giveColors(runs) {
   const taken = new Map();
   for (const run of runs) {
-    // At every substep or at every decision, it is the same law.
+    // It is the same law whether it acts at every substep or at every decision.
     const name = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
     const own = LAWS.filter((law) => law === name.replace("'s", "").replaceAll(" ", "-"));
     run.color = [...own, ...OTHERS].find((color) => (taken.get(color) ?? run.name) === run.name);
@@ -43,7 +43,7 @@ export function fitted(canvas) {
   return context;
 }
 
-/** The name of the color of a pose, which shows the direction in which a boat heads around the center. */
+/** The name of a boat's color by the direction in which it heads around the center. */
 export function tintOf([x, y, heading], circlesFrom) {
   // The sine of its angle in the local frame, clockwise from the outward direction.
   const along = Math.sin(Math.atan2(y, x) - heading);
@@ -88,7 +88,7 @@ export class Scene {
     }
     const isPresent = (k) => !Number.isNaN(this.poses[k][0]);
     for (let k = this.run.boats - 1; k >= 0; k -= 1) {
-      // A canvas ignores a position that is no number, and would draw the boat in its corner.
+      // A canvas ignores a position that is not a number, and would draw the boat in its corner.
       if (isPresent(k)) {
         this.#boat(k);
       }
@@ -153,7 +153,7 @@ export class Scene {
     this.center = [(left + right) / 2, (low + high) / 2];
     const reach = this.run.lengths.hull_radius_cm + this.run.lengths.hull_half_length_cm;
     const half = Math.max(right - left, high - low, 16 * reach) / 2 + 3 * reach;
-    // In steps, so that the picture does not breathe.
+    // The scale changes in steps, so that the picture does not constantly shrink and grow.
     this.scale = 2 ** (Math.floor(4 * Math.log2((0.42 * side) / half)) / 4);
   }
 
@@ -181,7 +181,7 @@ export class Scene {
     }
   }
 
-  /** Discs and walls, those that meet as one, and nothing beyond the pool's outer wall. */
+  /** Draws discs and walls, without lines where they overlap, and nothing beyond the pool's outer wall. */
   #obstacles(outer, wall) {
     const { context, palette, run } = this;
     context.save();
@@ -238,7 +238,7 @@ export class Scene {
     context.stroke();
   }
 
-  /** Most of a circle with a head at its end: the target. */
+  /** Draws the target: most of a circle, with an arrowhead at its end. */
   #arrow(radius) {
     const { context, palette } = this;
     const turn = this.run.target === "cw" ? 1 : -1;
@@ -286,7 +286,7 @@ export class Scene {
     context.globalAlpha = 1;
   }
 
-  /** Ring, if there is one, body and mark of a boat. */
+  /** Draws a boat's ring, if it has one, its body and its mark. */
   #colorsOf(boat) {
     const { palette, run } = this;
     const role = run.roleOf(boat);

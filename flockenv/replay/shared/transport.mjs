@@ -1,6 +1,6 @@
 // Playing and pausing: the time that passes between pictures, and the button that shows whether the page plays.
 
-/** A page in the background gets no frames; it continues where it was, after so many ms at most. */
+/** A page in the background gets no frames. Longer pauses than this, in ms, count as this long, so that it continues where it was. */
 const LONGEST_FRAME = 250;
 
 export class Transport {
@@ -27,7 +27,7 @@ export class Transport {
     this.#set(false);
   }
 
-  /** Forgets the time that has passed until now. */
+  /** Restarts the clock, so that the time until now does not count. */
   rest() {
     this.#before = performance.now();
   }

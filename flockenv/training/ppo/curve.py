@@ -26,7 +26,7 @@ def episodes_of(folder: Path) -> "pd.DataFrame":
     Parameters
     ----------
     folder
-        That of the training: its `FlockMonitor`'s files hold the ``signed_order``,
+        The training's folder: its `FlockMonitor` files hold the ``signed_order``,
         ``worst_overlap_cm`` and ``unsolved`` of each episode.
     """
     return load_results(str(folder))
@@ -40,9 +40,9 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     folder
         As for `episodes_of`.
     decisions_hz
-        Decisions per second, which turns lengths of episodes into hours.
+        Decisions per second, to convert lengths of episodes to hours.
     points
-        Number of means, each of equally many episodes.
+        Number of points, each the mean of equally many episodes.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def compare_with_laws(
     settings
         The settings that it was trained with.
     episodes
-        Number of flocks, each led for 8 minutes (`TrainingSettings.held_out`).
+        Number of held-out flocks (`TrainingSettings.held_out`), each led for 8 minutes.
 
     Returns
     -------

@@ -40,9 +40,9 @@ class Progress:
     Attributes
     ----------
     samples, total
-        Leaders' decisions now and at the end.
+        Number of leaders' decisions so far, and at the end.
     signed_order
-        Mean of the last episodes, in which leaders explore; None before the first end.
+        Mean of the last episodes, in which leaders explore; None before the first episode ends.
     """
 
     samples: int
@@ -104,7 +104,7 @@ def resume(
     Parameters
     ----------
     folder
-        The folder that `train` got.
+        The folder of the training.
     flock_hours
         When to stop; by default as in the folder's settings.
     report
@@ -113,7 +113,7 @@ def resume(
     Raises
     ------
     ParameterError
-        If there is no checkpoint, or it is damaged or of other settings.
+        If there is no checkpoint, or it is damaged or belongs to other settings.
     InUseError, TrainingError
         As for `train`.
     """
@@ -129,12 +129,12 @@ def resume(
                 with zipfile.ZipFile(file) as archive:
                     done = json.loads(archive.read("data"))["num_timesteps"]
             if type(done) is not int or done < 0 or done % (model.n_steps * venv.num_envs):
-                raise ValueError(f"{short_repr(done)} samples are no whole number of rollouts")
+                raise ValueError(f"{short_repr(done)} samples are not a whole number of rollouts")
             model.num_timesteps = done
         # zipfile, pickle and torch raise errors of several kinds for a damaged archive.
         except Exception as error:
             raise ParameterError(
-                f"{path} is no checkpoint of these settings: {type(error).__name__}: {error}"
+                f"{path} is not a checkpoint of these settings: {type(error).__name__}: {error}"
             ) from error
         return _advance(settings, folder, model, venv, report)
 
@@ -149,7 +149,7 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Keep other trainings out of a folder."""
+    """Lock a folder against other trainings."""
     try:
         held = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout as error:
@@ -164,7 +164,7 @@ def _locked(folder: Path) -> Iterator[None]:
 def _advance(
     settings: TrainingSettings, folder: Path, model: PPO, venv: LeaderVecEnv, report: Report
 ) -> PPO:
-    """Train a model from its present sample to the last one."""
+    """Train a model from its current number of samples to the total."""
     total, done = settings.samples(venv), model.num_timesteps
     rollouts = done // (model.n_steps * venv.num_envs)
     seeds = POLICY_SEEDS["training"]

@@ -60,9 +60,9 @@ class TrainingSettings:
     seed
         Seed of the training, from 0 to 2³² - 1.
     environment
-        Options of `flockenv.sb3.LeaderVecEnv` that differ from those of this training.
+        Options of `flockenv.sb3.LeaderVecEnv` that differ from this training's defaults.
     ppo
-        Options of stable-baselines3's ``PPO`` that differ from those of this training.
+        Options of stable-baselines3's ``PPO`` that differ from this training's defaults.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class TrainingSettings:
             raise ParameterError(f"flock_hours = {short_repr(hours)} is not accepted: above 0")
         for name in ("environment", "ppo"):
             if not isinstance(getattr(self, name), Mapping):
-                raise ParameterError(f"{name} = {short_repr(getattr(self, name))} is no table")
+                raise ParameterError(f"{name} = {short_repr(getattr(self, name))} is not a table")
         refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_OWN}, "option of PPO")
         POLICY_SEEDS["training"].seeds(1, as_int(self.seed, "seed"))
 
@@ -104,10 +104,10 @@ class TrainingSettings:
         }
 
     def held_out(self) -> FlockParameters:
-        """Return the flocks in which trained leaders are compared: the training's own kind.
+        """Return the parameters of the flocks in which trained leaders are compared.
 
-        They have its physics, and its changes of the flock. If it draws the noise from a range,
-        they have the critical one.
+        They have the training's physics and its other parameters. If the training draws the noise
+        from a range, they have the critical noise.
         """
         changed = dict(self.environment)
         if isinstance(changed.get("bw_s"), list | tuple):
@@ -121,7 +121,7 @@ class TrainingSettings:
         Raises
         ------
         ParameterError
-            For options that it does not take.
+            For options that the environment does not take.
         """
         times = _TIMES_S[self.pool]
         options = {
@@ -139,7 +139,7 @@ class TrainingSettings:
         return LeaderVecEnv(self.num_flocks, **{**options, **self.environment})
 
     def model(self, venv: Any) -> PPO:
-        """Return PPO before its first sample, on an environment of these settings.
+        """Return an untrained PPO model on an environment with these settings.
 
         Raises
         ------
@@ -170,7 +170,8 @@ class TrainingSettings:
             model = PPO(SharedNoisePolicy, venv, policy_kwargs=policy, seed=self.seed, **options)
         except (AssertionError, TypeError, ValueError) as error:
             raise ParameterError(f"PPO refuses its options: {error}") from error
-        # If the deviation were learned, weights with a small gradient would no longer be explored.
+        # If the standard deviation were learned, weights with a small gradient would soon not be
+        # explored.
         model.policy.log_std.requires_grad_(False)
         return model
 
@@ -211,6 +212,6 @@ class TrainingSettings:
         Raises
         ------
         ParameterError
-            For a file that cannot be read or is no TOML, and as `from_dict`.
+            For a file that cannot be read or is not TOML, and as `from_dict`.
         """
         return cls.from_dict(read_toml_file(path, str(path)))

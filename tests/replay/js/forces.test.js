@@ -29,7 +29,7 @@ test("the scale is a round number near what nine in ten forces stay below", () =
   const forces = Array.from({ length: 101 }, (_, k) => k);
   assert.equal(forceScale([runOf(forces)]), 50);
   assert.equal(forceScale([runOf([1, 1, 1]), runOf(forces)]), 50);
-  // Of two forces the stronger one is no typical one.
+  // Of two forces the stronger one is not a typical one.
   assert.equal(forceScale([runOf([4, 400])]), 2);
 });
 

@@ -19,6 +19,6 @@ test("series by name, channel and sample", async () => {
   assert.equal(columns.get("none").length, 0);
 });
 
-test("text that is no page's is refused", async () => {
+test("text that is not a page's is refused", async () => {
   await assert.rejects(unpack("A".repeat(40)));
 });

@@ -78,7 +78,7 @@ def test_resuming_reads_weights_and_the_optimizer(tiny: TrainingSettings, tmp_pa
 def test_damaged_checkpoints(tiny: TrainingSettings, tmp_path: Path, content: bytes) -> None:
     ppo.train(tiny, tmp_path)
     (tmp_path / "checkpoint.zip").write_bytes(content)
-    with pytest.raises(ParameterError, match="is no checkpoint of these settings"):
+    with pytest.raises(ParameterError, match="is not a checkpoint of these settings"):
         ppo.resume(tmp_path)
 
 
@@ -105,7 +105,7 @@ def test_a_checkpoint_after_no_whole_rollouts_is_refused(tiny, tmp_path, samples
     data = json.dumps({"num_timesteps": samples}).encode()
     say_in_checkpoint(tmp_path / "checkpoint.zip", data)
     before = sorted(each.name for each in tmp_path.iterdir())
-    with pytest.raises(ParameterError, match="are no whole number of rollouts"):
+    with pytest.raises(ParameterError, match="are not a whole number of rollouts"):
         ppo.resume(tmp_path)
     assert sorted(each.name for each in tmp_path.iterdir()) == before
 
@@ -147,7 +147,7 @@ def test_a_checkpoint_of_other_settings_is_refused(tiny: TrainingSettings, tmp_p
     ppo.train(tiny, tmp_path)
     policy = {"policy_kwargs": {"net_arch": {"pi": [], "vf": [16]}}}
     (tmp_path / "settings.toml").write_text(tiny.replace(ppo={**tiny.ppo, **policy}).to_toml())
-    with pytest.raises(ParameterError, match="is no checkpoint of these settings"):
+    with pytest.raises(ParameterError, match="is not a checkpoint of these settings"):
         ppo.resume(tmp_path)
     with pytest.raises(ParameterError, match="holds no checkpoint to resume"):
         ppo.resume(tmp_path / "nowhere")
