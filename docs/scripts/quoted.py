@@ -71,7 +71,7 @@ class Number:
             value = self.column(table)
         else:
             (value,) = table[self.column]
-        return format(value, self.form).replace("-", "−")
+        return format(value, self.form).replace("-", "−").replace(",", " ")
 
 
 def mean(column: str) -> Callable[[Any], float]:

@@ -6,9 +6,12 @@ A row below names the sentence and the cell. If one of them changes, somebody ed
 import math
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 
+import flockenv
+from docs.scripts import quoted_speed
 from docs.scripts.plots import REPOSITORY
 from docs.scripts.quoted import (
     DENSITY,
@@ -21,6 +24,18 @@ from docs.scripts.quoted import (
     plans,
     ranks_of_levels,
 )
+from docs.scripts.quoted_speed import (
+    CYCLE,
+    JAM,
+    LARGE,
+    LARGE_JAM,
+    MOREAU,
+    OURS,
+    RAPIER,
+    SPEED,
+    box2d,
+)
+from flockenv.statistics import critical_noise
 
 
 def readings_with_rise(rows: Any) -> int:
@@ -31,19 +46,16 @@ def readings_with_rise(rows: Any) -> int:
     return int((means.max(axis=1) - means[0.0] >= 0.3).sum())
 
 
-SPEED = "docs/speed_vs_error/"
-OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / 1e-4 cm", "dt_s": 0.01}
-MOREAU = OURS | {"setting": "moreau / block-pivoting / 1e-4 cm"}
-RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
-BOX2D = {"engine": "Box2D (f32)", "setting": "4 substeps / unit 10 cm", "dt_s": 0.01}
-JAM = {"scene": "jam", "n": 27, **OURS}
-CYCLE = JAM | {"scene": "cycle"}
-LARGE = {"scene": "jam", "n": 1000}
-LARGE_JAM = JAM | LARGE
-
 SECTION5 = "studies/section5/results/section5.csv.gz"
 WIDE = {"pool": "wide", "n_leaders": 0}
 LOST = {"quantity": "critical bw (s), k = 0"}
+PER_STEP = {"dt_s": 0.02, "scheme": "paper", "noise_scheme": "per-step"}
+LOST_IN = {
+    "simulation": {"dt_s": 0.02, "scheme": "leapfrog", "noise_scheme": "white"},
+    "paper, 0.1 cm": PER_STEP | {"overlap_tolerance_cm": 0.1},
+    "paper, 0.001 cm": PER_STEP | {"overlap_tolerance_cm": 0.001},
+}
+"""The readings whose loss of order the front page names."""
 COHERENCE = "mean Ψ_o with 3 clockwise leaders minus without, bw 1.4 to 2.0 s; read as at least 0.2"
 
 LEADERS = "studies/leaders/results/"
@@ -56,112 +68,6 @@ TRAININGS = "studies/trainings/results/pretrained/algorithms.csv"
 EARLY = "studies/trainings/results/pretrained/algorithms-500.csv"
 
 
-def throughput() -> list[Number]:
-    page, table = "docs/speed_vs_error.md", "docs/throughput/environments.csv"
-    rows = {pool: {"row": f"64 flocks, {pool}"} for pool in ("wide", "narrow")}
-
-    def agent_steps(rows: Any) -> float:
-        leaders = 4
-        return leaders * rows["median"].iloc[0] / 1e6
-
-    single = "step of a single environment over a flock's in a batch of 64, "
-    wide, narrow = ({"row": f"{single}{pool}"} for pool in ("wide", "narrow"))
-    return [
-        Number(page, "environment takes {} times as long", table, wide, "median", ".1f"),
-        Number(page, "in `wide` and {} times in `narrow`, by", table, narrow, "median", ".1f"),
-        Number(page, "That is {} and # million agent steps", table, rows["wide"], agent_steps),
-        Number(page, "That is # and {} million agent steps", table, rows["narrow"], agent_steps),
-    ]
-
-
-def box2d(rows: Any) -> float:
-    """Time of Box2D's step over ours."""
-    theirs, ours = (
-        rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["us_per_step"].item()
-        for row in (BOX2D, OURS)
-    )
-    return theirs / ours
-
-
-def speed() -> list[Number]:
-    """Times over those of other engines."""
-    page, table, threads = "docs/speed_vs_error.md", f"{SPEED}speed.csv", f"{SPEED}threads.csv"
-    found = [
-        Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
-        Number(page, "and {} µs if they move", table, CYCLE, "us_per_step", ".1f"),
-        Number(page, "rapier needs {} and # times", table, JAM, "faster", ".1f"),
-        Number(page, "rapier needs # and {} times", table, CYCLE, "faster", ".0f"),
-        Number(
-            page,
-            "10 000 boats runs {} times",
-            f"{SPEED}growth.csv",
-            {"n": 10_000},
-            "times_real_time",
-            ".1f",
-        ),
-        Number(
-            page,
-            "on one thread, in {} MB",
-            f"{SPEED}growth.csv",
-            {"n": 10_000},
-            lambda rows: rows["bytes"].item() / 1e6,
-            ".0f",
-        ),
-    ]
-    scenes = (("jam", 27, ".1f"), ("cycle", 27, ".0f"), ("jam", 1000, ".1f"))
-    cells = ("{} | # | #", "# | {} | #", "# | # | {}")
-    for cell, (scene, n, form) in zip(cells, scenes, strict=True):
-        row = {"scene": scene, "n": n}
-        found += [
-            Number(page, f"| rapier2d-f64 | 1 | {cell} |", table, row | OURS, "faster", form),
-            Number(page, f"| Box2D | 1 | {cell} |", table, row, box2d, form),
-        ]
-    drake = {"engine, setting": "Drake SAP"}
-    found += [
-        Number(page, words, f"{SPEED}short_engines.csv", drake, column, "g")
-        for words, column in (
-            ("takes them: a step takes {} µs", "jam, µs"),
-            ("in the jam and {} µs in the cycle", "cycle, µs"),
-        )
-    ]
-    engines = {"rapier2d-f64, `parallel`": "rapier2d-f64", "Box2D": "Box2D (f32)"}
-    for words, engine in engines.items():
-        for cell, (scene, n, form) in zip(cells, scenes, strict=True):
-            row = {"engine": engine, "scene": scene, "n": n}
-            words_of = f"| {words} | 2 | {cell} |"
-            found.append(Number(page, words_of, threads, row, "times_as_long", form))
-    paper = "docs/software/paper.md"
-    return [
-        *found,
-        Number(paper, "27 jammed boats take {} µs per step", table, JAM, "us_per_step", ".1f"),
-        Number(paper, "and {} times as long in rapier", table, JAM, "faster", ".1f"),
-    ]
-
-
-def overlap_rates() -> list[Number]:
-    """In how many runs overlaps are deep, by a tolerance and without one."""
-    page, table = "docs/speed_vs_error.md", f"{SPEED}overlap_rates.csv"
-    scenes = {
-        "cycle": "| cycle with bw = # s, a minute |",
-        "wide": "| `wide`, bw = # s, # s |",
-        "narrow": "| `narrow`, bw = # s, # s |",
-    }
-    shown = (
-        "{} | # cm | # | # cm",
-        "# | {} cm | # | # cm",
-        "# | # cm | {} | # cm",
-        "# | # cm | # | {} cm",
-    )
-    cells = ((1e-4, "beyond_0.0001_cm", "d"), (1e-4, "deepest_cm", "g"))
-    cells += ((math.inf, "beyond_0.1_cm", "d"), (math.inf, "deepest_cm", "g"))
-    return [
-        Number(page, f"{words} {place} |", table, row | {"tolerance_cm": cm}, column, form)
-        for scene, words in scenes.items()
-        for row in ({"scene": scene, "scheme": "leapfrog"},)
-        for place, (cm, column, form) in zip(shown, cells, strict=True)
-    ]
-
-
 def test_no_overlap_exceeds_the_tolerance_and_all_is_solved():
     rates = pd.read_csv(REPOSITORY / SPEED / "overlap_rates.csv")
     kept = rates[rates["tolerance_cm"] == 1e-4]
@@ -170,22 +76,6 @@ def test_no_overlap_exceeds_the_tolerance_and_all_is_solved():
     assert (kept[["beyond_0.0001_cm", "unsolved"]] == 0).all(axis=None)
     once = rates[rates["tolerance_cm"] == math.inf]
     assert (once["beyond_0.01_cm"] == once["runs"]).all()
-
-
-def steps() -> list[Number]:
-    """What a step of 0.1 s changes, by the study of the step."""
-    page, table = "docs/speed_vs_error.md", "studies/step_size/claims.csv"
-    at = "at dt = 0.1 s minus that at 0.005 s"
-    alone = {"reading": "20 boats in wide, no leaders, physics training", "quantity": f"Ψ_o {at}"}
-
-    def farthest(rows: Any) -> float:
-        shifts = rows[rows["quantity"].str.startswith("noise of the same")]
-        return shifts[["low", "high"]].abs().max(axis=None)
-
-    return [
-        *interval(page, "8 minutes show a change of {} at 0.1 s", table, alone, form=".3f"),
-        Number(page, "order is lost by at most {} s", table, {}, farthest),
-    ]
 
 
 def energy() -> list[Number]:
@@ -208,6 +98,57 @@ def energy() -> list[Number]:
         Number(page, "`paper` gained at most {} %", table, literal | {"c0_per_s": 0.0}, percent),
         Number(page, "in one, and {} % with drag", table, literal | {"c0_per_s": 1.0}, percent),
     ]
+
+
+def critical() -> list[Number]:
+    """The noise at which flocks of 27 boats lose their order."""
+    page, folder = "docs/model.md", "studies/critical_noise/results/"
+    scan, fitted = f"{folder}critical_noise.csv", f"{folder}critical_noise_experiment.csv"
+    wide = {"pool": "wide"}
+
+    def lost(place: int) -> Any:
+        def at(rows: Any) -> float:
+            levels = rows.groupby("bw_s")
+            groups = [own[["psi_o", "rotation"]].to_numpy() for _, own in levels]
+            return critical_noise(list(levels.groups), groups)[place]
+
+        return at
+
+    def noises(rows: Any) -> int:
+        return rows["bw_s"].nunique()
+
+    return [
+        Number(page, "their order at bw = {} s with it", scan, wide | {"preset": "paper"}, lost(0)),
+        Number(
+            page, "and at {} s with `simulation` (", scan, wide | {"preset": "simulation"}, lost(0)
+        ),
+        Number(page, "at each of {} noises, [numbers", scan, wide, noises, "d"),
+        Number(page, "it is {} s (95 % interval", fitted, {}, lost(0)),
+        Number(page, "(95 % interval {} to #; 8 runs", fitted, {}, lost(1)),
+        Number(page, "(95 % interval # to {}; 8 runs", fitted, {}, lost(2)),
+        Number(page, "at each of {} noises; [study", fitted, {}, noises, "d"),
+    ]
+
+
+def room(pool: str, boat_radius_cm: float = 5.0) -> int:
+    """Hulls that the water of a pool has room for by their length and width."""
+    outer, inner = flockenv.FlockParameters.preset("simulation").replace(pool=pool).pool_radii_cm
+    return int(math.pi * (outer**2 - inner**2) / (2 * boat_radius_cm * 3 * boat_radius_cm))
+
+
+def test_pools_have_the_room_that_the_model_names():
+    page = (REPOSITORY / "docs/model.md").read_text("utf-8")
+    assert f"`wide` has room for {room('wide')} boats, `narrow` for {room('narrow')}." in page
+    assert f"It also has room for {room('narrow', 2.5)} boats" in page
+
+
+def test_a_free_boat_moves_backward_from_the_bw_that_the_model_names():
+    """Eq. (8) on paper: ahead at full speed for 2 s from rest, adrift for 1 s, then backing."""
+    p = flockenv.FlockParameters.preset("simulation")
+    speed = (1 - math.exp(-p.c0 * p.fw_s)) * math.exp(-p.c0 * p.nop1_s)
+    stops_s = math.log(1 + speed) / p.c0
+    page = (REPOSITORY / "docs/model.md").read_text("utf-8")
+    assert f"moves backward only if bw exceeds {stops_s:.3f} s." in page
 
 
 def test_drag_leaves_contacts_no_energy_to_add():
@@ -307,8 +248,56 @@ def readme() -> list[Number]:
     ]
 
 
+def lower_orders(rows: Any) -> pd.Series:
+    """By how many s order is lost later where that means a mean Ψ_o below 0.3."""
+    middle = pd.read_csv(REPOSITORY / "studies/section5/claims.csv")
+    own = rows[(rows["n_boats"] == 20) & (rows["n_leaders"] == 0) & (rows["pool"] == "wide")]
+    found = {}
+    for reading, row in LOST_IN.items():
+        runs = own[(own[list(row)] == pd.Series(row)).all(axis=1)]
+        psi_o = runs.groupby("bw_s")["psi_o"].mean()
+        last = psi_o[psi_o >= 0.3].index[-1]
+        ends = psi_o.loc[last:].iloc[:2]
+        crossing = np.interp(-0.3, -ends.to_numpy(), ends.index.to_numpy())
+        is_own = (middle["reading"] == f"{reading}, n = 20") & (
+            middle["quantity"] == LOST["quantity"]
+        )
+        found[reading] = crossing - middle[is_own]["measured"].iloc[0]
+    return pd.Series(found)
+
+
 def readme_of_studies(page: str) -> list[Number]:
+    quiet = {"pool": "wide", "n_boats": 20, "c4": 0.0}
+
+    def jammed(rows: Any) -> float:
+        return 100 * rows["jammed"].mean()
+
     return [
+        *(
+            Number(
+                page,
+                words,
+                "studies/density/results/quiet.csv",
+                quiet | {"preset": preset},
+                jammed,
+                ".0f",
+            )
+            for words, preset in (
+                ("20 boats jam in {} % of the frames with the default", "simulation"),
+                ("in # % of the frames with the default scheme, and in {} % with", "paper"),
+            )
+        ),
+        Number(
+            page, "would be {} to # s higher", SECTION5, {}, lambda rows: lower_orders(rows).min()
+        ),
+        Number(
+            page,
+            "would be # to {} s higher",
+            SECTION5,
+            {},
+            lambda rows: lower_orders(rows).max(),
+            ".1f",
+        ),
         Number(
             page,
             "50 boats in `wide` by # or more in {} of",
@@ -428,11 +417,9 @@ def lessons() -> list[Number]:
 
 NUMBERS = [
     *readme(),
-    *speed(),
-    *throughput(),
+    *quoted_speed.every(),
     *energy(),
-    *overlap_rates(),
-    *steps(),
+    *critical(),
     *levels(),
     *easy_branches(),
     *leaders("README.md"),
@@ -442,6 +429,74 @@ NUMBERS = [
     *trainings(),
     *lessons(),
 ]
+
+
+def ratio(table: str, column: str, one: dict[str, Any], other: dict[str, Any]) -> float:
+    """A cell of a table over another one."""
+    rows = pd.read_csv(REPOSITORY / table)
+    cells = [rows[(rows[list(row)] == pd.Series(row)).all(axis=1)] for row in (one, other)]
+    return cells[0][column].item() / cells[1][column].item()
+
+
+def solving(boats: int) -> float:
+    """The share of a step in which contacts are solved."""
+    row = pd.read_csv(REPOSITORY / SPEED / "profile.csv").set_index("n").loc[boats]
+    return row["solve_us"] / row["whole_us"]
+
+
+@pytest.mark.parametrize(
+    ("words", "fraction", "found"),
+    [
+        (
+            "1e-6 cm leaves three fifths of the error at 0.01 s",
+            3 / 5,
+            ratio(
+                f"{SPEED}slide.csv",
+                "slide_median_cm",
+                OURS | {"tolerance_cm": 1e-6, "setting": OURS["setting"].replace("1e-4", "1e-6")},
+                OURS,
+            ),
+        ),
+        (
+            "instructions per boat and step grow by a third in the jam",
+            4 / 3,
+            ratio(
+                "benches/instructions.csv",
+                "per boat and substep",
+                {"scene": "jam of 1000"},
+                {"scene": "jam of 27"},
+            ),
+        ),
+        ("takes three fifths of the time of 27 boats in a jam", 3 / 5, solving(27)),
+        ("in a jam, and half of that of 1000", 1 / 2, solving(1000)),
+    ],
+)
+def test_a_fraction_in_words_is_that_of_the_data(words: str, fraction: float, found: float):
+    assert words in (REPOSITORY / quoted_speed.PAGE).read_text("utf-8")
+    assert found == pytest.approx(fraction, abs=0.05)
+
+
+def test_two_of_eleven_settings_change_the_order():
+    """And the setting of trainings lies within three standard errors."""
+    page = (REPOSITORY / quoted_speed.PAGE).read_text("utf-8")
+    assert "Of eleven settings of `leapfrog` and `moreau` two show a change" in page
+    rows = pd.read_csv(REPOSITORY / SPEED / "order.csv")
+    kept = rows["scheme"].isin(["leapfrog", "moreau"]) & (rows["psi_o_half_width"] > 0)
+    ours = rows[kept & (rows["first_seed"] == 1)]
+    assert len(ours) == 11
+    assert (ours["psi_o_error"].abs() > ours["psi_o_half_width"]).sum() == 2
+    training = ours[(ours["dt_s"] == 0.1) & (ours["tolerance_cm"] == 1e-4)].iloc[0]
+    for name in ("psi_o_{}", "c_v_{}_cm2_s2"):
+        error, half = (training[name.format(each)] for each in ("error", "half_width"))
+        # Half a 95 % interval is two standard errors or more.
+        assert abs(error) < 1.5 * half
+
+
+def test_three_million_control_steps_kept_the_tolerance():
+    runs = pd.read_csv(REPOSITORY / "docs/throughput/soak.csv")
+    assert runs["control_steps"].sum() >= 3_000_000
+    assert (runs["worst_overlap_cm"] <= runs["tolerance_cm"]).all()
+    assert (runs[["unsolved", "solver_errors"]] == 0).all(axis=None)
 
 
 @pytest.mark.parametrize("number", NUMBERS, ids=lambda number: f"{number.page}: {number.words}")
