@@ -41,18 +41,17 @@ class Settings:
     """Settings of the training."""
 
     pool: str = "wide"
-    #: Groups, flocks of a group, and how many s they branch.
+    #: Number of groups, flocks per group, and length of a branch in s.
     groups: int = 16
     size: int = 8
     branch_s: int = 60
-    #: The order counts in this last part of a branch: before, it may answer the wrong way.
+    #: Only the order in this last part of a branch counts; before, it may respond the wrong way.
     judged_s: int = 30
     episode_s: int = 480
-    #: Standard deviation of the weights that explore, and the learning rate at the start: it
-    #: falls to 0.
+    #: Standard deviation of the explored weights, and the initial learning rate, which falls to 0.
     sigma: float = 0.1
     learning_rate: float = 2e-3
-    #: Passes over the decisions of all branches, and parts of each pass.
+    #: Passes over the decisions of all branches, and minibatches in each pass.
     epochs: int = 4
     parts: int = 4
     clip_range: float = 0.2

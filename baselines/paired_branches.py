@@ -42,14 +42,13 @@ class Settings:
     """Settings of the search."""
 
     pool: str = "wide"
-    #: Pairs of flocks, and how many s they stay paired.
+    #: Number of pairs of flocks, and length of a branch in s.
     pairs: int = 64
     branch_s: int = 64
-    #: The order counts in this last part of a branch: before, it may answer the wrong way.
+    #: Only the order in this last part of a branch counts; before, it may respond the wrong way.
     judged_s: int = 32
     episode_s: int = 480
-    #: Standard deviation of the changes of a weight, and the learning rate at the start: it falls
-    #: to 0.
+    #: Standard deviation of a weight's changes, and the initial learning rate, which falls to 0.
     sigma: float = 0.2
     learning_rate: float = 0.01
 

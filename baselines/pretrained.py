@@ -60,14 +60,14 @@ class Settings:
     """Everything that the policies depend on."""
 
     seeds: tuple[int, ...] = tuple(range(8))
-    #: The flocks of PPO: numbers of leaders are dealt out in turn.
+    #: Flocks of a PPO training; the numbers of leaders are dealt out to them in turn.
     environment: Mapping[str, Any] = field(default_factory=lambda: {"n_leaders": [1, 2, 3, 4]})
     #: Flock-hours of each training.
     wide_hours: float = 1100.0
     kept_hours: float = 500.0
     narrow_hours: float = 400.0
     num_flocks: int = 128
-    #: Number of validation flocks for each of one to four leaders, and of flocks that judge.
+    #: Number of validation flocks for each number of leaders, one to four, and of judging flocks.
     validation_flocks: int = 128
     judging_flocks: int = 512
     episode_s: float = 480.0
@@ -147,7 +147,7 @@ def search_narrow(given: Settings, seed: int, folder: Path, _command: str) -> Le
 
 
 MAKERS: dict[str, Any] = {"wide": train_wide, "narrow": search_narrow}
-#: How the leans of each are bounded.
+#: How each pool's policy bounds its leans.
 BOUND = {"wide": "tanh", "narrow": "clip"}
 
 

@@ -65,7 +65,7 @@ class HintsAtNames:
     """An object whose error for a missing attribute suggests the right name."""
 
     __slots__ = ()
-    #: Answers to words of other libraries, for the error.
+    #: Hints for names that other libraries use.
     _meanings: ClassVar[Mapping[str, str]] = {}
 
     # Hidden from type checkers, which would accept any name as an attribute.

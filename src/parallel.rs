@@ -6,12 +6,12 @@ use std::process::id;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// The process that rayon's own threads live in.
+/// Number of the process to which rayon's own threads belong.
 static FIRST_PROCESS: OnceLock<u32> = OnceLock::new();
-/// Threads of a forked child, and the child they live in.
+/// Threads of a forked child, with the number of that process.
 static FORKED: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
 
-/// Notes that rayon's own threads live in this process, in case other code starts them.
+/// Records that rayon's own threads belong to this process. Other code may start them before the first [`map`].
 #[cfg(feature = "python")]
 pub(crate) fn note_process() {
     FIRST_PROCESS.get_or_init(id);
@@ -63,7 +63,8 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync 
 /// How often a thread yields while it waits for another's last item, before it sleeps.
 const MOST_YIELDS: u32 = 1000;
 
-/// Does part 0 of some work here and the other parts on other threads, and counts how many of them help.
+/// Does part 0 of some work on this thread and the other parts on other threads. `helpers` counts the other threads
+/// that are at work.
 fn share<'scope>(
     scope: &Scope<'scope>,
     parts: usize,
@@ -78,7 +79,7 @@ fn share<'scope>(
         });
     }
     work(0);
-    // Another thread finishes its last item sooner than this thread would be woken.
+    // Waiting is cheaper than sleeping: another thread finishes its last item sooner than this thread would be woken.
     let mut patience = MOST_YIELDS;
     while helpers.load(Ordering::Acquire) > 0 && patience > 0 {
         std::thread::yield_now();

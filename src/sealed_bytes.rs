@@ -15,7 +15,7 @@ pub(crate) type Magic = [u8; 8];
 pub(crate) fn seal<T: Serialize>(magic: &Magic, state: &T) -> Vec<u8> {
     let mut bytes = magic.to_vec();
     bytes.extend_from_slice(&[0; 8]);
-    // Writing to a Vec fails only if memory runs out, and then the allocator has ended the process.
+    // Writing to a Vec fails only if memory runs out, and then the allocator ends the process.
     let bytes = postcard::to_extend(state, bytes);
     debug_assert!(bytes.is_ok(), "{:?}", bytes.err());
     let mut bytes = bytes.unwrap_or_default();
@@ -57,7 +57,7 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
 }
 
 thread_local! {
-    /// Why content was refused; postcard's errors drop their message.
+    /// The reason why content was refused. It is kept here because postcard's errors drop their message.
     static REASON: Cell<Option<String>> = const { Cell::new(None) };
 }
 

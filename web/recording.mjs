@@ -36,7 +36,7 @@ function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps =
     const width = shape.length === 3 ? shape[2] : 1;
     const isWhole = array.values.every((value, k) => Number.isNaN(value) === Number.isNaN(array.values[k - (k % width)]));
     if (!isWhole || array.values.some((value) => Math.abs(value) === Infinity)) {
-      refuse(`${name} must be finite, but for boats that are not there`);
+      refuse(`${name} must be finite, except for missing boats`);
     }
   } else if (!array.values.every(isUndefined ? Number.isNaN : Number.isFinite)) {
     refuse(`${name} must be ${isUndefined ? "undefined (NaN)" : "finite"}`);

@@ -34,7 +34,7 @@ def apply(page: str, tree: Path) -> list[str]:
         if block["new"]:
             path = tree / block["new"]
             if path.exists():
-                raise PageError(f"{block['new']} is there already")
+                raise PageError(f"{block['new']} already exists")
             path.write_text(text, encoding="utf-8")
         elif block["language"] == "diff":
             first, _, rest = text.partition("\n")

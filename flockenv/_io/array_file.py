@@ -17,7 +17,7 @@ _MOST_BYTES = 16 << 30
 _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
-def most_held(size: int) -> int:
+def most_content(size: int) -> int:
     """Return the largest number of bytes that the entries of a file of this size may hold.
 
     Compression makes the numbers of a run at most ten times smaller, but zeros a thousand times.
@@ -37,7 +37,7 @@ def write_arrays(
     with atomic_write(path) as file:
         if compressed:
             np.savez_compressed(file, allow_pickle=False, **dict(arrays))
-        if not compressed or held > most_held(file.tell()):
+        if not compressed or held > most_content(file.tell()):
             file.seek(0)
             file.truncate()
             np.savez(file, allow_pickle=False, **dict(arrays))
@@ -53,7 +53,7 @@ def read_arrays(
     default is a hundred times the file's size, but at least 64 MiB and at most 16 GiB.
     """
     with open_plain(path) as file:
-        most = most_bytes or most_held(os.fstat(file.fileno()).st_size)
+        most = most_bytes or most_content(os.fstat(file.fileno()).st_size)
         try:
             with zipfile.ZipFile(file) as archive:
                 held = sum(entry.file_size for entry in archive.infolist())

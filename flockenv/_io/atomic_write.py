@@ -47,7 +47,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
         raise
     try:
         with file:
-            _keep_access(target, file)
+            _copy_mode(target, file)
             yield file
             file.flush()
             os.fsync(file.fileno())
@@ -78,7 +78,7 @@ def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
         _temporary.discard(temporary)
 
 
-def _keep_access(target: Path, file: IO[bytes]) -> None:
+def _copy_mode(target: Path, file: IO[bytes]) -> None:
     """Give a new, empty file the mode of the one that it will replace."""
     if fcntl is None or not target.exists():
         return

@@ -37,7 +37,7 @@ class Command(typer.core.TyperCommand):
                 if type(error).__name__ != "NoSuchOption" or not name.startswith("--"):
                     raise
                 known = [spelling for parameter in self.params for spelling in parameter.opts]
-                raise ParameterError(_answer(words, name, known)) from None
+                raise ParameterError(_suggestion(words, name, known)) from None
             _refuse_repeated(order, {word.partition("=")[0] for word in args})
         try:
             return super().parse_args(ctx, list(args))
@@ -71,7 +71,7 @@ def _refuse_repeated(order: Sequence[Any], given: Set[str]) -> None:
             raise ParameterError(f"{parameter.opts[0]} is given twice: give it once")
 
 
-def _answer(words: Sequence[str], unknown: str, known: list[str]) -> str:
+def _suggestion(words: Sequence[str], unknown: str, known: list[str]) -> str:
     """Return a suggestion for an unknown option of a line."""
     index = [word.partition("=")[0] for word in words].index(unknown)
     given, equals, value = words[index].partition("=")

@@ -92,11 +92,11 @@ class Plan:
     """A comparison, checked before anything runs."""
 
     cases: list[Case]
-    #: For each case its policies by name, the user's first.
+    #: The policies of each case by name, the user's first.
     policies: dict[str, dict[str, Steers]]
     #: The names of the user's policies.
     own: list[str]
-    #: Flock-hours that made the user's policies, as far as a suite asks for them.
+    #: Flock-hours that went into each of the user's policies, if a suite asks for them.
     spent: dict[str, float]
 
     @classmethod
@@ -134,7 +134,7 @@ def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float
         name: [*given.values()] if isinstance(given, Mapping) else [given]
         for name, given in own.items()
     }
-    files = [name for name, names in parts.items() if any(map(_is_made, names))]
+    files = [name for name, names in parts.items() if any(map(_is_user_made, names))]
     if len(hours) != len(files):
         raise ParameterError(
             f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
@@ -143,7 +143,7 @@ def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float
     return dict(zip(files, hours, strict=True))
 
 
-def _is_made(given: str) -> bool:
+def _is_user_made(given: str) -> bool:
     """Return whether a policy is the user's own file or object, and so took flock-hours to make."""
     return given.endswith(FILES) or (":" in given and "=" not in given)
 

@@ -62,12 +62,12 @@ def load_recording(
         for line in checks:
             echo(f"  {line}", errors)
 
-    def say_and_report(found: "TrackReport") -> None:
+    def print_and_report(found: "TrackReport") -> None:
         if not quiet:
             echo(f"{printable(path)}: {found}", errors)
         report(found)
 
-    return read_tracks(path, None if layout is None else read_layout(layout), say_and_report)
+    return read_tracks(path, None if layout is None else read_layout(layout), print_and_report)
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:
@@ -82,7 +82,7 @@ def prepare(*paths: Path, overwrites: bool = True) -> None:
                 raise ParameterError(f"{path} cannot be written: it is a folder")
             check_writable(path)
             if path.exists() and not overwrites:
-                raise ParameterError(f"{path} is there already: --force overwrites it")
+                raise ParameterError(f"{path} already exists: --force overwrites it")
             path.parent.mkdir(parents=True, exist_ok=True)
             with TemporaryFile(dir=path.parent):
                 pass

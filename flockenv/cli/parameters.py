@@ -16,7 +16,7 @@ from flockenv.parameters import FlockParameters
 class Flocks:
     """Options for the parameters of a flock."""
 
-    #: The fields that have options of their own.
+    #: The fields that have their own options.
     named: ClassVar[tuple[str, ...]] = ("n_boats",)
 
     preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")

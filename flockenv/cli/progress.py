@@ -12,7 +12,7 @@ from flockenv._io.interrupts import INTERRUPTED, end_if_interrupted, noted_inter
 from flockenv.cli.console import echo, errors
 
 
-def held_by(folder: Path) -> str:
+def checkpoint_note(folder: Path) -> str:
     """Return the sentence that says where an interrupted training left its checkpoint."""
     return f"{folder} holds the last checkpoint: --resume continues from it."
 

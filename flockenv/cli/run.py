@@ -66,7 +66,7 @@ def run(options: RunOptions) -> None:
         raise ParameterError("--minutes 0 is not accepted: more than 0, as in --minutes 0.1")
     parameters = options.parameters()
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
-    out = options.out or _free(_OUT)
+    out = options.out or _free_path(_OUT)
     beside = out.with_suffix(".toml")
     _check_no_other_file(beside)
     prepare(out, beside, overwrites=options.force)
@@ -100,7 +100,7 @@ def _check_no_other_file(beside: Path) -> None:
     """Refuse to replace, even with --force, a TOML file that no run wrote: a sweep's, or yours."""
     if beside.is_file() and not _OF_A_RUN.match(beside.read_bytes()):
         raise ParameterError(
-            f"{beside} is there already, and no run wrote it: --out needs another name, since the "
+            f"{beside} already exists, and no run wrote it: --out needs another name, since the "
             "parameters are written beside the recording"
         )
 
@@ -120,7 +120,7 @@ def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
     return changes
 
 
-def _free(path: Path) -> Path:
+def _free_path(path: Path) -> Path:
     """Return the path, or, if a run is there, the path with the first free number from 2 on."""
     numbered = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
     paths = chain([path], numbered)

@@ -156,8 +156,8 @@ def _check_same(path: Path, work: "SweepSpec") -> None:
         is_same = False
     if not is_same:
         raise ParameterError(
-            f"{path} is there already, of another sweep: name another folder with --out, or "
-            "replace its table with --force"
+            f"{path} already exists and belongs to another sweep: name another folder with --out, "
+            "or replace its table with --force"
         )
 
 

@@ -8,7 +8,7 @@ from flockenv._io.atomic_write import write_csv
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option, option_of, takes
 from flockenv.cli.parameters import changed_fields
-from flockenv.cli.progress import held_by, progress
+from flockenv.cli.progress import checkpoint_note, progress
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.policies.names import TUNED_LAW
 from flockenv.statistics import paired_difference
@@ -49,7 +49,7 @@ class TrainOptions(Printing):
             )
 
     def settings(self) -> dict[str, object]:
-        """Return the settings of the training that were given."""
+        """Return the training's settings that the user has set."""
         environment = changed_fields(self.change or [])
         for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):
             if value is not None and environment.setdefault(name, value) is not value:
@@ -104,7 +104,7 @@ def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "Trai
     from flockenv.training import ppo
 
     out = options.out
-    quiet, kept = options.shows_nothing, held_by(out)
+    quiet, kept = options.shows_nothing, checkpoint_note(out)
     with progress("training", 1.0, quiet, ends=False, kept=kept) as advance:
         reported = 0.0
 

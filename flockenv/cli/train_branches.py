@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from flockenv._io.atomic_write import write_text
 from flockenv.cli.console import echo, errors, print_json
 from flockenv.cli.options import Printing, option_of
-from flockenv.cli.progress import held_by
+from flockenv.cli.progress import checkpoint_note
 from flockenv.comparison.report import overlap_note
 from flockenv.errors import ParameterError, refuse_unknown
 from flockenv.parameters import FlockParameters
@@ -51,7 +51,7 @@ def train_branches(
     try:
         policy = train(training, out, command, _lines(printing.shows_nothing))
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(held_by(out)) from None
+        raise KeyboardInterrupt(checkpoint_note(out)) from None
     compared = compare_with_laws(policy, training.parameters, flocks)
     orders = {name: columns["signed_order"] for name, columns in compared.items()}
     _write(out, training, orders)

@@ -31,8 +31,8 @@ class Case:
     episode_s: float = 480.0
     #: Options of the environment that differ from its defaults.
     environment: Mapping[str, object] = field(default_factory=dict)
-    #: Targets that the seeds take in turn, in place of the parameters' target. The signed order
-    #: counts towards the target of leader 0.
+    #: Targets that the seeds use in turn instead of the parameters' target. The signed order is
+    #: towards the target of leader 0.
     targets: tuple[object, ...] = ()
 
     def __post_init__(self) -> None:

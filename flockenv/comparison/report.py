@@ -40,7 +40,7 @@ class ComparisonReport:
     """Results of policies in some cases (extra ``plot``)."""
 
     cases: Sequence[Case]
-    #: Names of policies; those whose differences are wanted come first.
+    #: Names of policies, the user's first.
     policies: Sequence[str]
     #: One row per episode: the rows of `Case.run` of all cases.
     runs: "pd.DataFrame"

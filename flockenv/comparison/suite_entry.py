@@ -45,10 +45,10 @@ _LONGEST_TEXT = 200
 class Training:
     """A policy of an entry."""
 
-    #: As the entry names it.
+    #: The policy as the entry names it.
     given: str
     policy: Policy
-    #: Provenance stored in its file: short texts by name.
+    #: Provenance in the policy's file: short texts by name.
     provenance: Mapping[str, str]
 
 

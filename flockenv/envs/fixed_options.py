@@ -41,13 +41,13 @@ class FixedOptions:
         words = _refusal(name, self._next_episode)
         is_own = name in vars(self).get("_names_of_subclass", ())
         if name not in self._kept:
-            subclasses = takewhile(_is_of_a_user, type(self).__mro__)
+            subclasses = takewhile(_is_user_defined, type(self).__mro__)
             is_own = is_own or any(name in vars(subclass) for subclass in subclasses)
         if words is not None and not is_own:
             raise AttributeError(words)
 
 
-def _is_of_a_user(cls: type) -> bool:
+def _is_user_defined(cls: type) -> bool:
     return not cls.__module__.startswith("flockenv.")
 
 

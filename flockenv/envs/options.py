@@ -63,7 +63,7 @@ NAMES = (
 ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
 """Arguments of constructors and resets that users may mistake for options."""
 
-#: Used if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
+#: Defaults if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
 #: leaders.
 _DEFAULTS = {"n_boats": 27, "n_leaders": 3}
 
@@ -74,7 +74,7 @@ class EnvOptions:
 
     parameters: FlockParameters
     settings: dict[str, Any]
-    #: A function of the environment, instead of the core's rewards.
+    #: A user's function of the environment that replaces the core's rewards.
     own_reward: Callable[[Any], ArrayLike] | None = None
 
     @classmethod
@@ -98,7 +98,7 @@ class EnvOptions:
             # TorchRL looks for these words.
             raise UnknownOptionError(
                 f"got an unexpected keyword argument {name!r}, which is not an option of the "
-                f"environment: {_instead(name, counts)}"
+                f"environment: {_suggestion(name, counts)}"
             )
         given: dict[str, Any] = {name: listed(value) for name, value in options.items()}
         own_reward = _pop_function(given)
@@ -139,7 +139,7 @@ def _pop_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
     return function
 
 
-def _instead(name: str, counts: str | None) -> str:
+def _suggestion(name: str, counts: str | None) -> str:
     """Return a suggestion for an unknown option."""
     if name in ("max_cycles", "max_steps", "max_episode_steps", "horizon", "time_limit"):
         return "an episode lasts 'episode_s' seconds, with 'control_hz' steps in each"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from flockenv.flock import Flock
 
-#: Render modes of the environments with one flock; those with many have "rgb_array" alone.
+#: Render modes of environments with one flock; environments with many have only "rgb_array".
 RENDER_MODES = ("human", "rgb_array")
 
 

@@ -162,7 +162,7 @@ class _Deciding:
     policy: Policy
     leaders: list[int]
     state: object = None
-    #: Control steps from one decision to the next, and until the next one.
+    #: Control steps between two decisions, and control steps left until the next one.
     period: int = 1
     wait: int = 0
     held: NDArray[np.float64] | None = None

@@ -85,9 +85,9 @@ class ModelPolicy:
                 "a model that was trained in VecNormalize and loaded without it is not accepted: "
                 "load it with env = VecNormalize.load(...), which holds the statistics"
             )
-        self._take(model, space, model.action_space, provenance)
+        self._set_model(model, space, model.action_space, provenance)
 
-    def _take(
+    def _set_model(
         self,
         model: Any,
         space: "ObservationSpace",

@@ -336,7 +336,7 @@ def _checked_layers(
         )
     layers, inputs = [], size
     for index, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix, vector = (_singles(one, f"layer {index}") for one in (weight, bias))
+        matrix, vector = (_as_float32(one, f"layer {index}") for one in (weight, bias))
         wanted = 1 if index == count - 1 else vector.size
         if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
             seen = f": one leader observes {size} numbers" if index == 0 else ""
@@ -359,7 +359,7 @@ def _checked_norm(
         return None
     if len(items(given, name)) != 3:
         raise ParameterError(f"{name} is not accepted: scale, shift and a number")
-    scale, shift = (_singles(one, name) for one in given[:2])
+    scale, shift = (_as_float32(one, name) for one in given[:2])
     epsilon = float(number(given[2], name))
     if not (scale.shape == shift.shape == (size,) and 0.0 <= epsilon < math.inf):
         raise ParameterError(
@@ -371,7 +371,7 @@ def _checked_norm(
     return scale, shift, epsilon
 
 
-def _singles(values: ArrayLike, name: str) -> NDArray[np.float32]:
+def _as_float32(values: ArrayLike, name: str) -> NDArray[np.float32]:
     """Return real numbers as float32; numbers beyond its range are infinite."""
     found = real_numbers(values, name)
     if found.dtype.kind == "b" or np.ma.is_masked(found):

@@ -116,21 +116,21 @@ def _source(given: PolicyLike, pool: Pool | None, trust: bool) -> LeaderPolicy |
         try:
             made = made()
         except TypeError as error:
-            raise _no_policy(made) from error
+            raise _not_a_policy(made) from error
     made = as_policy(made)
     if isinstance(made, type) or not isinstance(made, LeaderPolicy):
-        raise _no_policy(made)
+        raise _not_a_policy(made)
     return made
 
 
-def _no_policy(found: object) -> ParameterError:
+def _not_a_policy(found: object) -> ParameterError:
     words = "a policy's name or file, an object with predict, or a function that returns one"
     if hasattr(found, "state_dict"):
         words += "; a network of torch becomes one by NetworkPolicy.from_module"
     return ParameterError(f"policy = {short_repr(found)} is not accepted: {words}")
 
 
-def _no_name(name: str) -> ParameterError:
+def _unknown_name(name: str) -> ParameterError:
     parts = [part.strip() for part in name.split(",")]
     near = nearest(name, NAMES)
     if len(parts) > 1 and set(parts) <= {*NAMES}:
@@ -143,7 +143,7 @@ def _no_name(name: str) -> ParameterError:
 def _attribute(name: str, trust: bool) -> object:
     """Return the object ``"module:attribute"``, also of a module in the working directory."""
     if not _ATTRIBUTE.fullmatch(name):
-        raise _no_name(name)
+        raise _unknown_name(name)
     if not trust:
         raise ParameterError(
             f"{name} names code, and importing it executes it: if you know where it comes from, "

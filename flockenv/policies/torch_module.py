@@ -13,7 +13,7 @@ from flockenv.errors import ParameterError, short_repr
 if TYPE_CHECKING:
     from torch import Tensor, nn
 
-#: Torch's activations by name, with the settings that are read from each.
+#: Torch's activations by name, with the attributes that are read from each.
 _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
     "Tanh": ("tanh", {}),
     "ReLU": ("relu", {}),
@@ -25,8 +25,8 @@ _ACCEPTED = (
     "linear layers with biases, after each of them a LayerNorm or none, and then one of "
     f"{', '.join(_ACTIVATIONS)} or none"
 )
-#: Number of observations on which a module is tried, and the largest difference from its layers'
-#: output.
+#: Number of observations on which a module is tried, and the largest accepted difference from the
+#: output of its layers.
 _TRIED, _AS_NEAR_AS = 16, 1e-4
 
 

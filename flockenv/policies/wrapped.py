@@ -84,7 +84,7 @@ class WrappedPolicy(ModelPolicy):
             )
         self._wrapper, self._is_per_item = wrapper, is_single
         self._space, self._actions = space, unwrapped.action_space
-        self._take(model, space, self._actions, provenance)
+        self._set_model(model, space, self._actions, provenance)
         made = self._made(space.low[None])
         if made.action_space != self._actions:
             raise ParameterError(

@@ -60,7 +60,7 @@ def check_array(
         absent = np.isnan(array)
         rows = absent.any(axis=-1) != absent.all(axis=-1) if array.ndim == 3 else np.zeros(1, bool)
         if np.isinf(array).any() or rows.any():
-            raise ParameterError(f"{name} must be finite, but for boats that are not there")
+            raise ParameterError(f"{name} must be finite, except for missing boats")
     elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
     # Sums are rounded.

@@ -218,7 +218,7 @@ class Recording(HintsAtNames):
         sample = self._sample_at(time_s)
         present = self._is_present(sample)
         if not present.any():
-            raise ParameterError(f"no boat is there at {short_repr(time_s)} s")
+            raise ParameterError(f"no boat is present at {short_repr(time_s)} s")
         return {
             "pose": self.pose[sample, present].astype(np.float64),
             "velocity": np.nan_to_num(self.velocity[sample, present].astype(np.float64)),

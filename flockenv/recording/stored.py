@@ -84,7 +84,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     }
     orders = [f"order_{name}" for name in ORDER]
     known = {*needed, *orders, *OPTIONAL, *own, *steps.values(), *ORIGIN}
-    _say(_DROPPED.format("arrays"), arrays.keys() - known)
+    _warn_of(_DROPPED.format("arrays"), arrays.keys() - known)
     if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
         raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
     check_array("seed", arrays["seed"], (), (np.dtype(np.uint64),))
@@ -131,7 +131,7 @@ def _statistics(
     return StepStatistics(**{field: arrays[name].item() for field, name in names.items()})
 
 
-def _say(words: str, names: Iterable[str]) -> None:
+def _warn_of(words: str, names: Iterable[str]) -> None:
     # Python prints the same text only once, and a sweep may read thousands of such files.
     if listed := ", ".join(sorted(names)):
         warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
@@ -140,7 +140,7 @@ def _say(words: str, names: Iterable[str]) -> None:
 def _parameters(toml: str) -> FlockParameters:
     values = read_toml(toml, "the text of parameters")
     known = FlockParameters.__dataclass_fields__
-    _say(_DROPPED.format("parameters"), values.keys() - known.keys())
+    _warn_of(_DROPPED.format("parameters"), values.keys() - known.keys())
     return FlockParameters(**{name: value for name, value in values.items() if name in known})
 
 
@@ -155,6 +155,6 @@ def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> O
             computed = order_series(pose[:, k:], velocity[:, k:])
             stored |= {name: getattr(computed, name) for name in missing}
         else:
-            _say(_UNDEFINED, (f"order_{name}" for name in missing))
+            _warn_of(_UNDEFINED, (f"order_{name}" for name in missing))
             stored |= dict.fromkeys(missing, undefined)
     return OrderSeries(**stored)

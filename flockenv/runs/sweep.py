@@ -231,7 +231,7 @@ def run_sweep(
     failures = run_missing(sweep.runs, store, engine, progress, workers)
     rows = []
     for spec in sweep.runs:
-        fields = {name: _one_word(getattr(spec.parameters, name)) for name in sweep.axes}
+        fields = {name: _as_cell(getattr(spec.parameters, name)) for name in sweep.axes}
         run, failure = store.load(spec), str(failures.get(spec, ""))
         if run is None and not failure:
             raise FlockError(f"{store.path(spec)} has been lost since it was written")
@@ -247,7 +247,7 @@ def run_sweep(
     return table
 
 
-def _one_word(value: object) -> object:
+def _as_cell(value: object) -> object:
     # A pool is a name or two radii, and a target one word or several: a column that mixes them
     # would have no type.
     if not isinstance(value, tuple):

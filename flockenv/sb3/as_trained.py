@@ -45,7 +45,7 @@ class AsTrained:
             )
         if own is not None:
             for layer in theirs:
-                _follow(own, layer)
+                _copy_statistics(own, layer)
         self._normalizing = None if theirs else own
 
     def predict(
@@ -55,7 +55,7 @@ class AsTrained:
         episode_start: object = None,
         deterministic: bool = False,
     ) -> tuple[Any, Any]:
-        """Return the model's actions; `episode_start` has an entry for each flock."""
+        """Return the model's actions. `episode_start` has one entry per flock."""
         if self._normalizing is not None:
             observation = self._normalizing.normalize_obs(observation)
         if episode_start is not None:
@@ -78,7 +78,7 @@ def normalizing_layers(flocks: VecEnv) -> list[VecNormalize]:
     return [layer for layer in layers_of(flocks) if isinstance(layer, VecNormalize)]
 
 
-def _follow(training: VecNormalize, own: VecNormalize) -> None:
+def _copy_statistics(training: VecNormalize, own: VecNormalize) -> None:
     """Let `own` normalize as the training's `VecNormalize` does."""
     own.obs_rms, own.ret_rms = copy.deepcopy((training.obs_rms, training.ret_rms))
     own.clip_obs, own.epsilon = training.clip_obs, training.epsilon

@@ -82,9 +82,9 @@ class FlockEvalCallback(EvalCallback):
         if self.best_model_save_path is not None:
             check_writable(Path(self.best_model_save_path, _BEST))
         if self.model.num_timesteps > 0 and not self._evaluations_order:
-            self._go_on()
+            self._resume()
 
-    def _go_on(self) -> None:
+    def _resume(self) -> None:
         """Continue the evaluations of a continued training."""
         path = None if self.log_path is None else Path(f"{self.log_path}.npz")
         if path is None or not path.is_file():

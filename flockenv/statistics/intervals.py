@@ -194,7 +194,7 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     drawn = np.full(_BCA_RESAMPLES, mean)
     for axis in (0, 1):
         away = table.mean(1 - axis) - mean
-        drawn += _stretch(len(away)) * _means_of_draws(away, random)
+        drawn += _width_ratio(len(away)) * _means_of_draws(away, random)
     low, high = np.quantile(drawn, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
     return float(mean), float(low), float(high)
 
@@ -206,7 +206,7 @@ def _means_of_draws(
     return random.multinomial(count, np.full(count, 1 / count), _BCA_RESAMPLES) @ values / count
 
 
-def _stretch(count: int) -> float:
+def _width_ratio(count: int) -> float:
     """Return the width of Student's interval over that of a normal bootstrap's percentiles."""
     stats, level = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
     quantiles = stats.t.ppf(level, count - 1) / stats.norm.ppf(level)

@@ -52,6 +52,6 @@ def _poses(pose: ArrayLike) -> NDArray[np.float64]:
     absent = np.isnan(poses).all(axis=-1)
     if not np.isfinite(poses[~absent]).all():
         raise ParameterError(
-            "pose is not accepted: finite numbers, or rows of NaN for boats that are not there"
+            "pose is not accepted: finite numbers, or rows of NaN for missing boats"
         )
     return poses

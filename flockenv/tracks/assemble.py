@@ -112,7 +112,7 @@ def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
     if not (np.diff(times) > 0.0).all():
         raise ParameterError("time_s must increase")
     if np.isnan(poses).all():
-        raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever there")
+        raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever present")
     return times, poses
 
 

@@ -18,7 +18,7 @@ class Format(NamedTuple):
     columns: Mapping[str, str]
     #: Other fields of a layout: the clock, the axes, the hull's columns.
     fields: Mapping[str, Any] = MappingProxyType({})
-    #: How lines of a header in levels begin, in small letters: the first, and those of names.
+    #: First cells, in lower case, of a header in levels: in its first line, and in lines of names.
     levels: tuple[str, ...] = ()
     #: Names of columns that are written without a header; the last four may be missing.
     header: tuple[str, ...] = ()
@@ -249,7 +249,7 @@ def recognized(names: list[str]) -> dict[str, Any]:
     for program in FORMATS:
         known = _fields_of(program, names, present)
         # Any pair of columns looks like a key point of the general formats.
-        if known is None or ("id" in form and _are_corners(known, names)):
+        if known is None or ("id" in form and _may_be_box(known, names)):
             continue
         if "y" not in form or "{" not in program.columns["x"] or _TELLING & known.keys():
             form |= known
@@ -259,7 +259,7 @@ def recognized(names: list[str]) -> dict[str, Any]:
     return form | ({"heading": ""} if "quaternion" in form else {})
 
 
-def _are_corners(known: Mapping[str, Any], names: list[str]) -> bool:
+def _may_be_box(known: Mapping[str, Any], names: list[str]) -> bool:
     """Return whether x1, y1, x2 and y2 may be a box around a named boat instead of two boats."""
     x = known.get("x", "")
     if "{id}" not in x:

@@ -37,7 +37,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     description = description_of(path)
     check_ending(path)
     if description.exists():
-        raise ParameterError(f"{description} is there already: it may be written by hand")
+        raise ParameterError(f"{description} already exists: it may be written by hand")
     with naming(path):
         form, doubts = _guessed(path)
     lines = [f"{name} = {_toml(value)}" for name, value in form.items() if name not in doubts]
@@ -119,7 +119,7 @@ def _guess_pool(table: Table, form: Form, doubts: Doubts) -> None:
     words = "check: whether y points down; compare `analyze --plot` with the video"
     doubts["y_down"] = (is_down, words)
     if lost:
-        doubts["lost"] = (lost, "check: points that stand for a boat that is not there")
+        doubts["lost"] = (lost, "check: points that stand for a missing boat")
 
 
 def _guess_time(table: Table, form: Form, doubts: Doubts) -> None:

@@ -33,7 +33,7 @@ def headings_of(table: Table) -> tuple[Floats, NDArray[np.bool_]]:
         heading = direction(x_head - x_tail, (y_head - y_tail) * layout.y_sign)
         return np.where(tail_lost | head_lost, np.nan, heading), strange
     if columns:
-        _check_no_part(table)
+        _check_no_component(table)
         heading = table.numbers(columns[0])
         strange = (np.abs(heading) > FULL_TURN[layout.heading_unit]) & layout.wrapped
         _check_largest(heading, strange, layout)
@@ -62,7 +62,7 @@ def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
     return np.where(off > 0.1, np.nan, heading)
 
 
-def _check_no_part(table: Table) -> None:
+def _check_no_component(table: Table) -> None:
     """Refuse a component of a quaternion, a sine or a cosine as a heading.
 
     They are recognized without names of columns: the squares of neighboring columns add up to 1.
@@ -117,7 +117,7 @@ def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> Non
         return
     _check_unit(heading, motion, layout)
     jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & motion.steps
-    if layout.axis or jumps.sum() < 3 or not _is_half(heading):
+    if layout.axis or jumps.sum() < 3 or not _spans_half_turn(heading):
         return
     if motion.cosine(bows_of(heading, motion)) > motion.cosine(heading):
         raise ParameterError(
@@ -144,7 +144,7 @@ def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
             )
 
 
-def _is_half(heading: Floats) -> bool:
+def _spans_half_turn(heading: Floats) -> bool:
     """Return whether headings lie within half a turn, as axes do, apart from whole turns."""
     wrapped = np.mod(heading[~np.isnan(heading)], np.pi * 2)
     return any(

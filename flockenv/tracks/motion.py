@@ -23,7 +23,7 @@ class Motion:
     stamps: Floats
     #: Whether a boat has a pose, shape (t, n).
     present: NDArray[np.bool_]
-    #: [cm/s, cm/s, rad/s], shape (t, n, 3), NaN where there is no neighbor in time.
+    #: [cm/s, cm/s, rad/s], shape (t, n, 3); NaN for poses without a neighbor in time.
     velocity: Floats
     #: Steps that were too fast.
     broken: int

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
 _STUCK = 20
-_TWICE = "that are there twice"
+_TWICE = "that are repeated"
 
 
 def read_tracks(
@@ -156,7 +156,7 @@ def _poses(every: "pd.DataFrame", table: Table) -> tuple[list[str], Floats, Floa
         same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
         frame = row["time"] * (table.layout.fps or 1)
         raise ParameterError(
-            f"{row['id']!r} is there {len(same)} times in frame {frame:g}, at different places, "
+            f"{row['id']!r} appears {len(same)} times in frame {frame:g}, at different positions, "
             f"the second time in {rows.index.name} {row.name}: were there two films, or "
             "was the clock set back? Give each film a table of its own"
         )
@@ -187,7 +187,7 @@ def _check_names(rows: "pd.DataFrame") -> None:
         if len(like) > 1 and rows.loc[rows["id"].isin(like), "frame"].is_unique:
             raise ParameterError(
                 f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
-                "case or leading zeros alone: write one boat's name in one way"
+                "case or leading zeros only: give each boat one spelling of its name"
             )
 
 

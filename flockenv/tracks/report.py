@@ -12,7 +12,7 @@ _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 class TrackReport:
     """Report of tracks: the used and the omitted parts."""
 
-    #: Different times, different names, and poses that are used.
+    #: Numbers of different times, of different names, and of used poses.
     frames: int
     boats: int
     samples: int
@@ -23,28 +23,29 @@ class TrackReport:
     duration_s: float
     step_s: float
     median_speed_cm_s: float
-    #: Rows that are left out, by reason and boat; "" for no boat.
+    #: Omitted rows by reason and boat; the boat is "" for rows without one.
     left_out: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
-    #: How often the times of a boat go back from one row to the next; rows are sorted.
+    #: How often the time goes back between two successive rows of a boat; the rows are then sorted.
     unsorted: int = 0
-    #: Whether the column of names holds none, so that all rows are of one boat.
+    #: Whether the column of names is empty, so that all rows belong to one boat.
     unnamed: bool = False
-    #: How often a boat is missing between two of its poses, and the longest of these times.
+    #: Number of gaps between two poses of a boat, and the length of the longest gap in s.
     gaps: int = 0
     longest_gap_s: float = 0.0
-    #: Steps above the greatest speed, such as of wrong detections and of names that were
-    #: exchanged: both samples are used, and no velocity is taken across.
+    #: Steps faster than the highest speed, for example from wrong detections or exchanged names.
+    #: Both samples are used, but no velocity is computed across the step.
     broken: int = 0
-    #: Samples without a neighbor in time. They have no velocity, and no quantity counts them.
+    #: Samples without a neighbor in time. They have no velocity, and quantities leave them out.
     lone: int = 0
     #: Mean cosine between heading and motion, weighted by distance: near 1 for boats that move
     #: ahead, small or negative if axes, units or directions are wrong; NaN if nothing moves.
     cosine: float = float("nan")
-    #: Boats that are at one point in at least 20 samples and a tenth of theirs, or where others
-    #: are, too, at the time: x and y in units of the file, and the number of samples.
+    #: Boats that are at exactly one point in at least 20 samples and a tenth of all their samples,
+    #: or at one point together with other boats: x and y in units of the file, and the number of
+    #: samples.
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
-    #: Boats that move, and have one heading in at least 20 samples and any other in a tenth of
-    #: them at most: the number of samples.
+    #: Boats that move, but have one heading in at least 20 samples and other headings in at most a
+    #: tenth as many: the number of samples.
     held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:
@@ -71,11 +72,11 @@ class TrackReport:
     def _doubts(self, outside: int) -> Iterator[str]:
         """Yield a line about each unusual value, which may be correct."""
         if self.lone == self.samples and self.frames > 1:
-            yield "no boat is there in two frames one after another: are the names right?"
+            yield "no boat appears in two successive frames: are the names right?"
         if self.cosine < _WEAK:
             yield (
                 "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero "
-                "and the order of x and y right, and are headings no axes?"
+                "and the order of x and y right, and are the headings not axes?"
             )
         if self.unsorted:
             yield (
@@ -85,7 +86,7 @@ class TrackReport:
         if self.unnamed:
             yield "the column of names is empty: all rows are of one boat"
         if self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S:
-            yield "that is slow for boats: are times in s? `fps` says how many units a s has"
+            yield "that is slow for boats: are times in s? `fps` says how many units one second has"
         share = outside / max(1, outside + self.samples)
         if share > _MANY_OUTSIDE:
             yield (

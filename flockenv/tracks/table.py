@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flockenv._io.array_file import most_held
+from flockenv._io.array_file import most_content
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, short_repr
@@ -83,7 +83,7 @@ class Table:
         if len(found) > 1:
             raise ParameterError(f"there are several columns {name!r}: give each its own name")
         if not found:
-            hint = f"there are {listed(self.names)}{_other_mark(self.names)}"
+            hint = f"there are {listed(self.names)}{_separator_hint(self.names)}"
             raise ParameterError(f"column {name!r} is missing; {hint}")
         return found[0]
 
@@ -179,7 +179,7 @@ def _read_parquet(pandas: ModuleType, path: Path) -> "pd.DataFrame":
         size = os.fstat(file.fileno()).st_size
         held = require("pyarrow.parquet", "plot").ParquetFile(file).metadata
         cells = held.num_rows * held.num_columns
-        if 8 * cells > most_held(size):
+        if 8 * cells > most_content(size):
             raise ParameterError(f"it holds {cells} cells, too many for its {size} bytes")
         rows: pd.DataFrame = pandas.read_parquet(file)
     return rows
@@ -188,7 +188,7 @@ def _read_parquet(pandas: ModuleType, path: Path) -> "pd.DataFrame":
 def _text_of(path: Path) -> str:
     """Return a file as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
     with open_plain(path) as file:
-        most = most_held(os.fstat(file.fileno()).st_size)
+        most = most_content(os.fstat(file.fileno()).st_size)
         opened = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
         data: bytes = opened.read(most + 1)
     if len(data) > most:
@@ -238,7 +238,7 @@ def _read_text(pandas: ModuleType, text: str, layout: TrackLayout, separator: st
         if any(row[len(names) :]):
             raise ParameterError(
                 f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
-                f"every column needs a name{_other_mark(names)}"
+                f"every column needs a name{_separator_hint(names)}"
             )
     names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
     is_id = [bool(layout.id) and _key(name) == _key(layout.id) for name in names]
@@ -351,7 +351,7 @@ def listed(names: list[str]) -> str:
     return f"{', '.join(names[:40])}{more}"
 
 
-def _other_mark(names: list[str]) -> str:
+def _separator_hint(names: list[str]) -> str:
     """Return a hint for a header read as one name, or for numbers in its place."""
     if sum(map(is_value, names)) > len(names) / 2:
         return ": `header` names the columns of a file whose first line does not"

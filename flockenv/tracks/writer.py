@@ -66,7 +66,7 @@ def export(
     text += tomli_w.dumps(_layout(recording))
     is_other = beside.exists() and beside.read_bytes() != text.encode()
     if not as_bool(overwrite, "overwrite") and is_other:
-        raise ParameterError(f"{beside} is there already, with another layout: overwrite=True")
+        raise ParameterError(f"{beside} already exists, with another layout: overwrite=True")
     table = recording.to_dataframe(boats=True)
     if ending == ".csv":
         write_csv(path, table)

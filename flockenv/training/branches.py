@@ -35,7 +35,7 @@ TRAINED = "trained"
 OPTIONS: tuple[str, ...] = tuple(option["name"] for option in _core.BRANCH_OPTIONS)
 """Names of the options of a training; docs/training_reference.md describes them."""
 
-#: Between two checkpoints, in s.
+#: Time between two checkpoints in s.
 _PATIENCE_S = 5.0
 _EPISODE_S = 480.0
 _LARGEST_FILE = 1 << 30
@@ -185,7 +185,7 @@ def train(
     folder
         Where to write.
     command
-        Goes into the provenance of the policy.
+        The command that is stored in the policy's provenance.
     report
         Called after each round.
     """

@@ -68,8 +68,8 @@ class BranchingFlocks:
         self._coins = np.random.default_rng([seed, 1])
         self._seeds = iter(_SEEDS.seeds(1 << 20, run=seed))
         self._branches = episode_s // branch_s
-        #: Branches that each group has had in its episode; at the start groups differ, to spread
-        #: the ends.
+        #: Branches so far in each group's episode. At the start groups differ, so that their
+        #: episodes end at different times.
         self._had = np.arange(groups) % self._branches
         self._snapshots: list[bytes] = []
         self._targets = np.full(groups, "ccw")

@@ -62,7 +62,7 @@ pub fn off_tangent(phi: f64) -> f64 {
     (phi.abs() - FRAC_PI_2).abs()
 }
 
-/// Waits for a flock to order: τ of eq. (7), sample by sample.
+/// Finds the ordering time τ of eq. (7), sample by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct OrderingWatch {
     late_samples: u32,
@@ -71,8 +71,8 @@ pub struct OrderingWatch {
 }
 
 impl OrderingWatch {
-    /// Records the order at a time since the run started. `is_late` marks the second half of the run; an orientation
-    /// less than `within` (rad) off the tangent is tangential.
+    /// Records the order at a time since the run started. `is_late` says whether that is in the second half of the
+    /// run, and `within` is the angle in rad off the tangent below which an orientation counts as tangential.
     pub(crate) fn note(
         &mut self,
         time_s: f64,

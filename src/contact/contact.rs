@@ -61,13 +61,13 @@ impl Contact {
         matches!(self.partner, Partner::Boat(_) | Partner::Obstacle(_))
     }
 
-    /// Where the normal pushes the first hull: a point of its surface.
+    /// The point of the first hull's surface at which the normal pushes.
     pub fn point(&self, boat: &HullPose, hull: Hull) -> Vec2 {
         let Gap { along, normal, .. } = self.gap;
         boat.center + boat.axis * along - normal * hull.radius
     }
 
-    /// Its boats, each with the contact's normal and lever arm for it.
+    /// The contact's boats, each with its normal and lever arm.
     #[inline]
     pub fn sides(&self) -> impl Iterator<Item = (u32, Vec2, f64)> {
         let gap = &self.gap;

@@ -59,7 +59,7 @@ impl ContactDetector {
         }
     }
 
-    /// Sets the length in s of a whole substep, one that is not cut.
+    /// Sets the length in s of an uncut substep. How far a crowded substep may be cut depends on it.
     pub(crate) fn set_whole_substep(&mut self, dt_s: f64) {
         self.shortest_s = SHORTEST_SHARE * dt_s;
     }
@@ -305,7 +305,7 @@ impl ContactDetector {
         }
     }
 
-    // Separate from the loop over boats, whose gaps then stay in registers.
+    // Kept out of the loop over boats, so that the gaps of boats stay in registers there.
     #[inline(never)]
     fn obstacle_touches(&self, contact: &Contact, boat: &HullPose) -> [EndTouch; 2] {
         let mut touches = [EndTouch::MISSING; 2];

@@ -100,7 +100,7 @@ pub(crate) struct ContactResolver {
     penetration_slop: f64,
     /// Whether moving poses has left overlaps beyond that.
     is_deep: bool,
-    /// Length of a whole substep in s: the time in which an overlap has to close, however short a substep is.
+    /// Length of a whole substep in s. An overlap has to open within this time, however short a substep is.
     whole_substep_s: f64,
 }
 
@@ -215,7 +215,7 @@ impl ContactResolver {
             (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
     }
 
-    /// Guesses that contacts which carried an impulse still do.
+    /// Guesses that the contacts that carried an impulse in the last substep do so again.
     fn warm_start(&mut self) {
         self.warm_start_cache
             .lookup(&self.contacts, &mut self.solver.impulses);
@@ -286,7 +286,7 @@ impl ContactResolver {
                     return Err(NotTaken::TooLong);
                 }
                 Solution::Exhausted => return Err(NotTaken::Exhausted),
-                // Other biases lead to other poses, where skipped contacts are not checked.
+                // With other biases boats move elsewhere, and there skipped contacts were not checked.
                 Solution::Driven if !self.skipped.is_empty() => self.restore_skipped(statistics),
                 Solution::Driven => {
                     if self.solve(None, motion, statistics) == Solution::Exhausted {
@@ -412,7 +412,7 @@ impl ContactResolver {
         self.predicted.take_end(poses, hulls)
     }
 
-    /// Forgets the impulses: nothing touched in this substep, and nothing near carried an impulse.
+    /// Forgets the impulses, if nothing touched in this substep.
     pub(crate) fn clear_warm_start(&mut self) {
         self.warm_start_cache.clear();
         self.solver.impulses.fill(0.0);

@@ -1,5 +1,5 @@
-//! Skipped contacts: boats would not close them at their free velocities. They stay out of the problem as long as its
-//! solution does not close them either.
+//! Skipped contacts: boats would not close them at their free velocities. They are left out of the contact problem as
+//! long as its solution does not close them either.
 
 use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
@@ -98,14 +98,14 @@ fn may_close(
 ) -> bool {
     let may_close = |contact: &Contact| may_touch_close(detector, contact, velocities, dt, added);
     match touches {
-        // Two ends at the outer wall, which curves around them: one end's normal says nothing about the other end.
+        // At the outer wall, which curves around the boat, one end's normal says nothing about the other end.
         [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
         [a, b] if b.gap.gap < a.gap.gap => may_close(b),
         touches => may_close(&touches[0]),
     }
 }
 
-/// As [`may_close`], for the nearer touch.
+/// As [`may_close`], from the nearer touch alone.
 #[inline]
 fn may_touch_close(
     detector: &ContactDetector,

@@ -3,14 +3,14 @@
 use crate::geometry::Gap;
 use std::hint::select_unpredictable;
 
-/// Largest closing rates of gaps in one substep: the speculative margin of a gap that is open, the speed at
-/// which an overlap closes.
+/// The largest closing rate of a gap in one substep: an open gap may close just to zero, and an overlap has
+/// to open at a certain speed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct VelocityBias {
     /// Length of the substep in s.
     pub dt: f64,
-    /// Time in s within which an overlap closes: a substep that a phase or control step cuts to 1 ns would
-    /// close it at any speed.
+    /// Time in s within which an overlap has to open. A substep that a phase or control step cuts to 1 ns
+    /// would otherwise open it at an enormous speed.
     pub closing_s: f64,
     /// Overlaps beyond this (cm) are undone by moving poses; the rest must not push.
     pub penetration_slop: f64,

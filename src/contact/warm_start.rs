@@ -123,7 +123,8 @@ impl WarmStartCache {
         start..start + 1 + usize::from(is_two)
     }
 
-    // Not inlined, like the search, so that looking up contacts in order stays in registers.
+    // Indexes the entries by boat. Neither this nor the search is inlined, so that the lookup of contacts that come in
+    // order stays in registers.
     #[inline(never)]
     fn index(&mut self) {
         let boats = self.entries.iter().map(|entry| entry.boat as usize + 1);

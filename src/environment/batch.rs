@@ -12,7 +12,7 @@ use crate::sealed_bytes::{Magic, seal, unseal};
 
 const MAGIC: Magic = *b"flocken4";
 
-/// Rows that a step fills: one per leader, flock after flock, and one flag per flock.
+/// Output of a step: one row per leader, flock after flock, and one flag per flock.
 #[derive(Debug)]
 pub struct BatchRows<'a> {
     /// Observations, `rows × observation size`.
@@ -31,7 +31,7 @@ pub struct EnvBatch {
     rows: usize,
 }
 
-/// One flock's part of a step: its environment, its actions, and the rows that it fills.
+/// One flock's part of a step: its environment, its actions and its rows of the output.
 struct Share<'a> {
     env: &'a mut FlockEnv,
     actions: Option<&'a [f64]>,
@@ -122,7 +122,7 @@ impl EnvBatch {
         self.step_while(&|| true, actions, out)
     }
 
-    /// As [`Self::step`], asking now and then whether to continue.
+    /// As [`Self::step`], but calls `keep_going` now and then to ask whether to continue.
     ///
     /// # Errors
     /// As for [`Self::step`]; [`FlockError::Interrupted`] if `keep_going` returned false: all flocks must be reset
@@ -188,7 +188,7 @@ impl EnvBatch {
         self.reset_while(&|| true, requests)
     }
 
-    /// As [`Self::reset`], but large flocks take seconds to place: it checks now and then whether to continue.
+    /// As [`Self::reset`], but calls `keep_going` now and then, since large flocks take seconds to place.
     ///
     /// # Errors
     /// As for [`Self::reset`]; [`FlockError::Interrupted`] if `keep_going` returned false.
@@ -223,7 +223,7 @@ impl EnvBatch {
         Ok(())
     }
 
-    /// Sets options of the future episodes of some flocks; options that are not given stay as they were.
+    /// Sets options of the future episodes of some flocks; options that are `None` stay as they were.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for options that a flock cannot have, or no such flock; nothing has changed then.
@@ -259,7 +259,8 @@ impl EnvBatch {
         }
     }
 
-    /// Writes what leaders observe now in another layout, through the same cameras; zeros before the first reset.
+    /// Writes the leaders' present observations in another layout, through the same cameras; zeros before the first
+    /// reset.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a layout that a flock cannot have.
@@ -325,7 +326,7 @@ const BYTES_A_BOAT: u64 = 2 << 10;
 
 /// Refuses a batch for which memory would run out.
 fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<()> {
-    // The caller also holds observations, and so does the environment at the end of an episode.
+    // Observations are also held by the caller and, at the end of an episode, by the environment.
     let bytes_a_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
     let bytes: u64 = members
         .iter()

@@ -1,5 +1,5 @@
-//! Effects of a leader's contacts on normal boats, from the impulses of the contact solver. They exclude the noise of
-//! boats that the leader does not touch.
+//! Effects of a leader's contacts on normal boats, from the impulses of the contact solver. Unlike the order, they do
+//! not contain the noise of boats that the leader does not touch.
 
 use crate::geometry::LapFrame;
 use crate::integrator::Integrator;
@@ -8,7 +8,7 @@ use crate::parameters::Target;
 /// Time in s after which a turn by a leader counts for 1/e.
 pub(super) const MEMORY_S: f64 = 4.0;
 
-/// Turning of one normal boat by one leader.
+/// How one leader has turned one normal boat.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 struct Turned {
     /// Part of the boat's angular velocity that comes from the leader's impulses and has not decayed yet, in rad/s.
@@ -48,7 +48,7 @@ impl ContactCredit {
         }
     }
 
-    /// Whether a stored credit fits these numbers of leaders and boats.
+    /// Whether a stored credit has these numbers of leaders and boats.
     pub(super) fn fits(&self, leaders: usize, boats: usize) -> bool {
         self.leaders == leaders
             && self.transfers.len() == leaders

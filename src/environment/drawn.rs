@@ -13,7 +13,7 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// The number for an episode: the point of the range at this fraction of it, in [0, 1).
+    /// The number for an episode. `share` in [0, 1) selects a point of the range.
     pub fn at(self, share: f64) -> f64 {
         match self {
             Self::Fixed(number) => number,

@@ -57,7 +57,7 @@ impl EpisodeState {
         }
     }
 
-    /// Whether it fits an environment with these settings and parameters.
+    /// Whether this state fits an environment with these settings and parameters.
     fn fits(&self, settings: &EnvSettings, parameters: &FlockParameters) -> bool {
         let (leaders, boats) = (parameters.n_leaders, parameters.n_boats);
         let (camera, credit) = (self.camera.as_ref(), self.credit.as_ref());
@@ -134,7 +134,7 @@ impl Episode {
         Self::from_state(settings, state)
     }
 
-    /// Its state, for storage.
+    /// The state to be stored.
     pub(crate) fn state(&self) -> &EpisodeState {
         &self.state
     }
@@ -144,7 +144,7 @@ impl Episode {
         &self.state.flock
     }
 
-    /// The episode's draw and its progress.
+    /// The episode's random draws and its progress.
     pub fn schedule(&self) -> &EpisodeSchedule {
         &self.state.schedule
     }
@@ -175,7 +175,7 @@ impl Episode {
         state.statistics.summary(&state.schedule, &state.flock)
     }
 
-    /// The leaders' targets of the control step that comes next.
+    /// The leaders' targets in the next control step.
     pub fn targets(&self) -> &Targets {
         &self.state.flock.parameters().target
     }
@@ -254,7 +254,7 @@ impl Episode {
         Ok(())
     }
 
-    /// Computes the commands of a control step from actions, which may be of mirrored views.
+    /// Computes the rudder commands of a control step from actions, which may belong to mirrored views.
     fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
         let view = self.state.seen();

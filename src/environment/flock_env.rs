@@ -217,7 +217,7 @@ impl FlockEnv {
         }
     }
 
-    /// Writes what leaders observe now in another layout, zeros before the first reset.
+    /// Writes the leaders' present observations in another layout, zeros before the first reset.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a layout that the flock cannot have.

@@ -36,7 +36,7 @@ pub struct ResetRequest {
     pub start: Start,
 }
 
-/// Settings of future episodes, unless a reset says otherwise.
+/// Settings of future episodes, which a reset can override.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Upcoming {
     /// Target of these episodes; `None`: as the settings say.
@@ -46,12 +46,12 @@ pub struct Upcoming {
 }
 
 impl Upcoming {
-    /// The settings of these episodes.
+    /// The environment's settings with those of future episodes put in.
     pub fn settings(&self, settings: &EnvSettings) -> EnvSettings {
         EnvSettings {
             target: self.target.as_ref().unwrap_or(&settings.target).clone(),
             bw_s: self.bw_s.or(settings.bw_s),
-            // With another target, a default length would differ.
+            // Fixed, since the default length depends on the target.
             episode_s: Some(settings.duration_s()),
             ..settings.clone()
         }

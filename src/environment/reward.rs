@@ -175,7 +175,7 @@ impl Setting for RewardWeights {
         weights.filter(|(_, weight)| *weight != 0.0).collect()
     }
 
-    /// Terms that are not named weigh nothing.
+    /// Terms that the value does not name have the weight 0.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         let Value::Map(given) = value else {
             let accepted = "a dictionary of weights, or a list of dictionaries, one per leader";
@@ -226,7 +226,7 @@ impl Weights {
             .try_for_each(|weights| weights.check(parameters))
     }
 
-    /// Checks that a list has weights for each of the most leaders that a flock of a batch has.
+    /// Checks that a list has as many weights as the flock with the most leaders in a batch needs.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

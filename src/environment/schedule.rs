@@ -1,4 +1,4 @@
-//! The schedule of an episode: its length, its target at each time, and all that its seed fixes.
+//! The schedule of an episode: its length, its target at each time, and the draws from its seed.
 
 use super::{EnvSettings, TargetChoice};
 use crate::parameters::{Target, Targets};

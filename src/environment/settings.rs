@@ -63,7 +63,7 @@ declare_fields! {
     autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";
 }
 
-/// Observer of flocks with these parameters in a layout.
+/// An observer, with this layout, of flocks with these parameters.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] for a layout that they cannot have.
@@ -98,7 +98,7 @@ impl EnvSettings {
         let shortest = 1.0 / self.control_hz;
         let horizon = self.reward_horizon_s.unwrap_or(shortest);
         let accepted = format!("at least one control step of {shortest} s");
-        // A tenth may be given for ten control steps per second, despite its rounding.
+        // With ten control steps per second, 0.1 s must be accepted in spite of rounding.
         let is_whole = horizon >= (1.0 - 1e-9) * shortest;
         FlockError::unless(is_whole, "reward_horizon_s", horizon, accepted)?;
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
@@ -137,8 +137,8 @@ impl EnvSettings {
             .map_or(1, |period| (period * self.control_hz).round() as u32)
     }
 
-    /// Time from an episode's start to the end of a number of control steps, rounded to a tick as a whole, so that the
-    /// rounding of periods does not add up.
+    /// Time from an episode's start to the end of a number of control steps. Only the sum is rounded to a tick, so that
+    /// rounding errors of single steps do not add up.
     pub(crate) fn time_of(&self, steps: u32) -> Ticks {
         ticks(f64::from(steps) / self.control_hz)
     }

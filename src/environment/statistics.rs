@@ -11,10 +11,10 @@ use crate::parameters::{Target, Value, named_fields};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::f64::consts::PI;
 
-/// Signed order above this is motion in the target direction.
+/// A flock with a signed order above this moves in the target direction.
 pub const TOWARDS_TARGET: f64 = 0.5;
-/// Largest angle off the tangent of an ordered flock: as printed in eq. (7), and a wider one, since a boat that slides
-/// along the wall heads somewhat outward.
+/// Largest angle off the tangent at which a flock counts as ordered: as printed in eq. (7), and a wider one, since
+/// boats that slide along the wall head somewhat outward.
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
 /// Sums of the summarized quantities, or their means.
@@ -61,7 +61,7 @@ pub(super) struct EpisodeStatistics {
 }
 
 impl EpisodeStatistics {
-    /// Adds a part of the leaders' mean reward.
+    /// Adds to the episode's reward, which is a mean over leaders.
     pub(super) fn add_reward(&mut self, reward: f64) {
         self.reward += reward;
     }

@@ -7,7 +7,7 @@ use crate::geometry::Vec2;
 /// A contact with the force it carried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactForce {
-    /// The contact, its gap taken at the current poses.
+    /// The contact, with its gap at the present poses.
     pub contact: Contact,
     /// Point of the hull of `contact.boat` where the force acts, at the current poses.
     pub point: Vec2,

@@ -29,8 +29,8 @@ pub struct Flock {
     before: Box<Checkpoint>,
 }
 
-/// Work between two calls of `keep_going`, in boats moved, contacts and rows factored: some milliseconds, or a single
-/// substep that takes longer.
+/// Work between two calls of `keep_going`, counted in boats moved, contacts and factored rows. It takes some
+/// milliseconds, unless a single substep takes longer.
 const WORK_BETWEEN_CHECKS: u64 = 20_000;
 /// Part of `dt_s` (one over this number) below which no substep is cut to protect walls without thickness.
 const SHORTEST_SHARE: Ticks = 1024;
@@ -53,7 +53,7 @@ impl Flock {
         Self::new_while(&|| true, parameters, seed)
     }
 
-    /// As [`Self::new`], but large flocks take seconds to place: it checks now and then whether to continue.
+    /// As [`Self::new`], but calls `keep_going` now and then, since large flocks take seconds to place.
     ///
     /// # Errors
     /// As for [`Self::new`]; [`FlockError::Interrupted`] if `keep_going` returned false.
@@ -108,8 +108,8 @@ impl Flock {
         self.noise_seed
     }
 
-    /// Continues with the noise of a branch: the same for every flock with this noise seed, but not that of a flock
-    /// whose own seed is this number. `None` leaves the noise as it is.
+    /// Continues with the noise of a branch. All flocks with the same noise seed have the same noise, which differs
+    /// from that of a flock whose own seed is this number. `None` leaves the noise as it is.
     pub(super) fn branch(&mut self, noise_seed: Option<u64>) {
         if let Some(seed) = noise_seed {
             self.noise_seed = noise_seed;
@@ -244,7 +244,7 @@ impl Flock {
         self.advance_watched(keep_going, end, steering, &mut |_| {})
     }
 
-    /// As [`Self::advance_to`], and passes the motion to a function after every substep.
+    /// As [`Self::advance_to`], but also calls a function with the motion after every substep.
     pub(crate) fn advance_watched(
         &mut self,
         keep_going: KeepGoing,
@@ -262,7 +262,7 @@ impl Flock {
         result
     }
 
-    /// Takes substeps until `end`, and checks where they lead.
+    /// Takes substeps until `end`, and checks the poses and velocities that result.
     fn take_substeps(
         &mut self,
         keep_going: KeepGoing,
@@ -341,7 +341,7 @@ impl Flock {
     }
 
     /// Time after about `boat_substeps` / n_boats more substeps, at most `end`. It is a multiple of dt, so that a stop
-    /// there changes nothing.
+    /// there does not change the run.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);

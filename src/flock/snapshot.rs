@@ -72,7 +72,7 @@ impl Snapshot {
         self.parameters.current_relaxation_s > 0.0
     }
 
-    /// The parameters that the flock was made with, before its step changed.
+    /// The flock's parameters with the step that it was made with.
     fn as_made(&self) -> FlockParameters {
         FlockParameters {
             dt_s: self.noise_dt_s,

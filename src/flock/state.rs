@@ -8,7 +8,7 @@ use crate::geometry::{Pose, Velocity};
 use crate::integrator::Integrator;
 use crate::parameters::FlockParameters;
 
-/// Where the boats of a flock are, and when.
+/// Poses and velocities of a flock's boats at a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Poses of all boats.
@@ -38,7 +38,8 @@ impl Flock {
         Ok(flock)
     }
 
-    /// Overlap in cm that a given state may have: more than contacts leave, so that a flock's own states are accepted.
+    /// Overlap in cm that a state from outside may have. It is more than contacts leave, so that states taken from a
+    /// flock are accepted.
     fn overlap_of_contacts(&self) -> f64 {
         0.01 * self.parameters.boat_radius_cm
     }

@@ -30,7 +30,7 @@ impl Flock {
         Ok(())
     }
 
-    /// As [`Self::set_step`], for a step that was checked.
+    /// As [`Self::set_step`], for a step that was already checked.
     pub(super) fn replace_step(&mut self, dt_s: f64) {
         self.parameters.dt_s = dt_s;
         self.integrator.set_step(dt_s);
@@ -51,7 +51,7 @@ impl Flock {
         self.advance_to_with_error(&|| true, end, steering)
     }
 
-    /// As [`Self::advance_with_error`] to a time with checked steering, asking now and then whether to continue.
+    /// As [`Self::advance_with_error`], but to a time and with checked steering; calls `keep_going` now and then.
     ///
     /// # Errors
     /// As for [`Self::advance_to`] and [`Self::advance_with_error`].

@@ -22,7 +22,7 @@ impl Hull {
         }
     }
 
-    /// Its lengths for pictures, in cm, by name.
+    /// The hull's lengths in cm that pictures need, by name.
     pub fn lengths(&self) -> [(&'static str, f64); 2] {
         [
             ("hull_radius_cm", self.radius),
@@ -138,11 +138,11 @@ impl HullPose {
 #[inline]
 fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let number = f64x4::splat;
-    // Adding this rounds to a whole number, which the lowest bits then hold; subtracting it gives the number.
+    // Adding this rounds to a whole number, which is then in the lowest bits. Subtracting it again gives that number.
     let rounding = number(6_755_399_441_055_744.0);
     let shifted = angle * number(std::f64::consts::FRAC_2_PI) + rounding;
     let quarters = shifted - rounding;
-    // π/2 in parts, with exact multiples.
+    // π/2 as a sum of parts whose multiples are exact.
     let x = angle
         - quarters * number(1.570_796_310_901_641_8)
         - quarters * number(1.589_325_471_229_585_7e-8)

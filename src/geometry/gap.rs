@@ -18,7 +18,7 @@ pub struct Gap {
     pub normal: Vec2,
     /// Where the first hull is pushed: the coordinate along its core, from its center to the bow, in cm.
     pub along: f64,
-    /// The same along the second hull's core; 0 at a round wall.
+    /// The coordinate of the touch along the second hull's core, in cm; 0 at a round wall.
     pub along_j: f64,
     /// Lever arm of the normal about the first body's center in cm.
     pub arm_i: f64,
@@ -121,7 +121,7 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Points of the cores with these coordinates.
+    /// The touch at these coordinates along the two cores.
     fn touch(&self, along_a: f64, along_b: f64) -> Touch {
         Touch {
             along_a,
@@ -239,7 +239,7 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let Some(side) = feature.side() else {
         return crossed_gap(a, hull_a, b, hull_b);
     };
-    // If no end of the group faces the other hull any more, the hull's own end still has a distance.
+    // If no end of the group faces the other hull any more, use the distance of the hull's own end.
     let touch = pair
         .nearest_towards(side)
         .or_else(|| pair.end_of_a(side, false));

@@ -44,8 +44,8 @@ impl NeighborList {
         self.cutoff = 0.0;
     }
 
-    /// Makes sure that every pair of centers within `distance` is listed, with `skin` to spare when
-    /// the list is built.
+    /// Makes sure that every pair of centers within `distance` is listed. A new list also has the pairs up to `skin`
+    /// farther apart.
     pub(crate) fn update(
         &mut self,
         centers: impl ExactSizeIterator<Item = Vec2> + Clone,

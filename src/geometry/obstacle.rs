@@ -57,7 +57,7 @@ impl From<&Wall> for Obstacle {
 }
 
 impl Obstacle {
-    /// The obstacles of checked parameters: discs, then walls, which know where others continue them.
+    /// The obstacles of checked parameters: discs, then walls, with their joints.
     pub fn all(parameters: &FlockParameters) -> Vec<Self> {
         let discs = parameters.discs.iter().map(Self::from);
         let walls = parameters.walls.iter().map(Self::from);
@@ -82,8 +82,8 @@ impl Obstacle {
         Some([-1.0, 1.0].map(|side| (pose.end(side, *half_length), -pose.axis * side)))
     }
 
-    /// Whether a boat pushed along a normal lies beyond an end at which another wall continues towards the boat. Such an end
-    /// has no contact: it would brake a boat that slides past.
+    /// Whether the boat, which is pushed along `normal`, lies beyond an end at which another wall continues towards it.
+    /// Such an end has no contact, since that would brake a boat that slides past.
     fn is_continued(&self, normal: Vec2) -> bool {
         let Self::Wall { pose, joints, .. } = self else {
             return false;
@@ -93,7 +93,8 @@ impl Obstacle {
         beyond.abs() > UPRIGHT && joint.is_some_and(|next_wall| normal.dot(&next_wall) > UPRIGHT)
     }
 
-    /// The point of its core nearest to a point, and its radius about that; a disc's core is its center.
+    /// The point of the obstacle's core that is nearest to a point, and the radius around the core. A disc's core is
+    /// its center.
     fn core(&self, point: Vec2) -> (Vec2, f64) {
         match self {
             Self::Disc { center, radius } => (*center, *radius),
@@ -107,14 +108,14 @@ impl Obstacle {
         }
     }
 
-    /// The point of its surface nearest to a point; at a disc's center, the point itself.
+    /// The point of the obstacle's surface that is nearest to a point; for a disc's center, the center itself.
     pub fn nearest(&self, point: Vec2) -> Vec2 {
         let (core, radius) = self.core(point);
         let away = (point - core).try_normalize(0.0);
         away.map_or(point, |away| core + away * radius)
     }
 
-    /// Distance of its surface from a point in cm, negative inside a disc.
+    /// Distance in cm of the obstacle's surface from a point, negative inside a disc.
     pub fn distance(&self, point: Vec2) -> f64 {
         let (core, radius) = self.core(point);
         (point - core).norm() - radius

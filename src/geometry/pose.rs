@@ -6,7 +6,7 @@ use super::{Vec2, wrap_angle};
 /// may hold: squares and products of such numbers are far from overflowing.
 pub(crate) const LARGEST: f64 = 1e9;
 
-/// Whether all are at most [`LARGEST`] in size; NaN is not.
+/// Whether the absolute values of all numbers are at most [`LARGEST`]; false for NaN.
 fn are_in_range(numbers: [f64; 3]) -> bool {
     numbers.iter().all(|number| number.abs() <= LARGEST)
 }

@@ -15,7 +15,7 @@ pub(crate) struct Checkpoint {
     pub velocities: Vec<Velocity>,
     /// Contacts of the last substep that carried an impulse; a checkpoint before an advance holds the others, too.
     pub warm_start: Vec<CachedImpulse>,
-    /// Centers that the neighbor list was built from, and within which distance.
+    /// The centers and the distance with which the neighbor list was built.
     pub neighbor_reference: (Vec<Vec2>, f64),
     /// Memory of the leapfrog scheme.
     pub last: LastSubstep,

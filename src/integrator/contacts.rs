@@ -12,7 +12,7 @@ const SHORTEST_SHARE: f64 = 1.0 / 16.0;
 const SHORTEST_OVERLAPPING_SHARE: f64 = 1.0 / 256.0;
 
 impl Integrator {
-    /// Reasons for which the contacts may cut a substep of this length.
+    /// The reasons for which a substep of this length may still be cut.
     pub(super) fn divisibility(&self, dt: f64) -> Divisibility {
         Divisibility {
             if_driven: dt > SHORTEST_SHARE * self.parameters.dt_s,

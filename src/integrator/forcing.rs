@@ -90,7 +90,7 @@ impl Integrator {
         }
     }
 
-    /// Speed in cm/s at which boats with these velocities would keep the water.
+    /// Speed in cm/s that the water would have after a long time, if boats kept these velocities.
     fn driven_water(&self, velocity: impl Fn(&Self, usize) -> Vec2) -> f64 {
         let sum: f64 = (0..self.poses.len())
             .map(|boat| velocity(self, boat).dot(&self.tangent(boat)))
@@ -116,7 +116,7 @@ impl Integrator {
         }
     }
 
-    /// Continues with the water of a flock with other parameters, as far as these allow it.
+    /// Takes over the water's speed from a flock with other parameters, if the present ones allow it.
     pub(crate) fn keep_water(&mut self, water_cm_s: f64) {
         if self.parameters.current_relaxation_s > 0.0 {
             let cap = self.parameters.current_cap_cm_s;

@@ -102,7 +102,7 @@ fn centered_velocities(flock: &mut Integrator, kick: f64) {
         last,
         ..
     } = flock;
-    // A local copy: the compiler then knows that no write below changes it.
+    // A local copy, so that the compiler knows that no write below changes it.
     let motion = *motion;
     let linear = motion.linear_mobility(kick);
     free.resize(drives.len(), Velocity::default());

@@ -31,7 +31,7 @@ pub(crate) struct Integrator {
     pub(crate) last: LastSubstep,
     /// Speed in cm/s of water with inertia at the time of the velocities, counter-clockwise positive; 0 without inertia.
     pub(crate) water_cm_s: f64,
-    /// Speed in cm/s at which this substep's boats would keep the water.
+    /// Speed in cm/s that the water would have after a long time with this substep's velocities.
     pub(super) driven_water_cm_s: f64,
     pub(crate) statistics: Statistics,
     /// Length of the last change of velocity in s. Impulses divided by it are forces.

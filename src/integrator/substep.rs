@@ -1,4 +1,4 @@
-//! One substep, and the memory of it.
+//! One substep, and what is remembered of the last one.
 
 use super::phase_schedule::Phase;
 use crate::clock::Ticks;
@@ -26,7 +26,7 @@ pub(crate) struct Substep<'a> {
     pub steering: Steering<'a>,
 }
 
-/// Memory of the leapfrog scheme: the second half of the last substep belongs to the next kick.
+/// The last substep, which leapfrog remembers because its second half belongs to the next kick.
 /// Snapshots store the fields in this order.
 #[derive(Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct LastSubstep {
@@ -36,7 +36,8 @@ pub(crate) struct LastSubstep {
     pub phase: usize,
     /// The rudders held in it; `None` for the steering law.
     pub rudder: Option<Vec<f64>>,
-    /// Linear acceleration of each boat by contacts that are likely to last; empty for none.
+    /// Linear acceleration of each boat by contacts that are likely to last; empty without such
+    /// contacts.
     pub persistent_acceleration: Vec<Vec2>,
 }
 

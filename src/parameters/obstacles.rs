@@ -77,7 +77,7 @@ pub(super) trait Row: Copy {
 pub(super) trait ObstacleRow: Row {
     /// The reason why the shape is refused, if it is.
     fn flaw(&self) -> Option<&'static str>;
-    /// The least and the largest distance of its points from the pool's center.
+    /// The least and the largest distance of the obstacle's points from the pool's center.
     fn distances(&self) -> (f64, f64);
 }
 

@@ -80,7 +80,7 @@ impl Preset {
             .or_else(|| declared.map(|field| field.source))
     }
 
-    /// The parameters, and the sources of what differs from the preset `simulation`.
+    /// The preset's parameters, and the sources of the values that differ from the preset `simulation`.
     fn changes(self) -> (FlockParameters, &'static [(&'static str, &'static str)]) {
         match self {
             Self::Simulation => changes! {},

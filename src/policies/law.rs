@@ -161,7 +161,7 @@ impl Law {
         self.leaning().map_or(Ok(()), LeaningLaw::check)
     }
 
-    /// The damped law that it steers by, if any.
+    /// The damped law that this law uses to steer, if any.
     fn damped(&self) -> Option<&DampedLaw> {
         match self {
             Self::Damped(law) => Some(law),
@@ -177,7 +177,7 @@ impl Law {
         }
     }
 
-    /// The rudder in [−1, 1] on a course about the law's own heading, with the precision of actions.
+    /// The rudder in [−1, 1] for a course relative to the law's desired heading, rounded as actions are.
     pub(super) fn rudder(&self, course: &Course) -> f64 {
         let rudder = match self {
             Self::EverySubstep | Self::Paper => steering_law(course.misalignment),

@@ -58,8 +58,8 @@ pub struct LeaningLaw {
     pub gains: Option<DampedLaw>,
     /// Bound of the lean.
     pub bound: Bound,
-    /// For how many s a lean or a rudder is held, a whole number of control steps; `None`: one control step. If leans
-    /// are held, the gains must be those tuned in the pool, as for the action mode "lean".
+    /// Time in s for which a lean or a rudder is held, a whole number of control steps; `None`: one control step. If
+    /// leans are held, the gains must be those tuned in the pool, as for the action mode "lean".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decision_period_s: Option<f64>,
     /// Lean in rad, or rudder, if every feature has its usual value.
@@ -220,7 +220,7 @@ impl LeaningLaw {
         FlockError::unless(is_time, "decision_period_s", period, accepted)
     }
 
-    /// The lean over [`LARGEST_LEAN`], or the rudder, for standardized features, in [−1, 1], with the precision of actions.
+    /// The lean over [`LARGEST_LEAN`], or the rudder, for standardized features; in [−1, 1], rounded as actions are.
     pub fn action(&self, features: &[f32]) -> f32 {
         let terms = self.weights.iter().zip(features);
         let lean: f64 = terms.fold(self.bias, |lean, (weight, &feature)| {

@@ -23,7 +23,7 @@ pub struct Pilot {
     views: Views,
 }
 
-/// Reads courses from flocks with certain parameters.
+/// Readers of courses, for flocks with certain parameters.
 #[derive(Debug, Clone)]
 struct Views {
     parameters: FlockParameters,
@@ -100,8 +100,8 @@ impl Pilot {
         }
     }
 
-    /// Sets the angles in rad by which the leaders' headings lean outward of their targets' tangents from now on. They need
-    /// not be wrapped. A leaning law replaces them at its next decision.
+    /// Sets the angles in rad, wrapped or not, by which the leaders' headings lean outward from their targets'
+    /// tangents. A leaning law replaces them at its next decision.
     pub fn lean_to(&mut self, leans: impl IntoIterator<Item = f64>) {
         for (lean, new) in self.leans.iter_mut().zip(leans) {
             *lean = new;

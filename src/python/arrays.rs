@@ -18,7 +18,7 @@ fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
     object.getattr("shape").ok()?.extract().ok()
 }
 
-/// The shape that the first items of an array-like suggest, up to a number of axes. An error if the first item is not a
+/// The shape of an array-like, judged by its first items, up to a number of axes. An error if the first item is not a
 /// real number.
 fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<usize>> {
     if let Some(shape) = array_shape(object) {
@@ -50,7 +50,7 @@ fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
 }
 
 /// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item by
-/// item: NumPy would copy them before their shape is known, and a short tuple of views or a `range` may stand for more
+/// item. NumPy would copy them before their shape is known, but a short tuple of views or a `range` may stand for more
 /// numbers than memory can hold.
 struct Numbers {
     values: Vec<f64>,
@@ -70,7 +70,7 @@ impl Numbers {
         Err(wrong_shape(name, &found, &shape_text(expected)))
     }
 
-    /// Reads a part of that shape; returns false if its shape differs.
+    /// Reads a part that should have this shape; returns false if it has another one.
     fn read(&mut self, part: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<bool> {
         if let Some(found) = array_shape(part) {
             return Ok(found == shape && self.read_array(part, name)?);
@@ -98,7 +98,7 @@ impl Numbers {
     fn read_array(&mut self, array: &Bound<'_, PyAny>, name: &str) -> PyResult<bool> {
         let py = array.py();
         let mask = array.getattr("mask");
-        // Other types may have a method of that name.
+        // On other types `mask` may be a method, which has no `any`.
         if let Ok(any) = mask.and_then(|mask| mask.call_method0("any"))
             && any.is_truthy()?
         {

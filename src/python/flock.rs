@@ -240,7 +240,7 @@ pub(super) fn rudders_from(
     Ok(rudders)
 }
 
-/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; the pose alone will do.
+/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; only the pose is required.
 pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
     let accepted = "a dictionary with pose and, if you like, velocity, time_s and allow_overlap";
     let state = value.cast::<PyDict>();
@@ -322,7 +322,7 @@ impl PyFrameRenderer {
     #[new]
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let side = |object, name| {
-            // A number beyond 32 bits is as much out of range as the largest one within.
+            // A number beyond 32 bits is refused like the largest one within.
             Ok::<_, PyErr>(u32::try_from(argument::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);

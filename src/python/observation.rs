@@ -39,7 +39,7 @@ pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     Ok(rows.collect())
 }
 
-/// Observations of a flock's leaders: (k, size) float32, with the rudders as they stand.
+/// Observations of a flock's leaders, (k, size) float32, given their present rudders.
 #[pyfunction]
 #[pyo3(signature = (flock, blocks, mirror_to_target=false, rudder=None))]
 pub(super) fn observe<'py>(

@@ -30,9 +30,9 @@ pub(super) struct Plan<'py> {
     progress: Option<Bound<'py, PyAny>>,
 }
 
-/// The steering of a run: a law, or a function of the signs of the leaders' targets (k,) and their observations (k, size), one for
-/// each layout, that returns rudders (k,). It is called at every control step. Without a rate the law for every substep
-/// steers; no function can.
+/// The steering of a run: a law, or a function of the signs of the leaders' targets (k,) and their observations (k,
+/// size), one array for each layout, that returns rudders (k,). It is called at every control step. Without a rate the
+/// law for every substep steers; no function can.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(super) struct Control<'py> {

@@ -40,7 +40,7 @@ pub(super) fn critical_bw_s(
     Ok(preset.critical_bw_s(&argument(pool, "pool")?))
 }
 
-/// Radii of a pool in cm, outer and inner, whether it has a name or not.
+/// Outer and inner radius in cm of a pool, which is given by its name or by two radii.
 #[pyfunction]
 pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     let pool: Pool = argument(pool, "pool")?;

@@ -32,7 +32,7 @@ impl KeyedNormals {
     }
 }
 
-/// Halvings of a cell. Below that, each time has its own draw.
+/// Number of times that a cell is halved. Within the smallest parts, each time has its own draw.
 const HALVINGS: u32 = 10;
 
 /// A Brownian path per boat, readable at any time: the same path however the time axis is cut.
@@ -190,7 +190,7 @@ impl BrownianPaths {
     }
 }
 
-/// Adds `sign` times each value.
+/// Adds `sign` times each value to `sums`.
 fn add(sums: &mut [f64], sign: f64, values: &[f64]) {
     sums.iter_mut()
         .zip(values)

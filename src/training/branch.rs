@@ -241,7 +241,7 @@ impl Task {
         }
     }
 
-    /// The pair after a branch, which continues from one of its flocks or starts again.
+    /// The pair after a branch: it continues from the state of one of its flocks, or starts a new episode.
     fn next(&self, pair: &Pair, continued: &Side, is_clockwise: bool) -> Result<Pair> {
         if pair.left <= 1 {
             return Ok(Pair {

@@ -63,7 +63,7 @@ impl Memory {
 pub struct Trainer {
     task: Task,
     memory: Memory,
-    /// Branches of the round under way.
+    /// Finished branches of the current round.
     under_way: Vec<(Outcome, Pair)>,
 }
 
@@ -245,7 +245,8 @@ impl Trainer {
             let period = Some(settings.decision_period_s);
             return LeaningLaw::new(pool, None, period, &numbers(1.0));
         }
-        // The law decides at every control step: it leads better than with the held leans of the training.
+        // The law decides at every control step, since it then leads better than with leans that are held as in the
+        // training.
         let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
         LeaningLaw::new(pool, Some(gains), None, &numbers(LARGEST_LEAN))
     }

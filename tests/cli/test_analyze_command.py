@@ -159,7 +159,7 @@ def test_mistakes_are_one_line_with_exit_code_2(cli, run, tmp_path):
             "order.xyz is not accepted: a name that ends in .eps",
         ),
         (["analyze", "run.npz", "--out", "alone.csv"], "--force overwrites it"),
-        (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml is there already"),
+        (["analyze", "run.npz", "--out", "layout.csv"], "layout.toml already exists"),
         (["analyze", "absent.npz", "--out", "new.csv"], "absent.npz cannot be read"),
     ):
         paths = [

@@ -20,7 +20,7 @@ def _in_a_folder_of_its_own(tmp_path, monkeypatch):
 def test_files_are_prepared_or_refused(tmp_path):
     Path("file").touch()
     for path, words in (
-        (Path("file"), "file is there already: --force overwrites it"),
+        (Path("file"), "file already exists: --force overwrites it"),
         (tmp_path, "it is a folder"),
         (Path("file", "a.npz"), "a.npz cannot be written: "),
         (Path("a" * 300, "a.npz"), "a.npz cannot be written: File name too long"),

@@ -73,7 +73,7 @@ def test_what_is_there_is_overwritten_only_if_that_is_asked_for(cli, tmp_path, m
         cli.succeeds("run", *SMALL, "-q")
         assert sorted(each.stem for each in Path("results").glob("*.npz")) == names
     refused = cli("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "-q")
-    assert "results/run.npz is there already: --force overwrites it" in refused.stderr
+    assert "results/run.npz already exists: --force overwrites it" in refused.stderr
     assert flockenv.Recording.load("results/run.npz").seed == 0
     cli.succeeds("run", *SMALL, "--seed", "1", "--out", "results/run.npz", "--force", "-q")
     assert flockenv.Recording.load("results/run.npz").seed == 1
@@ -86,7 +86,7 @@ def test_a_toml_file_that_no_run_wrote_is_never_overwritten(cli, tmp_path, monke
         Path("mine.toml").write_text(text)
         refused = cli("run", *SMALL, "--out", "mine.npz", "-q", *force)
         assert refused.returncode == 2
-        assert "mine.toml is there already, and no run wrote it" in refused.stderr
+        assert "mine.toml already exists, and no run wrote it" in refused.stderr
         assert Path("mine.toml").read_text() == text
         assert not Path("mine.npz").exists()
 

@@ -105,7 +105,9 @@ def test_a_folder_holds_one_sweep(cli, tmp_path: Path) -> None:
     for more in ([], ["--shard", "1/2"], ["--json"]):
         refused = cli("sweep", other, "--out", out, *more)
         assert refused.returncode == 2
-        assert "sweep.toml is there already, of another sweep" in refused.stderr.replace("\n", " ")
+        assert "sweep.toml already exists and belongs to another sweep" in refused.stderr.replace(
+            "\n", " "
+        )
         assert before == {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     # Looking at it changes nothing, and the same design may have another layout.
     cli.succeeds("sweep", other, "--out", out, "--dry-run")

@@ -202,7 +202,7 @@ def test_two_places_at_one_time_are_refused_on_clocks_of_each_boat(seen):
     number = seen.table["track"].str.removeprefix("boat").astype(int)
     table = seen.table.assign(t=seen.table["frame"] / 10 + number * 0.004)
     other = table.assign(x_px=1600 - table["x_px"])
-    with pytest.raises(flockenv.ParameterError, match="is there 2 times"):
+    with pytest.raises(flockenv.ParameterError, match="appears 2 times"):
         read_tracks(pd.concat([table, other]).sort_index(kind="stable"), TIMED)
 
 

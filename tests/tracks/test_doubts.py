@@ -242,7 +242,7 @@ def test_columns_are_found_without_looking_through_all(tmp_path, monkeypatch):
     line = ",".join(["10.5,20.5"] * boats)
     (tmp_path / "wide.csv").write_text(f"frame,{','.join(names)}\n0,{line}\n1,{line}\n")
     layout = TrackLayout(pool=(100.0, 0.0), fps=1.0, x="x{id}", y="y{id}", heading=None)
-    with pytest.raises(flockenv.ParameterError, match="no boat is ever there"):
+    with pytest.raises(flockenv.ParameterError, match="no boat is ever present"):
         read_tracks(tmp_path / "wide.csv", layout)
     assert len(calls) < 6 * len(names)
 

@@ -164,7 +164,7 @@ def test_names_of_spots_are_no_names_of_boats(seen):
     table = seen.table[:2000].assign(track=np.arange(2000))
     _, report = read_and_counted(table, but(LAYOUT, leaders=()))
     assert report.lone == report.samples
-    assert "no boat is there in two frames one after another" in str(report)
+    assert "no boat appears in two successive frames" in str(report)
 
 
 def test_boats_beside_each_other_have_all_columns_of_a_layout():

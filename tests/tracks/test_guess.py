@@ -66,7 +66,7 @@ def test_what_is_not_found_is_to_be_filled_in(tmp_path):
     assert [line.split()[0] for line in checks if "fill in" in line] == ["x", "y", "id", "pool"]
     with pytest.raises(flockenv.ParameterError, match="x = '' is not accepted"):
         read_tracks(tmp_path / "odd.csv")
-    with pytest.raises(flockenv.ParameterError, match="there already"):
+    with pytest.raises(flockenv.ParameterError, match="already exists"):
         guess_layout(tmp_path / "odd.csv")
 
 

@@ -147,7 +147,7 @@ def test_boats_whose_names_look_like_something_else_are_boats(seen, name, tmp_pa
 def test_rows_that_are_there_twice_are_dropped_and_counted(seen):
     table = pd.concat([seen.table, seen.table.iloc[100:140]]).sort_values("frame", kind="stable")
     found, report = read_and_counted(table, LAYOUT)
-    assert sum(report.left_out["that are there twice"].values()) == 40
+    assert sum(report.left_out["that are repeated"].values()) == 40
     assert found == read_tracks(seen.table, LAYOUT)
 
 
@@ -155,7 +155,7 @@ def test_another_row_of_a_boat_in_a_frame_is_named_with_its_line(seen, tmp_path)
     other = seen.table.iloc[[100]].assign(x_px=700)
     table = pd.concat([seen.table[:101], other, seen.table[101:]])
     table.to_csv(tmp_path / "tracks.csv", index=False)
-    with pytest.raises(flockenv.ParameterError, match=r"is there 2 times .* in line 103"):
+    with pytest.raises(flockenv.ParameterError, match=r"appears 2 times .* in line 103"):
         read_tracks(tmp_path / "tracks.csv", LAYOUT)
 
 

@@ -24,7 +24,7 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
 def test_a_layout_that_is_there_is_kept(seen, tmp_path):
     (tmp_path / "run.toml").write_text('pool = "narrow"  # measured on 3 May\n')
     for ending in (".csv", ".parquet"):
-        with pytest.raises(flockenv.ParameterError, match=r"run\.toml is there already"):
+        with pytest.raises(flockenv.ParameterError, match=r"run\.toml already exists"):
             export(seen.truth, tmp_path / f"run{ending}")
     assert [path.name for path in tmp_path.iterdir()] == ["run.toml"]
     assert "measured on 3 May" in (tmp_path / "run.toml").read_text()

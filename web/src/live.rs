@@ -65,7 +65,7 @@ pub(crate) struct Live {
 }
 
 impl Live {
-    /// A flock from its start, with its first sample.
+    /// Starts a flock, and takes its first sample.
     ///
     /// # Errors
     /// As for [`Flock::new`] and [`Request::leaders`].

@@ -25,7 +25,7 @@ from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.ppo.settings import TrainingSettings
 
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
-#: Numbers kept of each episode.
+#: Numbers that are logged for each episode.
 _SUMMARY = ("signed_order", "worst_overlap_cm", "unsolved")
 
 

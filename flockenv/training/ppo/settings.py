@@ -20,13 +20,13 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-#: How fast a pool's order responds decides the times in s: of an episode, of the discount, of the
+#: Times in s by pool, chosen by how fast its order responds: of an episode, of the discount, of the
 #: advantages, and for which a flock's leaders hold one exploration.
 _TIMES_S: Mapping[str, Mapping[str, float]] = {
     "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 240.0},
     "narrow": {"episode": 240.0, "discount": 60.0, "advantage": 27.0, "hold": 60.0},
 }
-#: The lean features alone, by which leaders lean.
+#: Only the lean features, on which leans depend.
 _OBSERVATION: Mapping[str, Any] = {
     "own": False,
     "phase": False,

@@ -1,5 +1,5 @@
-//! The camera between flock and leaders: its frames miss boats and come one frame late, as in the experiment (0.3 % of
-//! the boats were not recognized in a frame, Section 3.1). It is off by default, and then costs nothing.
+//! The camera between flock and leaders: its frames miss boats and may come one frame late. In the experiment 0.3 % of
+//! the boats were not recognized in a frame (Section 3.1). It is off by default, and then costs nothing.
 
 use super::view::FlockView;
 use crate::analysis::OrderParameters;

@@ -1,4 +1,5 @@
-//! The course that steering laws read, rounded as observations are: from an observation, or from a flock in view.
+//! The course that steering laws read, from an observation or directly from a flock. Both are rounded as observations
+//! are.
 
 use super::blocks::{Block, OWN, TARGET, own};
 use super::view::{FlockView, Scaling};
@@ -44,8 +45,8 @@ impl CourseReader {
         })
     }
 
-    /// The course relative to a heading that leans by an angle (rad) outward of the target's tangent; mirrored if the
-    /// observation is.
+    /// The course relative to a heading that leans by `outward` (rad) from the target's tangent. It is mirrored if
+    /// the observation is.
     pub fn course(&self, observation: &[f32], outward: f64) -> Course {
         let read = |index: usize| f64::from(observation[index]);
         let target = self.target.map_or(1.0, read);

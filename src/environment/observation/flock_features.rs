@@ -40,7 +40,8 @@ const GROUP: [Entry; 24] = [
     Entry::new("clumping_3", "", Scale::Plain, FLAG, "|mean exp(3i*theta)|"),
 ];
 
-/// Means over the leaders of sums over the normal boats, each with exp(-d²/2) of its distance in 6 boat radii.
+/// Sums over the normal boats, weighted by exp(-d²/2), where d is their distance from a leader in units of 6 boat
+/// radii; means over the leaders.
 #[rustfmt::skip]
 const NEAR_LEADERS: [Entry; 4] = [
     Entry::new("near", "", Scale::Plain, SEVERAL, "mean over leaders of the sum over normal boats of the weight exp(-d^2/2), d their distance over 6 boat radii"),
@@ -140,7 +141,8 @@ impl FlockFeatures {
         }
     }
 
-    /// Means over the leaders of sums over the normal boats, each with exp(−d²/2) of its distance.
+    /// For each leader, sums values of the normal boats with the weight exp(−d²/2), where d is the scaled distance;
+    /// returns the means over the leaders.
     fn near_leaders(&self, leaders: &[Seen], normal: &[Seen]) -> [f64; NEAR_LEADERS.len()] {
         let mut sums = [0.0; NEAR_LEADERS.len()];
         for leader in leaders {
@@ -185,7 +187,7 @@ fn moments(group: &[Seen]) -> [f64; GROUP.len()] {
     sums.map(|sum| sum / group.len().max(1) as f64)
 }
 
-/// The numbers of a boat whose means are the first features of its group.
+/// A boat's numbers. Their means are the first features of its group.
 fn products(boat: &Seen) -> [f64; 15] {
     [
         boat.radial,

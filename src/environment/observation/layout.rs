@@ -167,7 +167,7 @@ impl Setting for ObservationLayout {
         blocks.collect()
     }
 
-    /// Blocks that are not named keep their default.
+    /// Blocks that the value does not name keep their default.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         let Value::Map(blocks) = value else {
             return wrong_kind(name, "a dictionary of blocks");

@@ -63,7 +63,7 @@ impl BlockPivoting {
             let slack = problem.slack(contacts[side], velocities);
             residual(diagonals[side] * pushes[side], slack, self.regularization)
         });
-        // Pivoting refines its own solution, so it starts from free velocities again.
+        // Pivoting then solves the island; it has to start from free velocities again.
         if !residuals.iter().all(|residual| *residual <= 0.5 * EXACT) {
             return false;
         }

@@ -198,7 +198,7 @@ impl Rows {
         let Self { rows, bodies } = self;
         for _ in 0..sweeps {
             for row in rows.iter_mut() {
-                // Each row waits for the one before it, except for the division; `f64::max` would take longer.
+                // Only the division can overlap with the row before. `f64::max` would take longer than the comparison.
                 let inverse = 1.0 / row.diagonal;
                 let (full, least) = (-row.slack(bodies) * inverse, -row.impulse);
                 let change = if full > least { full } else { least };

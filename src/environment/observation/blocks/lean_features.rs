@@ -132,7 +132,7 @@ impl LeanFeatures {
         })
     }
 
-    /// The features of a leader as observed. Leaders come one after another, from 0.
+    /// The features of a leader, rounded as in an observation. Leaders must be asked for in their order, from 0.
     pub fn observed(&mut self, view: &FlockView, leader: usize) -> [f32; LEAN_FEATURES] {
         self.standard(&Seen::new(view, leader))
             .map(|value| value.clamp(-BOUND, BOUND) as f32)
@@ -173,8 +173,8 @@ impl WriteBlock for LeanFeatures {
     }
 }
 
-/// The features of a view, in their order: some of its numbers, and sums over the present neighbors. Normal boats count
-/// with exp(-d²/2), leaders with exp(-d²/8), where d is their distance in 6 boat radii.
+/// The features of a view, in their order: some of its numbers, and sums over the present neighbors. Normal boats have
+/// the weight exp(-d²/2), leaders exp(-d²/8), where d is their distance in units of 6 boat radii.
 fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
     let [radial, cos, sin, outward, clockwise, forward, spin] =
         [0, 1, 2, 3, 4, 5, 6].map(|index| view[index]);

@@ -90,7 +90,7 @@ macro_rules! declare_blocks {
                 match self { $(Self::$block => concat!("observation ", $name),)+ }
             }
 
-            /// Its entries; a counted block has the entries of one neighbor or obstacle.
+            /// The block's entries; for a counted block, those of one neighbor or obstacle.
             pub(crate) fn entries(self) -> &'static [Entry] {
                 match self { $(Self::$block => &$module::$entries,)+ }
             }
