@@ -199,7 +199,7 @@ class FlockParameters:
         return cls._from_core(_changed(changes.pop("preset", "simulation"), changes))
 
     def to_toml(self) -> str:
-        """Return the parameters as TOML, every field on a line of its own."""
+        """Return the parameters as TOML, one field per line."""
         return tomli_w.dumps(self.to_dict())
 
     @classmethod

@@ -29,7 +29,7 @@ export function trainingCommand({ preset = "simulation", ...flock }, values, { f
   return preset === "simulation" ? `flockenv train --algorithm branches ${words.join(" ")}` : "";
 }
 
-/** The command that simulates a flock for a number of seconds, with its changes; empty for leaders with policies of their own. */
+/** The command that simulates a flock for a number of seconds, with its changes; empty if leaders have different policies. */
 export function commandLine(flock, seconds, changes = []) {
   const words = ["flockenv run", ...(flock.preset ? [`--preset ${flock.preset}`] : []), ...fieldWords(flock)];
   const { leaders = "" } = flock;

@@ -1,4 +1,4 @@
-"""`flockenv compare`: policies against each other, in flocks of one's own or on frozen tasks."""
+"""`flockenv compare`: policies against each other, in the user's flocks or on frozen tasks."""
 
 import json
 import math

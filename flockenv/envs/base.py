@@ -18,7 +18,7 @@ from flockenv.flock import Flock
 
 
 class OwnFlocks(FixedOptions):
-    """An environment whose copies, shallow ones too, have flocks of their own."""
+    """An environment whose copies, including shallow ones, have their own flocks."""
 
     def __copy__(self) -> Self:
         return copy.deepcopy(self)
@@ -53,7 +53,7 @@ class Resumable(OwnFlocks):
     def clone(self) -> Self:
         """Return an independent copy that continues with the same bits.
 
-        A copy of an environment that was never reset draws a seed of its own.
+        If the environment was never reset, its copy draws another seed.
         """
         return copy.deepcopy(self)
 

@@ -63,7 +63,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     ),
     "flockenv/Order-narrow-v0": _from_nothing(
         "Can three leaders of 27 boats learn to steer in `narrow`, where boats stand close? They "
-        "choose rudders, by the default observation.",
+        "choose rudders from the default observation.",
         0.45,
         240.0,
         n_boats=27,
@@ -72,7 +72,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     ),
     "flockenv/Order-wide-v0": _from_nothing(
         "Can three leaders of 27 boats learn to steer in `wide`, where the order answers within "
-        "minutes? They choose rudders, by the default observation.",
+        "minutes? They choose rudders from the default observation.",
         0.31,
         480.0,
         n_boats=27,

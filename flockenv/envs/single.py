@@ -161,8 +161,8 @@ class LeadersEnv(
             next one.
         options
             For this episode: ``target``, ``bw_s`` in s, and ``state`` or ``snapshot``, as the class
-            says of the starting state. A snapshot is of a flock with the same parameters, target
-            and bw_s aside; with ``noise_seed`` it continues with other noise, as in
+            says of the starting state. A snapshot must come from a flock with the same parameters,
+            except for target and bw_s. With ``noise_seed`` it continues with other noise, as in
             `Flock.restore`.
 
         Returns

@@ -136,7 +136,7 @@ class Policy:
         return CONTROL_HZ if self.control_hz is None else self.control_hz
 
     def started(self) -> Self:
-        """Return the policy for the start of a run; this one stays as it is.
+        """Return the policy for the start of a run; this one stays unchanged.
 
         A model or a user's own object is not copied.
         """

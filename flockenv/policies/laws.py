@@ -99,7 +99,7 @@ class SteeringLaw(LawPolicy):
 
 
 class NamedLaw(LawPolicy):
-    """A law of the core that has no class of its own, by its name.
+    """A law of the core that has only a name, and no Python class.
 
     Parameters
     ----------

@@ -147,8 +147,8 @@ class WrappedPolicy(ModelPolicy):
         if episode_start is not None and episode_start.any():
             if not episode_start.all():
                 raise ParameterError(
-                    "episode_start of some flocks is not accepted: what a wrapper remembers starts "
-                    "again for all of them"
+                    "episode_start of some flocks is not accepted: a wrapper's memory restarts "
+                    "for all flocks together"
                 )
             starts = True
         own = normalizing(self.model)

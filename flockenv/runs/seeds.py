@@ -91,7 +91,7 @@ def release_seeds(tag: str, count: int) -> range:
     """Return the seeds for the final tables of a release, given its tag.
 
     The first seed is the first eight bytes of the tag's SHA-256 as a big-endian number, modulo 2^32
-    less the count. These are seeds for evaluation that nobody chose.
+    minus the count. So nobody can choose these seeds, which are for evaluation.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
         raise ParameterError(f"count = {short_repr(count)} is not accepted: from 1 to 2^32 - 1")

@@ -135,7 +135,7 @@ def run_missing(
     progress: Callable[[RunSpec], None] = lambda spec: None,
     workers: int | None = None,
 ) -> dict[RunSpec, FlockError]:
-    """Make those runs that the store lacks, keeping each as soon as it is finished.
+    """Make the runs that are missing from the store, and store each as soon as it is finished.
 
     Parameters
     ----------

@@ -64,8 +64,8 @@ def evaluate_flocks(
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
     A model that was trained in `VecNormalize` gets observations that are normalized as in its
-    training, even if `env` is a plain `LeaderVecEnv`. If `env` has a `VecNormalize` of its own,
-    this takes over the training's statistics, ``clip_obs`` and ``epsilon``.
+    training, even if `env` is a plain `LeaderVecEnv`. If `env` has a `VecNormalize`, that one takes
+    over the training's statistics, ``clip_obs`` and ``epsilon``.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def evaluated(
     render: bool = False,
     keep: Callable[[dict[str, Any], dict[str, Any]], None] = lambda *_: None,
 ) -> FlockEvaluation:
-    """Evaluate, and hand each step to `keep` as `evaluate_policy` does to its callback."""
+    """Evaluate, and call `keep` at each step as `evaluate_policy` calls its callback."""
     orders: list[float] = []
 
     def kept(step: dict[str, Any], everything: dict[str, Any]) -> None:

@@ -50,7 +50,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     ## Observation space
     A slot's is a `Box` of shape (observation size,), float32. `state()` gives each slot the global
-    state of its flock, `flock_features()` the features of its flock in the frame of its own target.
+    state of its flock. `flock_features()` gives it the features of its flock, in the frame of the
+    slot's target.
 
     ## Rewards
     Each slot gets the weighted sum of its terms; terms of a leader alone are its own.

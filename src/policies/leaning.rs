@@ -26,7 +26,7 @@ pub struct Judged {
     pub signed_order: f64,
     /// 95 % interval of that mean.
     pub interval: [f64; 2],
-    /// Boats of each flock, the leaders among them.
+    /// Boats of each flock, leaders included.
     pub n_boats: usize,
     /// Leaders of each flock.
     pub n_leaders: usize,

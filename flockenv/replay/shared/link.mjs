@@ -24,7 +24,7 @@ export class LinkWriter {
     this.#due ??= setTimeout(() => {
       this.#due = null;
       const link = this.#link();
-      // A page inside another one, such as a notebook, has no address of its own.
+      // A page inside another one, such as a notebook, has no address itself.
       if (link === null || location.protocol === "about:") {
         return;
       }

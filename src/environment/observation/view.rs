@@ -31,7 +31,8 @@ pub struct FlockView<'a> {
 }
 
 impl<'a> FlockView<'a> {
-    /// A flock as it is, without a camera, with the present rudders and the order parameters of its normal boats.
+    /// The view of a flock without a camera, from its present rudders and the order parameters of its normal
+    /// boats.
     pub fn new(flock: &'a Flock, rudders: &'a [f64], order: Option<&'a OrderParameters>) -> Self {
         let parameters = flock.parameters();
         Self {
