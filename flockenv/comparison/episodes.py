@@ -29,9 +29,9 @@ NO_LEADERS = "no leaders"
 """Name under which runs without leaders are listed."""
 
 QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
-"""Compared columns: mean Ψ_o and mean signed order of the normal boats, and the part of the time in
-which the signed order exceeds 0.5; all over the frames in the analysis window after the first
-tenth."""
+"""Compared columns: mean Ψ_o and mean signed order of the normal boats, and the fraction of the
+time in which the signed order exceeds 0.5; all over the frames in the analysis window after the
+first tenth."""
 
 ORDERING_TIMES = dict(
     zip(("ordering_time_s", "ordering_time_wide_s"), _core.ORDERED_WITHIN, strict=True)

@@ -293,7 +293,7 @@ def _check_seeds(first: int, last: int, name: str) -> None:
     if not FIRST_TRAINING_SEED <= first <= last:
         raise ParameterError(
             f"{name} = [{first}, {last}] is not accepted: seeds below 2^32 are for evaluation, and "
-            "no training may meet them"
+            "no training may use them"
         )
 
 

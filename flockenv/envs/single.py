@@ -61,7 +61,7 @@ class LeadersEnv(
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
     on. All entries are in the local-angle polar (LAP) frame of the leader's own position, outward
     and clockwise. They are scaled and clipped at their bounds; the end of the episode reports the
-    share of clipped numbers. `observation` switches blocks on and off, such as:
+    fraction of clipped numbers. `observation` switches blocks on and off, such as:
 
     - `own`: position, heading, velocity, spin and rudder of the leader
     - `phase`: phase of the motors, time left in it, length of the backward phase
@@ -107,10 +107,10 @@ class LeadersEnv(
     - `total_reward`, and the mean of each reward term over steps and leaders
     - means of order parameters of the normal boats, such as `psi_o`, `signed_order` and `rotation`,
       over the analysis window without the first tenth; an episode that ends before it has none
-    - `share_towards_target`: part of that window with a signed order above 0.5
+    - `share_towards_target`: fraction of that window with a signed order above 0.5
     - `ordering_time_s` and `ordering_time_wide_s`: eq. (7) with the angle π/20 as printed and with
       π/4; infinite if the flock never ordered
-    - `clip_rate`: share of clipped numbers in the observations
+    - `clip_rate`: fraction of clipped numbers in the observations
     - `worst_overlap_cm`, `unsolved` and `halved_substeps` of the flock, as in `flockenv.Statistics`
 
     ## Arguments

@@ -34,7 +34,7 @@ pub(crate) const CLUSTERED: f64 = 0.75;
 
 impl CollectiveState {
     /// The state of a flock in the analysis window from its order parameters, its boats' preferred forward speed and
-    /// the share of boats in its largest cluster.
+    /// the fraction of boats in its largest cluster.
     pub fn from_order(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
         let moving = order.psi_v >= MOVING * speed_cm_s;
         if order.psi_o > HIGH_ORDER {

@@ -7,9 +7,9 @@ use crate::geometry::{Hull, HullPose, turned_left};
 use crate::parameters::{Target, Targets};
 use tiny_skia::{PathBuilder, Pixmap};
 
-/// Width of outlines as a share of the hull's radius, and the least in pixels.
+/// Width of outlines as a fraction of the hull's radius, and the least width in pixels.
 const EDGE: (f32, f32) = (0.14, 1.0);
-/// Width of a leader's ring, as a share of the radius and the least in pixels.
+/// Width of a leader's ring as a fraction of the hull's radius, and the least width in pixels.
 const RING: (f32, f32) = (0.34, 1.8);
 /// Least drawn radius in pixels: boats of a huge pool stay visible.
 const LEAST_RADIUS: f32 = 1.0;

@@ -12,8 +12,8 @@ use tiny_skia::Pixmap;
 const SIDE_OVER_SIZE: f32 = 40.0;
 /// The smallest letters, in pixels.
 const LEGIBLE_SIZE: f32 = 9.0;
-/// Space for the text of a corner, in letter sizes, and its least distance from the middle, as a share of the frame's
-/// shorter side. Frames too small for it show only the boats.
+/// Space for the text of a corner, in letter sizes, and its least distance from the middle, as a fraction of the
+/// frame's shorter side. Frames too small for it show only the boats.
 const CORNER: (f32, f32) = (13.0, 4.0);
 const CLEAR: f32 = 0.39;
 /// Distance of two baselines, and distance to the frame's edge, in sizes.

@@ -15,8 +15,8 @@ const FINER: f64 = 8.0;
 const SHORTEST_S: f64 = 1e-6;
 
 impl Flock {
-    /// Changes `dt_s` from now on. White noise keeps its paths: flocks made with the same parameters and seed meet the
-    /// same noise at any later step.
+    /// Changes `dt_s` from now on. White noise keeps its paths: flocks made with the same parameters and seed get the
+    /// same noise with any later step.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a step out of range; the flock is unchanged then.

@@ -1,4 +1,4 @@
-//! Training of leaders in paired branches: two flocks start from the same state and meet the same noise, so that they
+//! Training of leaders in paired branches: two flocks start from the same state and get the same noise, so that they
 //! differ only by their leaders' actions.
 
 mod branch;

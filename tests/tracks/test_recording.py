@@ -74,7 +74,7 @@ def test_phases_that_are_known_have_their_analysis_window():
         ({"pose": np.zeros((2, 2, 3))}, "pose has shape (2, 2, 3), expected (3, 2, 3)"),
         ({"pose": np.full((3, 2, 3), np.nan)}, "NaN everywhere"),
         ({"pose": [[[0, 0, np.nan]] * 2] * 3}, "finite, except for missing boats"),
-        ({"pose": np.full((3, 2, 3), np.inf)}, "pose must be finite, but for boats that are not"),
+        ({"pose": np.full((3, 2, 3), np.inf)}, "pose must be finite, except for missing boats"),
         ({"pose": "here"}, "numbers"),
         ({"time_s": [0.0, 0.0, 1.0]}, "time_s must increase"),
         ({"velocity": np.zeros((3, 1, 3))}, "velocity has shape (3, 1, 3), expected (3, 2, 3)"),
