@@ -1,6 +1,6 @@
 //! An engine with its settings and its step.
 
-use crate::engines::{Box2d, Ours, rapier_f32, rapier_f64};
+use crate::engines::{Box2d, Controlled, Ours, rapier_f32, rapier_f64};
 use crate::table::{number, text};
 use crate::{Engine, Start};
 use flockenv::FlockParameters;
@@ -17,6 +17,11 @@ pub enum Kind {
         solver: Solver,
         /// Deepest overlap in cm that a step may leave.
         tolerance_cm: f64,
+    },
+    /// flockenv with the default scheme and a step that follows its error.
+    Controlled {
+        /// Difference in cm of a step and its two halves that is accepted.
+        accepted_cm: f64,
     },
     /// rapier2d-f64.
     RapierF64(rapier_f64::Settings),
@@ -44,6 +49,10 @@ pub struct Configuration {
 pub const STEPS_S: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
 /// The tolerances in cm that engines are compared at, from gaps that are linearized once to the finest.
 pub const TOLERANCES_CM: [f64; 4] = [f64::INFINITY, 1e-4, 1e-6, 1e-9];
+/// The tolerance in cm of steps that follow their error.
+pub const CONTROLLED_CM: f64 = 1e-6;
+/// The longest step in s.
+pub const LONGEST_S: f64 = 0.1;
 /// The step in s of the main comparison.
 pub const STEP_S: f64 = 0.01;
 
@@ -71,6 +80,14 @@ impl Configuration {
             tolerance_cm,
         };
         Self { kind, dt_s }
+    }
+
+    /// flockenv with a step that follows its error.
+    pub fn controlled(accepted_cm: f64) -> Self {
+        Self {
+            kind: Kind::Controlled { accepted_cm },
+            dt_s: LONGEST_S,
+        }
     }
 
     /// rapier2d-f64 at its default accuracy: what all ratios refer to.
@@ -180,12 +197,7 @@ impl Configuration {
             dt_s: self.dt_s,
             ..scene.clone()
         };
-        if let Kind::Ours {
-            scheme,
-            solver,
-            tolerance_cm,
-        } = self.kind
-        {
+        if let Some((scheme, solver, tolerance_cm)) = self.own() {
             parameters.scheme = scheme;
             parameters.solver = solver;
             parameters.tolerance_cm = tolerance_cm;
@@ -193,11 +205,29 @@ impl Configuration {
         parameters
     }
 
+    /// Scheme, solver and tolerance in cm of flockenv.
+    fn own(&self) -> Option<(Scheme, Solver, f64)> {
+        match self.kind {
+            Kind::Ours {
+                scheme,
+                solver,
+                tolerance_cm,
+            } => Some((scheme, solver, tolerance_cm)),
+            Kind::Controlled { .. } => {
+                Some((Scheme::Leapfrog, Solver::BlockPivoting, CONTROLLED_CM))
+            }
+            _ => None,
+        }
+    }
+
     /// The engine, set up for a scene.
     pub fn build(&self, scene: &FlockParameters, seed: u64, start: &Start) -> Box<dyn Engine> {
         let parameters = &self.parameters(scene);
         match self.kind {
             Kind::Ours { .. } => Box::new(Ours::new(parameters, seed, start)),
+            Kind::Controlled { accepted_cm } => {
+                Box::new(Controlled::new(parameters, seed, start, accepted_cm))
+            }
             Kind::RapierF64(settings) => {
                 Box::new(rapier_f64::Rapier::new(parameters, seed, start, settings))
             }
@@ -217,13 +247,9 @@ impl Configuration {
 
     /// Its cells of a table.
     pub fn cells(&self) -> Vec<String> {
-        let (scheme, solver, tolerance_cm) = match self.kind {
-            Kind::Ours {
-                scheme,
-                solver,
-                tolerance_cm,
-            } => (scheme.name(), solver.name(), number(tolerance_cm)),
-            _ => ("", "", String::new()),
+        let (scheme, solver, tolerance_cm) = match self.own() {
+            Some((scheme, solver, cm)) => (scheme.name(), solver.name(), number(cm)),
+            None => ("", "", String::new()),
         };
         vec![
             text(self.engine()),
@@ -237,7 +263,7 @@ impl Configuration {
 
     fn engine(&self) -> &'static str {
         match self.kind {
-            Kind::Ours { .. } => "flockenv",
+            Kind::Ours { .. } | Kind::Controlled { .. } => "flockenv",
             Kind::RapierF64(_) => "rapier2d-f64",
             Kind::RapierF32(_) => "rapier2d (f32)",
             Kind::Box2d { .. } => "Box2D (f32)",
@@ -258,6 +284,7 @@ impl Configuration {
                 };
                 format!("{} / {} / {gaps}", scheme.name(), solver.name())
             }
+            Kind::Controlled { accepted_cm } => format!("controlled to {accepted_cm:e} cm"),
             Kind::RapierF64(set) => {
                 rapier_setting(set.iterations, set.length_unit_cm, set.round_obstacle)
             }

@@ -3,13 +3,14 @@
 
 use flockenv_benches::measure::{
     Effort, horizon, momentum, order, overlap, parts, profile, slide, solvers, speed, wall_push,
+    work,
 };
 use flockenv_benches::{Scene, exchange};
 use std::path::Path;
 use std::time::Instant;
 
 const USAGE: &str = "speed_vs_error [--trial] FOLDER \
-    (speed | overlap | slide | wall_push | momentum | horizon | order | solvers | profile | parts | \
+    (speed | work | overlap | slide | wall_push | momentum | horizon | order | solvers | profile | parts | \
     tasks FILES | judge FILES)... or speed_vs_error yardstick (jam | cycle)";
 
 fn main() {
@@ -54,6 +55,7 @@ fn main() {
 fn measure(part: &str, folder: &Path, effort: Effort) {
     let table = match part {
         "speed" => speed::measure(effort),
+        "work" => work::measure(effort),
         "overlap" => overlap::measure(effort),
         "slide" => slide::measure(),
         "wall_push" => wall_push::measure(),

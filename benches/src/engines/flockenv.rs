@@ -9,7 +9,7 @@ use flockenv::{Flock, FlockParameters};
 
 /// A flock.
 pub struct Ours {
-    flock: Flock,
+    pub(super) flock: Flock,
     dt: Ticks,
     is_lost: bool,
 }

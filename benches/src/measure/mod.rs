@@ -11,6 +11,7 @@ pub mod solvers;
 pub mod speed;
 pub mod threads;
 pub mod wall_push;
+pub mod work;
 
 use crate::Configuration;
 use crate::table::Table;
