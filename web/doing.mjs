@@ -6,7 +6,7 @@ import { tintOf } from "../flockenv/replay/shared/scene.mjs";
 const SHARES = [[1, "all"], [0.9, "nearly all"], [0.6, "most"]];
 const DIRECTIONS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
 
-/** How many boats of a run head in which direction. */
+/** Counts a run's boats by the direction in which they head. */
 function countsOf(run, sample, palette) {
   const counts = { clockwise: 0, "counter-clockwise": 0, radial: 0 };
   for (const pose of run.posesAt(run.time[sample])) {
@@ -15,7 +15,7 @@ function countsOf(run, sample, palette) {
   return counts;
 }
 
-/** Says how many boats of each of several flocks head clockwise. */
+/** Says, for each of several flocks, how many boats head clockwise. */
 export function clockwise(runs, time, palette) {
   const counts = runs.map((run) => countsOf(run, run.sampleAt(time), palette).clockwise);
   return `Clockwise: ${counts.join(", ")} of ${runs[0].boats} boats.`;
@@ -27,7 +27,7 @@ export function chosenBoat(run, time, boat, palette) {
   return `Boat ${boat}${boat < run.leaders ? ", a leader" : ""}: ${direction}.`;
 }
 
-/** Says of a run, at a sample, how many boats head in which direction. */
+/** Says how many boats of a run head in each direction, at a sample. */
 export function doing(run, sample, palette) {
   const { outer_radius_cm: outer, inner_radius_cm: inner } = run.lengths;
   const boats = `${run.boats} boat${run.boats > 1 ? "s" : ""}${run.leaders > 0 ? `, ${run.leaders} of them lead` : ""}`;

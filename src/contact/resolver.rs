@@ -412,7 +412,7 @@ impl ContactResolver {
         self.predicted.take_end(poses, hulls)
     }
 
-    /// Forgets the impulses, if nothing touched in this substep.
+    /// Forgets the impulses, because nothing touched in this substep.
     pub(crate) fn clear_warm_start(&mut self) {
         self.warm_start_cache.clear();
         self.solver.impulses.fill(0.0);

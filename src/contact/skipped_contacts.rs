@@ -68,7 +68,8 @@ impl SkippedContacts {
         allowed: f64,
     ) -> bool {
         let stays_open = |touches: &[Contact]| {
-            // If a wall continues in another one, its nearer touch may be missing.
+            // Where one wall continues another, the nearer touch may be missing, so it cannot be judged from the
+            // touches.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
             let is_far = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
             debug_assert!(!is_far || !predicted.overlaps(detector, touches, allowed));
