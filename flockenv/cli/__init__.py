@@ -43,7 +43,7 @@ def main() -> None:
         _print_version()  # Typer would import pydantic to read a flag.
         return
     try:
-        # A shell that asks for completions puts the words into the environment.
+        # For completions, a shell puts the words of the line into an environment variable.
         named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
         _app(named)()
     except (FlockError, OSError) as error:

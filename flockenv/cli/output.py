@@ -93,7 +93,7 @@ def prepare(*paths: Path, overwrites: bool = True) -> None:
 def open_page(page: Path) -> None:
     """Open a page in a browser; without one that can show it, print its path."""
     address = page.resolve().as_uri()
-    # A browser in the terminal would take it over, and run none of the page's scripts.
+    # A text browser would take over the terminal, and run none of the page's scripts.
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     has_display = sys.platform != "linux" or any(map(os.environ.get, displays))
     if not (has_display and webbrowser.open(address)):

@@ -128,7 +128,7 @@ def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
 
             def drawn(step_s: float) -> NDArray[np.uint8]:
                 advance()
-                # The shorter of two stays at its end.
+                # The shorter of two recordings stays at its last sample.
                 times = (min(run.time_s[0] + step_s, run.time_s[-1]) for run in runs)
                 frames = (
                     frame(run, time_s, colors=options.colors, caption=caption)

@@ -46,8 +46,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         "environments are this one with other options.",
         {},
     ),
-    # Few boats, many leaders and few numbers observed, so that samples show the order:
-    # baselines/learn_easy.py.
+    # With few boats, many leaders and small observations, a sample says more about the order.
     "flockenv/Order-easy-v0": _from_nothing(
         "The environment to start with: four of ten boats lead and see few numbers. The order "
         "answers within seconds, so that plain PPO learns to lead in two minutes of one core.",

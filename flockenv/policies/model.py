@@ -275,7 +275,8 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
                 "normalized: steer with the model in memory, or train without VecNormalize: "
                 "observations are scaled already"
             )
-        # Schedules, buffers and the like need not be read, and are never executed.
+        # Schedules, buffers and the like are not needed, so they are not read, nor their code
+        # executed.
         skipped = dict.fromkeys(stored.keys() - set(_NEEDED))
         data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
         model = _policy_of(data)

@@ -130,7 +130,7 @@ class WrappedPolicy(ModelPolicy):
         else:
             made = self._wrapper(_vector_stand_in(self._space, self._actions, items))
         for layer in _layers(made):
-            # Of stable-baselines3's VecNormalize and of Gymnasium's NormalizeObservation.
+            # Of stable-baselines3's VecNormalize, and of Gymnasium's NormalizeObservation.
             for learns in ("training", "update_running_mean"):
                 if hasattr(layer, "obs_rms") and hasattr(layer, learns):
                     setattr(layer, learns, False)

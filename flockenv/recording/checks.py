@@ -63,7 +63,7 @@ def check_array(
             raise ParameterError(f"{name} must be finite, except for missing boats")
     elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
-    # Sums are rounded.
+    # Rounding of sums may exceed a bound slightly.
     if bounds and ((array < bounds[0] - 1e-6) | (array > bounds[1] + 1e-6)).any():
         raise ParameterError(f"{name} must be within {bounds[0]:g} and {bounds[1]:g}")
 
@@ -86,7 +86,7 @@ def check_order(
     for quantity in RECORDED:
         values = getattr(order, quantity.name)
         undefined = normal_boats < quantity.least_boats
-        # Of a recording without poses whose file lacks this quantity.
+        # As in a recording without poses whose file lacks this quantity.
         undefined |= not posed and bool(np.isnan(values).all())
         check_array(
             f"order.{quantity.name}",

@@ -223,7 +223,7 @@ class Recording(HintsAtNames):
             "pose": self.pose[sample, present].astype(np.float64),
             "velocity": np.nan_to_num(self.velocity[sample, present].astype(np.float64)),
             "time_s": float(self.time_s[sample]),
-            # Rounding to single precision and cameras leave small overlaps.
+            # Both single precision and cameras cause small overlaps.
             "allow_overlap": True,
         }
 

@@ -130,7 +130,7 @@ def execute(spec: RunSpec) -> Recording:
         run = run.analyzed()
     if spec.keep != "poses":
         run = run.without_poses()
-    # The store keeps only these digits: this way a stored run equals one made now.
+    # Rounded as in the store, so that a stored run equals a new one.
     orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER}
     doubles = {name: values.astype(np.float64) for name, values in orders.items()}
     return replace(run, order=OrderSeries(**doubles))

@@ -248,8 +248,8 @@ def run_sweep(
 
 
 def _as_cell(value: object) -> object:
-    # A pool is a name or two radii, and a target one word or several: a column that mixes them
-    # would have no type.
+    # A pool is a name or two radii, and a target is one word or several. A column that mixed them
+    # would have no single type.
     if not isinstance(value, tuple):
         return value
     if all(isinstance(item, str) for item in value):

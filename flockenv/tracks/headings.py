@@ -131,7 +131,7 @@ def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
     zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
     turned = heading - zero
     for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
-        # A full turn of the smaller unit, and headings over more than half of one.
+        # Headings must stay within a full turn of the smaller unit, and span more than half of one.
         share = TURN[unit] / TURN[given]
         least = TURN["rad"] * share
         is_wide = np.ptp(turned[motion.present]) > 0.5 * least
