@@ -104,9 +104,9 @@ class EnvOptions:
         own_reward = _pop_function(given)
         if own_reward is not None and not takes_function:
             raise ParameterError(
-                f"reward = {short_repr(own_reward)} is not accepted: weights by name. Environments "
-                "of many flocks take a function, LeadersVectorEnv and LeaderVecEnv; of one flock "
-                "a subclass or a wrapper computes a reward of its own"
+                f"reward = {short_repr(own_reward)} is not accepted: weights by name. "
+                "LeadersVectorEnv and LeaderVecEnv also take a function. For a single flock, "
+                "compute your own reward in a subclass or a wrapper"
             )
         settings = {name: given.pop(name) for name in _SETTINGS if name in given}
         if isinstance(given.get("bw_s"), tuple | list):
