@@ -11,7 +11,7 @@ from flockenv._io.arguments import as_int, number
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
-from flockenv.policies.base import Pool
+from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import NAMES, policy
 from flockenv.recording import Recording
@@ -22,9 +22,9 @@ _DEFAULTS = FlockParameters().to_dict()
 
 
 @cache
-def _check_policy(name: str, pool: Pool) -> None:
-    """Refuse a pool that the policy was not made for."""
-    policy(name, pool)
+def _named(name: str, pool: Pool) -> Policy:
+    """Return the policy of a name; refuse a pool that it was not made for."""
+    return policy(name, pool)
 
 
 KEEP = ("window", "order", "poses")
@@ -67,8 +67,7 @@ class RunSpec:
                 f"parameters must be FlockParameters, not {short_repr(self.parameters)}"
             )
         refuse_unknown((self.policy,), NAMES, "policy of a run")
-        _check_policy(self.policy, self.parameters.pool)
-        if self.policy != EVERY_SUBSTEP and self.parameters.n_leaders == 0:
+        if self.checked_policy.control_hz is not None and self.parameters.n_leaders == 0:
             raise ParameterError(
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
             )
@@ -101,6 +100,11 @@ class RunSpec:
         return hashlib.sha256(self.to_json().encode()).hexdigest()
 
     @property
+    def checked_policy(self) -> Policy:
+        """The policy that the spec names, for its pool."""
+        return _named(self.policy, self.parameters.pool)
+
+    @property
     def cost(self) -> float:
         """A rough measure of the run's work, for progress bars and the order of starts."""
         return float(self.duration_s * self.parameters.n_boats**1.2)
@@ -121,7 +125,7 @@ def execute(spec: RunSpec) -> Recording:
         spec.seed,
         spec.duration_s,
         spec.sample_hz,
-        spec.policy,
+        spec.checked_policy,
         dtype=np.float32,
     )
     # Rudders of a law need not be stored: they follow from the poses.

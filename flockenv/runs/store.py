@@ -14,7 +14,6 @@ from flockenv._io.arguments import as_int, check_function, items
 from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
-from flockenv.policies.registry import policy
 from flockenv.recording import LayoutError, Recording
 from flockenv.recording.checks import ORIGIN
 from flockenv.runs.executors import Engine, finished, threads
@@ -107,7 +106,6 @@ class RunStore:
 
 def _difference(run: Recording, spec: RunSpec) -> str | None:
     """Return how a recording differs from the run of a spec; None if it is that run."""
-    title = policy(spec.policy, spec.parameters.pool).name
     step_s, kept = 1.0 / spec.sample_hz, spec.keep
     gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
     # A shorter window may hold no two successive samples.
@@ -119,7 +117,7 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
         "other parameters": run.parameters != spec.parameters,
         f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,
         f"{run.duration_s:g} s, not {spec.duration_s:g} s": run.duration_s != spec.duration_s,
-        f"a policy {run.policy}, not {spec.policy}": run.policy != title,
+        f"a policy {run.policy}, not {spec.policy}": run.policy != spec.checked_policy.name,
         **{f"{name} {getattr(run, name)}": getattr(run, name) is not None for name in ORIGIN},
         f"other samples than {spec.sample_hz:g} per second": not is_sampled,
         f"not what {kept!r} keeps": run.has_poses != (kept == "poses")

@@ -7,7 +7,7 @@ grid even a single value is a list, and all grids name the same fields.
 import itertools
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -102,6 +102,12 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
         for grid in grids
         for point in itertools.product(*(grid[axis] for axis in axes))
     )
+    return SweepSpec(axes, _runs(values, tuple(flocks), seeds))
+
+
+def _runs(
+    values: Mapping[str, object], flocks: Sequence[FlockParameters], seeds: Sequence[int]
+) -> tuple[RunSpec, ...]:
     run: dict[str, Any] = {
         "duration_s": 60.0 * _number("minutes", values.get("minutes")),
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
@@ -111,12 +117,11 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     leaderless = (
         run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
     )
-    runs = tuple(
+    return tuple(
         RunSpec(parameters=flock, seed=seed, **(run if flock.n_leaders else leaderless))
         for flock in flocks
         for seed in seeds
     )
-    return SweepSpec(axes, runs)
 
 
 def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:

@@ -79,10 +79,8 @@ def recording_of(
     leaders = [str(name) for name in items(leaders, "leaders")]
     order = _leaders_first(names, leaders, poses.shape[1])
     poses[..., 2] = unwrapped(poses[..., 2])
-    own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
-    motion = with_gaps(own, "velocity")
-    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
-    poses, motion = poses[:, order], motion[:, order]
+    motion = _velocity(velocity, times, poses)[:, order]
+    poses = poses[:, order]
     fields = _hull(hull)
     fields |= {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
@@ -114,6 +112,14 @@ def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever present")
     return times, poses
+
+
+def _velocity(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
+    """Return the checked velocity, or that of the poses if none is given."""
+    own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
+    motion = with_gaps(own, "velocity")
+    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
+    return motion
 
 
 def _hull(hull: tuple[float, float]) -> dict[str, Any]:
