@@ -107,10 +107,13 @@ def test_other_environments_are_refused():
     import flockenv
 
     other = DummyVecEnv([lambda: flockenv.LeadersEnv(**OPTIONS)])
-    with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not DummyVecEnv"):
-        evaluate_flocks(SteeringLaw(), other)
-    for env in ("flockenv/Leaders-v0", None, flockenv.LeadersEnv(**OPTIONS)):
-        with pytest.raises(TypeError, match="a LeaderVecEnv is needed, not"):
+    for env, kind in (
+        (other, "DummyVecEnv"),
+        ("flockenv/Leaders-v0", "str"),
+        (None, "NoneType"),
+        (flockenv.LeadersEnv(**OPTIONS), "LeadersEnv"),
+    ):
+        with pytest.raises(TypeError, match=f"a LeaderVecEnv is needed, not {kind}"):
             evaluate_flocks(SteeringLaw(), env)
     with pytest.raises(TypeError, match="seed must be an integer"):
         FlockEvalCallback(flockenv.sb3.LeaderVecEnv(**OPTIONS), seed="1")

@@ -1,6 +1,7 @@
 """Law: a model is judged on the task of its training, and a training goes on as it began."""
 
 import json
+from functools import partial
 
 import numpy as np
 import pytest
@@ -32,6 +33,7 @@ OTHERS = {
     "heading": {"action_mode": "heading"},
     "period": {"decision_period_s": 0.5},
 }
+SAME_ORDER = "evaluate it in wrappers in the same order"
 #: It tells policies apart at once.
 EFFORT = {"reward": {"rudder_effort": 1.0}}
 LOOKS = {
@@ -43,6 +45,14 @@ LOOKS = {
 
 def make(num_flocks=4, **options):
     return LeaderVecEnv(num_flocks, **{**OPTIONS, **options})
+
+
+def stacked(venv):
+    return VecFrameStack(venv, 2)
+
+
+def normalized_and_stacked():
+    return stacked(VecNormalize(make()))
 
 
 def ppo(venv, policy="MlpPolicy", **options):
@@ -67,17 +77,21 @@ def test_flocks_of_another_meaning_judge_no_model(options, tmp_path):
     assert not list(tmp_path.rglob("*.zip"))
 
 
-def test_levels_judge_no_model_of_rudders():
-    with pytest.raises(ParameterError, match=r"its action space is Box.*not Discrete"):
-        evaluate_flocks(ppo(make()), make(rudder_levels=5), 4)
-
-
-def test_stacked_frames_are_judged_in_stacked_frames():
-    model = ppo(VecFrameStack(make(), 2))
-    with pytest.raises(ParameterError, match="its observation space is"):
-        evaluate_flocks(model, make(), 4)
-    found = evaluate_flocks(model, VecFrameStack(make(), 2), 4)
-    assert len(found.returns) == 4
+@pytest.mark.parametrize(
+    ("training", "flocks", "words"),
+    [
+        (make, partial(make, rudder_levels=5), r"its action space is Box.*not Discrete"),
+        (make, lambda: VecNormalize(PerFlock(make())), "evaluate it without VecNormalize"),
+        (lambda: stacked(make()), make, "its observation space is"),
+        (normalized_and_stacked, lambda: stacked(make()), SAME_ORDER),
+        (normalized_and_stacked, lambda: VecNormalize(stacked(make())), SAME_ORDER),
+    ],
+)
+def test_a_model_is_judged_in_the_wrappers_of_its_training_alone(training, flocks, words):
+    model = ppo(training())
+    assert len(evaluate_flocks(model, training(), 4).returns) == 4
+    with pytest.raises(ParameterError, match=words):
+        evaluate_flocks(model, flocks(), 4)
 
 
 @pytest.mark.parametrize("options", OTHERS.values(), ids=OTHERS.keys())
@@ -107,9 +121,6 @@ def test_statistics_that_are_put_on_other_flocks_hide_no_meaning(tmp_path):
 
 
 def test_a_model_with_its_wrapper_is_judged_in_plain_flocks():
-    def stacked(venv):
-        return VecFrameStack(venv, 2)
-
     model = ppo(stacked(make(**EFFORT))).learn(96)
     expected = evaluate_flocks(model, stacked(make(**EFFORT)), 8, seed=7)
     policy = WrappedPolicy(model, stacked, make(**EFFORT))
@@ -216,19 +227,6 @@ def test_a_model_that_lost_its_normalization_is_judged_in_none_but_that(tmp_path
     own = VecNormalize.load(str(tmp_path / "statistics"), make(**EFFORT))
     found = evaluate_flocks(alone, own, 4, seed=7)
     np.testing.assert_allclose(found.returns, expected, rtol=1e-5)
-
-
-def test_wrappers_in_another_order_are_refused():
-    model = ppo(VecFrameStack(VecNormalize(make()), 2))
-    evaluate_flocks(model, VecFrameStack(VecNormalize(make()), 2), 4)
-    for flocks in (VecFrameStack(make(), 2), VecNormalize(VecFrameStack(make(), 2))):
-        with pytest.raises(ParameterError, match="evaluate it in wrappers in the same order"):
-            evaluate_flocks(model, flocks, 4)
-
-
-def test_normalized_flocks_judge_no_model_that_saw_plain_ones():
-    with pytest.raises(ParameterError, match="evaluate it without VecNormalize"):
-        evaluate_flocks(ppo(make()), VecNormalize(PerFlock(make())), 4)
 
 
 class Remembering:

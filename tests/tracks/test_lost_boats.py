@@ -234,12 +234,13 @@ def test_arrays_with_a_boat_in_no_water_are_refused():
 def test_everything_in_no_water_is_named():
     table = pd.DataFrame({"frame": [0, 1, 2], "id": "a", "x": 0.0, "y": 0.0, "heading": 0.0})
     layout = TrackLayout(pool="narrow", fps=10.0)
-    with pytest.raises(flockenv.ParameterError, match="heading in the water: 3 outside the water"):
-        read_tracks(table, layout)
-    with pytest.raises(flockenv.ParameterError, match="water: 3 without a heading"):
-        read_tracks(table.assign(heading=np.nan, x=60.0), layout)
-    with pytest.raises(flockenv.ParameterError, match="there are no rows"):
-        read_tracks(table[:0], layout)
+    for rows, words in (
+        (table, "heading in the water: 3 outside the water"),
+        (table.assign(heading=np.nan, x=60.0), "water: 3 without a heading"),
+        (table[:0], "there are no rows"),
+    ):
+        with pytest.raises(flockenv.ParameterError, match=words):
+            read_tracks(rows, layout)
 
 
 def test_centers_within_a_hull_of_a_wall_are_kept(seen):

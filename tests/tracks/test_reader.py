@@ -229,30 +229,31 @@ def test_files_with_their_layout_beside_them(seen, tmp_path):
 
 
 def test_files_that_are_none(tmp_path):
-    (tmp_path / "wrong.txt").write_text("1 2 3")
-    with pytest.raises(flockenv.ParameterError, match=r"tracks\.csv cannot be read: No such"):
-        read_tracks(tmp_path / "tracks.csv")
-    (tmp_path / "wrong.xlsx").write_text("1 2 3")
-    for name, words in (
-        ("absent.csv", r"absent\.csv cannot be read: No such file"),
-        ("wrong.xlsx", r"ends in none of \.csv, \.tsv, \.txt, \.csv\.gz"),
-        ("wrong.txt", "column 'id' is missing; there are 1 2 3"),
+    for name, content in (
+        ("wrong.txt", b"1 2 3"),
+        ("wrong.xlsx", b"1 2 3"),
+        ("noise.parquet", bytes(range(256))),
+        ("wrong.toml", b"pool = 'narrow'\nfbs = 25\n"),
+    ):
+        (tmp_path / name).write_bytes(content)
+    for read, arguments, words in (
+        (read_tracks, [tmp_path / "tracks.csv"], r"tracks\.csv cannot be read: No such"),
+        (read_tracks, [tmp_path / "absent.csv", OPEN], r"absent\.csv cannot be read: No such file"),
+        (
+            read_tracks,
+            [tmp_path / "wrong.xlsx", OPEN],
+            r"ends in none of \.csv, \.tsv, \.txt, \.csv\.gz",
+        ),
+        (read_tracks, [tmp_path / "wrong.txt", OPEN], "column 'id' is missing; there are 1 2 3"),
+        (read_tracks, [tmp_path / "noise.parquet", OPEN], "cannot be read as a table"),
+        (read_tracks, [line()], "layout is missing"),
+        (read_tracks, [""], "is not the name of a table"),
+        (guess_layout, [""], "is not the name of a table"),
+        (read_layout, [tmp_path / "wrong.toml"], "'fbs' is not a field of a layout"),
+        (read_layout, ["a\0.toml"], "is not the name of a file"),
     ):
         with pytest.raises(flockenv.ParameterError, match=words):
-            read_tracks(tmp_path / name, OPEN)
-    (tmp_path / "noise.parquet").write_bytes(bytes(range(256)))
-    with pytest.raises(flockenv.ParameterError, match="cannot be read as a table"):
-        read_tracks(tmp_path / "noise.parquet", OPEN)
-    (tmp_path / "wrong.toml").write_text("pool = 'narrow'\nfbs = 25\n")
-    with pytest.raises(flockenv.ParameterError, match="'fbs' is not a field of a layout"):
-        read_layout(tmp_path / "wrong.toml")
-    with pytest.raises(flockenv.ParameterError, match="layout is missing"):
-        read_tracks(line())
-    for read in (read_tracks, guess_layout):
-        with pytest.raises(flockenv.ParameterError, match="is not the name of a table"):
-            read("")
-    with pytest.raises(flockenv.ParameterError, match="is not the name of a file"):
-        read_layout("a\0.toml")
+            read(*arguments)
 
 
 @pytest.mark.parametrize(

@@ -88,10 +88,11 @@ def test_a_boat_that_is_not_there_is_in_no_frame(seen, tmp_path):
 
 
 def test_other_endings_and_runs_without_poses_are_refused(seen, tmp_path):
-    with pytest.raises(flockenv.ParameterError, match=r"ends in \.csv, \.parquet, \.gsd"):
-        export(seen.truth, tmp_path / "run.xlsx")
-    with pytest.raises(flockenv.ParameterError, match="no poses to export"):
-        export(seen.truth.without_poses(), tmp_path / "run.csv")
-    with pytest.raises(TypeError, match="recording must be a Recording"):
-        export("run.npz", tmp_path / "run.csv")
+    for recording, name, error, words in (
+        (seen.truth, "run.xlsx", flockenv.ParameterError, r"ends in \.csv, \.parquet, \.gsd"),
+        (seen.truth.without_poses(), "run.csv", flockenv.ParameterError, "no poses to export"),
+        ("run.npz", "run.csv", TypeError, "recording must be a Recording"),
+    ):
+        with pytest.raises(error, match=words):
+            export(recording, tmp_path / name)
     assert not list(tmp_path.iterdir())
