@@ -113,8 +113,7 @@ def write_replay(
         raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
-    name: Any
-    for name, recording in recordings.items():
+    for name, recording in given.items():
         if not isinstance(name, str) or not isinstance(recording, Recording):
             raise ParameterError(f"{short_repr(given)} is not accepted: recordings by their names")
         if len(recording) == 0 or not recording.has_poses:

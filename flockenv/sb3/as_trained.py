@@ -90,9 +90,9 @@ def _unwrapped(model: object) -> Any:
     return model.model if type(model) is ModelPolicy else model
 
 
-def _check_task(model: Any, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
+def _check_task(given: object, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
     """Refuse a model whose observations or actions mean something else here."""
-    model = _unwrapped(model)
+    model = _unwrapped(given)
     own_policy = Policy.from_source(model)
     own_policy.check_pool(leaders._batch.parameters(0).pool)
     space, options = getattr(model, "observation_space", None), leaders.observation_space.options

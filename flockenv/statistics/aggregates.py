@@ -1,14 +1,14 @@
 """Summaries of differences over several tasks (Agarwal et al. 2021)."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 
 
-def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
+def interquartile_mean(
+    *tasks: NDArray[np.float64], axis: int = -1
+) -> np.float64 | NDArray[np.float64]:
     """Return the mean of the middle half of the values of all tasks together.
 
     A few very bad or very good episodes change it less than they change the mean.
@@ -20,13 +20,19 @@ def interquartile_mean(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
     axis
         The axis of the values.
     """
-    return require("scipy.stats", "plot").trim_mean(np.concatenate(tasks, axis), 0.25, axis)
+    found: np.float64 | NDArray[np.float64] = require("scipy.stats", "plot").trim_mean(
+        np.concatenate(tasks, axis), 0.25, axis
+    )
+    return found
 
 
-def probability_of_improvement(*tasks: NDArray[np.float64], axis: int = -1) -> Any:
+def probability_of_improvement(
+    *tasks: NDArray[np.float64], axis: int = -1
+) -> np.float64 | NDArray[np.float64]:
     """Return the fraction of positive differences (zeros count half), as a mean over the tasks.
 
     Takes the arguments of `interquartile_mean`, for paired differences.
     """
     shares = [((task > 0.0) + 0.5 * (task == 0.0)).mean(axis) for task in tasks]
-    return np.mean(shares, axis=0)
+    found: np.float64 | NDArray[np.float64] = np.mean(shares, axis=0)
+    return found
