@@ -43,7 +43,8 @@ impl Integrator {
             dt,
         };
         contacts.resolve(&motion, divisibility, statistics)?;
-        self.velocities.copy_from_slice(&contacts.solver.velocities);
+        // Nothing reads the solver's velocities before it solves again.
+        std::mem::swap(&mut self.velocities, &mut contacts.solver.velocities);
         Ok(true)
     }
 }

@@ -84,8 +84,13 @@ fn center_water(flock: &mut Integrator, kick: f64) {
 
 /// Change of a boat's velocity over a kick by persistent contacts.
 fn persistent_change(last: &LastSubstep, boat: usize, kick: f64) -> Vec2 {
-    let acceleration = last.persistent_acceleration.get(boat);
-    acceleration.map_or_else(Vec2::zeros, |a| a * kick)
+    let accelerations = &last.persistent_acceleration;
+    // `get` would compare a pointer, too, for every boat.
+    if boat < accelerations.len() {
+        accelerations[boat] * kick
+    } else {
+        Vec2::zeros()
+    }
 }
 
 /// Fills `free` and `inertia` over a kick.

@@ -36,9 +36,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
             dt,
         };
         contacts.resolve(&motion, divisibility, statistics)?;
-        flock
-            .velocities
-            .copy_from_slice(&flock.contacts.solver.velocities);
+        std::mem::swap(&mut flock.velocities, &mut contacts.solver.velocities);
         flock.move_water(dt);
         flock.drift(dt);
         return Ok(());
