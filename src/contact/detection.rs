@@ -173,8 +173,10 @@ impl ContactDetector {
         // Only the boat moves, not the wall.
         let open = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
+        // Slices of one length, so that one bounds check covers both.
+        let reaches = &self.reaches[..boats.len()];
         for (boat, partners) in self.neighbors.groups() {
-            let (pose, reach) = (&boats[boat as usize], self.reaches[boat as usize]);
+            let (pose, reach) = (&boats[boat as usize], reaches[boat as usize]);
             if !open.contains(&pose.center.norm_squared()) {
                 self.detect_walls(boat, pose, reach, contacts);
             }
@@ -184,7 +186,7 @@ impl ContactDetector {
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
-                let near = reach + self.reaches[partner as usize];
+                let near = reach + reaches[partner as usize];
                 pair_gaps((a, self.hull), (b, self.hull), near, |feature, gap| {
                     contacts.push(Contact::new(first, Partner::Boat(second), feature, gap));
                 });
@@ -242,7 +244,7 @@ impl ContactDetector {
     fn detect_walls(&self, boat: u32, pose: &HullPose, margin: f64, contacts: &mut Vec<Contact>) {
         let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
         let distance = pose.center.norm_squared().sqrt();
-        if self.pool.has_outer_wall() && distance + self.hull.reach() + margin > outer {
+        if distance + self.hull.reach() + margin > outer {
             let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
             let free = (outer - self.hull.radius - margin).max(0.0);
             for (feature, side) in Feature::ENDS.into_iter().zip([-1.0, 1.0]).take(ends) {

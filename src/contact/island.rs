@@ -56,7 +56,8 @@ impl Islands {
     fn join(&mut self, boats: usize, contacts: &[Contact]) {
         self.parent.clear();
         self.parent.extend(0..boats as u32);
-        let parent = self.parent.as_mut_slice();
+        // Of known length, so that the loop over boats has no bounds check for them.
+        let parent = &mut self.parent[..boats];
         for contact in contacts {
             if let Partner::Boat(second) = contact.partner {
                 join(parent, contact.boat, second);
@@ -75,7 +76,8 @@ impl Islands {
 
     /// The contacts of an island.
     pub fn contacts(&self, island: usize) -> &[u32] {
-        &self.members[self.starts[island] as usize..self.starts[island + 1] as usize]
+        let ends = &self.starts[island..island + 2];
+        &self.members[ends[0] as usize..ends[1] as usize]
     }
 }
 

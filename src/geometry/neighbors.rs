@@ -55,15 +55,21 @@ impl NeighborList {
         let spare = 0.5 * (self.cutoff - distance);
         let complete = self.reference.len() == centers.len()
             && spare >= 0.0
-            && centers
-                .clone()
-                .zip(&self.reference)
-                .all(|(now, then)| (now - then).norm_squared() <= spare * spare);
+            && self.is_within(spare, centers.clone());
         if !complete {
             self.reference.clear();
             self.reference.extend(centers);
             self.build(distance + skin);
         }
+    }
+
+    /// Whether no center is farther than `spare` from its reference.
+    fn is_within(&self, spare: f64, centers: impl Iterator<Item = Vec2>) -> bool {
+        let pairs = centers.zip(&self.reference);
+        // Without a branch for each center: nearly always all are.
+        pairs.fold(true, |all, (now, then)| {
+            all & ((now - then).norm_squared() <= spare * spare)
+        })
     }
 
     /// Rebuilds the list of a snapshot from its reference centers.
