@@ -15,8 +15,8 @@ pub(super) struct Relinearization {
     pub(super) tolerance: f64,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
-    /// Their contacts that may close, and the gaps of these at the substep's end in cm.
-    end_gaps: Vec<(u32, f64)>,
+    /// The gap of each of their contacts at the substep's end in cm; infinite if it cannot close or its touch is gone.
+    end_gaps: Vec<f64>,
 }
 
 impl Relinearization {
@@ -58,7 +58,7 @@ impl ContactResolver {
                 break;
             }
             passes += 1;
-            self.aim_at_end_gaps(dt);
+            self.aim_at_end_gaps(&left, dt);
             solution = self.solve(Some(&left), motion, statistics);
             match solution {
                 Solution::Exhausted => break,
@@ -70,11 +70,19 @@ impl ContactResolver {
         solution
     }
 
-    /// Computes biases for which the gaps noted at the substep's end open to zero.
-    fn aim_at_end_gaps(&mut self, dt: f64) {
-        for &(k, end_gap) in &self.relinearization.end_gaps {
-            let rate = self.contacts[k as usize].gap_rate(&self.solver.velocities);
-            self.biases[k as usize] = end_gap / dt - rate;
+    /// Computes biases for which the gaps of some islands at the substep's end open to zero. The biases of the others stay
+    /// those that they were solved with: the check for driven boats needs them.
+    fn aim_at_end_gaps(&mut self, islands: &[u32], dt: f64) {
+        let found = self.solver.islands();
+        let contacts = islands
+            .iter()
+            .flat_map(|&island| found.contacts(island as usize));
+        for &k in contacts {
+            let (k, end_gap) = (k as usize, self.relinearization.end_gaps[k as usize]);
+            if end_gap < f64::INFINITY {
+                let rate = self.contacts[k].gap_rate(&self.solver.velocities);
+                self.biases[k] = end_gap / dt - rate;
+            }
         }
     }
 
@@ -104,53 +112,50 @@ impl ContactResolver {
         self.is_overlapping(&mut islands, motion.dt)
     }
 
-    /// Whether gaps at the substep's end overlap by more than the tolerance. Removes the other islands from `islands`
-    /// and their gaps from the list; a solver without islands keeps all.
+    /// Whether gaps at the substep's end overlap by more than the tolerance. Removes the other islands from `islands`; a
+    /// solver without islands keeps all.
     fn is_overlapping(&mut self, islands: &mut Vec<u32>, dt: f64) -> bool {
         let tolerance = self.relinearization.tolerance;
         let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
         let has_islands = self.solver.has_islands();
-        let mut deepest = 0.0;
-        self.relinearization.end_gaps.clear();
-        islands.retain(|&island| {
-            let before = self.relinearization.end_gaps.len();
-            let overlap = self.deepest_end_overlap(island, left_over);
+        let mut end_gaps = std::mem::take(&mut self.relinearization.end_gaps);
+        end_gaps.resize(self.contacts.len(), f64::INFINITY);
+        let (mut deepest, mut kept) = (0.0, 0);
+        // `Vec::retain` would call a closure for each island, and most islands are a single contact.
+        for index in 0..islands.len() {
+            let island = islands[index];
+            let overlap = self.deepest_end_overlap(island, left_over, &mut end_gaps);
             if overlap > deepest {
                 deepest = overlap;
             }
-            let stays = overlap > tolerance || !has_islands;
-            if !stays {
-                // No new biases for this island: the check for driven boats needs those that it was solved with.
-                self.relinearization.end_gaps.truncate(before);
+            if overlap > tolerance || !has_islands {
+                islands[kept] = island;
+                kept += 1;
             }
-            stays
-        });
+        }
+        islands.truncate(kept);
+        self.relinearization.end_gaps = end_gaps;
         deepest > tolerance
     }
 
-    /// Notes the gaps of an island at the substep's end, except for contacts that cannot close at these velocities or
-    /// whose touch is gone. Returns the deepest overlap in cm. A shortened substep need not close an earlier overlap
-    /// fully: it may leave the fraction `left_over` of it.
-    fn deepest_end_overlap(&mut self, island: u32, left_over: f64) -> f64 {
+    /// Notes the gaps of an island at the substep's end. Returns the deepest overlap in cm. A shortened substep need not
+    /// close an earlier overlap fully: it may leave the fraction `left_over` of it.
+    #[inline]
+    fn deepest_end_overlap(&self, island: u32, left_over: f64, end_gaps: &mut [f64]) -> f64 {
+        let (detector, contacts) = (&self.detector, self.contacts.as_slice());
         let (mut deepest, mut pair) = (0.0, None);
         for &k in self.solver.islands().contacts(island as usize) {
-            let contact = &self.contacts[k as usize];
-            let gap = contact.gap.gap.min(0.0);
-            if gap >= -self.penetration_slop && self.predicted.may_close(&self.contacts, k as usize)
-            {
-                let (detector, contacts) = (&self.detector, &self.contacts);
-                let end_gap = self
-                    .predicted
-                    .gap(detector, contacts, k as usize, &mut pair);
+            let k = k as usize;
+            let gap = contacts[k].gap.gap.min(0.0);
+            end_gaps[k] = f64::INFINITY;
+            if gap >= -self.penetration_slop && self.predicted.may_close(contacts, k) {
+                let end_gap = self.predicted.gap(detector, contacts, k, &mut pair);
                 let is_deep = gap < -self.relinearization.tolerance;
                 let overlap = select_unpredictable(is_deep, left_over * gap, 0.0) - end_gap;
                 if overlap > deepest {
                     deepest = overlap;
                 }
-                if end_gap < f64::INFINITY {
-                    let aim = end_gap - left_over * gap;
-                    self.relinearization.end_gaps.push((k, aim));
-                }
+                end_gaps[k] = end_gap - left_over * gap;
             }
         }
         deepest
