@@ -21,10 +21,12 @@ struct Entry {
     value: f64,
 }
 
+type Group = [Entry; GROUP];
+
 /// A row of L.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// Its entries, whole groups of them.
+    /// Its groups of entries.
     start: u32,
     end: u32,
     /// Number of its entries, without the zeros that fill up its groups.
@@ -69,8 +71,8 @@ const NO_ROW: Chain = Chain {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Factor {
     nodes: Vec<Node>,
-    entries: Vec<Entry>,
-    /// Number of entries in use.
+    groups: Vec<Group>,
+    /// Number of groups in use.
     used: usize,
     /// Whether rows have entered or left since it was brought up to date.
     is_stale: bool,
@@ -161,7 +163,7 @@ impl Factor {
     /// Empties a row, and marks its parent as changed.
     fn release(&mut self, k: usize) {
         let node = self.nodes[k];
-        for entry in row_of(&self.entries, &node).as_flattened() {
+        for entry in row_of(&self.groups, &node).as_flattened() {
             if let Some(child) = self.nodes.get_mut(entry.column as usize)
                 && child.parent == k as u32
             {
@@ -177,13 +179,14 @@ impl Factor {
     fn compute(&mut self, rows: &[Row], k: usize, starts: [u32; 2], regularization: f64) {
         self.add_couplings(rows, k);
         let start = self.used;
-        let most = start + k + GROUP;
-        if self.entries.len() < most {
-            self.entries.resize(2 * most, Entry::default());
+        let most = start + k.div_ceil(GROUP) + 1;
+        if self.groups.len() < most {
+            self.groups.resize(2 * most, Group::default());
         }
         let nodes = self.nodes.as_mut_slice();
         let work = &mut self.work[..=nodes.len()];
-        let (known, new) = self.entries.split_at_mut(start);
+        let (known, new) = self.groups.split_at_mut(start);
+        let new = new.as_flattened_mut();
         let mut pivot = rows[k].diagonal * (1.0 + regularization);
         let [mut a, mut b] = starts;
         let mut count = 0;
@@ -219,12 +222,13 @@ impl Factor {
         if count > LONG_ROW {
             self.charge(start, count);
         }
-        self.used = start + count.max(1).div_ceil(GROUP) * GROUP;
-        self.entries[start + count..start + count + GROUP].fill(Entry {
+        self.used = start + count.max(1).div_ceil(GROUP);
+        let row = self.groups[start..].as_flattened_mut();
+        row[count..count + GROUP].fill(Entry {
             column: self.nodes.len() as u32,
             value: 0.0,
         });
-        for entry in &self.entries[start..self.used] {
+        for entry in self.groups[start..self.used].as_flattened() {
             self.work[entry.column as usize] = 0.0;
         }
         let node = &mut self.nodes[k];
@@ -236,7 +240,7 @@ impl Factor {
     /// Subtracts a long row's work from the budget: each of its entries was a product with another row.
     #[cold]
     fn charge(&mut self, start: usize, count: usize) {
-        let entries = &self.entries[start..start + count];
+        let entries = &self.groups[start..].as_flattened()[..count];
         let others = entries
             .iter()
             .map(|entry| &self.nodes[entry.column as usize]);
@@ -261,17 +265,21 @@ impl Factor {
     /// Solves A_FF·y = x for the active rows and stores y in x. Other rows hold zeros, and x has one more entry at the
     /// end.
     pub(super) fn solve(&self, x: &mut [f64]) {
-        x[self.nodes.len()] = 0.0;
+        // Slices of known lengths, so that one bounds check covers a row's node and its number.
+        let nodes = self.nodes.as_slice();
+        let x = &mut x[..=nodes.len()];
+        x[nodes.len()] = 0.0;
         for &k in &self.active {
-            let row = row_of(&self.entries, &self.nodes[k as usize]);
+            let row = row_of(&self.groups, &nodes[k as usize]);
             x[k as usize] -= dot(row, x);
         }
-        for (value, node) in x.iter_mut().zip(&self.nodes) {
+        for (value, node) in x.iter_mut().zip(nodes) {
             *value *= node.inverse_pivot;
         }
         for &k in self.active.iter().rev() {
+            let row = row_of(&self.groups, &nodes[k as usize]);
             let value = x[k as usize];
-            for group in row_of(&self.entries, &self.nodes[k as usize]) {
+            for group in row {
                 for entry in group {
                     x[entry.column as usize] -= entry.value * value;
                 }
@@ -281,14 +289,12 @@ impl Factor {
 }
 
 #[inline]
-fn row_of<'a>(entries: &'a [Entry], node: &Node) -> &'a [[Entry; GROUP]] {
-    entries[node.start as usize..node.end as usize]
-        .as_chunks()
-        .0
+fn row_of<'a>(groups: &'a [Group], node: &Node) -> &'a [Group] {
+    &groups[node.start as usize..node.end as usize]
 }
 
 #[inline]
-fn dot(row: &[[Entry; GROUP]], x: &[f64]) -> f64 {
+fn dot(row: &[Group], x: &[f64]) -> f64 {
     let term = |entry: &Entry| entry.value * x[entry.column as usize];
     let mut sum = 0.0;
     for [a, b] in row {
