@@ -3,12 +3,14 @@
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from docs.scripts.plots import DOCS, Plot, listed, rows
+from docs.scripts.plots import DOCS, Plot, listed, one, rows
 from flockenv.rendering.palette import OKABE_ITO
 
 ENGINES = DOCS / "speed_vs_error/short_engines.csv"
 IMPACT = DOCS / "speed_vs_error/impact.csv"
 STEP_CONTROL = DOCS / "speed_vs_error/step_control.csv"
+WORK = DOCS / "speed_vs_error/work.csv"
+SPEED_PEERS, HORIZON_PEERS = (DOCS / f"speed_vs_error/{n}_peers.csv" for n in ("speed", "horizon"))
 LEARNERS = DOCS / "throughput/learners.csv"
 MANY_AGENTS = DOCS / "throughput/many_agents.csv"
 SHOWN = {
@@ -27,6 +29,16 @@ SHOWN = {
 }
 OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
 N_OURS = 6
+WORKERS = {
+    "fixed step": ("flockenv", "leapfrog", OURS, "o"),
+    "controlled step": ("flockenv", "controlled", OURS_TOO, "s"),
+    "rapier": ("rapier2d-f64", "4 iterations", THEIRS, "D"),
+    "Box2D": ("Box2D (f32)", "4 substeps", "black", "v"),
+    "Drake": ("Drake", "SAP", OKABE_ITO["orange"], "p"),
+    "MuJoCo": ("MuJoCo", "Newton", OKABE_ITO["green"], "X"),
+    "pymunk": ("pymunk", "10 iterations", OKABE_ITO["purple"], "P"),
+}
+"""Engine, how its setting begins, color and marker."""
 
 
 def engines(figure: Figure) -> None:
@@ -97,6 +109,47 @@ def step_control(figure: Figure) -> None:
     panels[0, 0].legend()
 
 
+def work(figure: Figure) -> None:
+    """Draw the error against the time for a second of a scene, a line for each engine."""
+    panels = figure.subplots(1, 3)
+    for axes, scene in zip(panels, ("slide", "jam", "cycle"), strict=True):
+        for name, (engine, setting, color, marker) in WORKERS.items():
+            is_here = name in [*WORKERS][:4]
+            found = _runs(scene, engine, setting) if is_here else _peers(scene, engine, setting)
+            if found:
+                times, errors = zip(*found, strict=True)
+                axes.plot(times, errors, marker + "-", color=color, label=name, markersize=5)
+        axes.set(xscale="log", yscale="log", title=scene, xlabel="computing for 1 s [ms]")
+    panels[0].set_ylabel("error [cm]")
+    handles, words = panels[1].get_legend_handles_labels()
+    figure.legend(handles, words, loc="outside lower center", ncols=4)
+
+
+def _runs(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
+    """Return time in ms and error in cm of the very runs, step by step; step calls if known."""
+    return [
+        (
+            float(row["call_us_per_s"] or row["us_per_s"]) / 1000,
+            float(row["error_median_cm"]),
+        )
+        for row in rows(WORK, scene=scene, engine=engine)
+        if row["setting"].startswith(setting)
+    ]
+
+
+def _peers(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
+    """Return the same of another program, whose steps were timed with noise; no slides."""
+    if scene == "slide":
+        return []
+    who = {"scene": scene, "engine": engine, "setting": setting}
+    found = []
+    for timed in rows(SPEED_PEERS, n="27", **who):
+        error = one(HORIZON_PEERS, horizon_s="0.5", dt_s=timed["dt_s"], **who)
+        cost = float(timed["us_per_step"]) / float(timed["dt_s"]) / 1000
+        found.append((cost, float(error["horizon_median_cm"])))
+    return found
+
+
 def learners(figure: Figure) -> None:
     """Draw the samples per second of each interface over the batch that it steps."""
     columns = ("median of the batch", "least of the batch", "most of the batch")
@@ -136,6 +189,7 @@ PLOTS = {
     "speed_vs_error/engines.png": Plot([ENGINES], engines, (7.2, 4.4)),
     "speed_vs_error/impact.png": Plot([IMPACT], impact, (5.6, 3.6)),
     "speed_vs_error/step_control.png": Plot([STEP_CONTROL], step_control, (7.2, 5.6)),
+    "speed_vs_error/work.png": Plot([WORK, SPEED_PEERS, HORIZON_PEERS], work, (7.2, 4.2)),
     "throughput/learners.png": Plot([LEARNERS], learners, (7.2, 3.8)),
     "throughput/many_agents.png": Plot([MANY_AGENTS], many_agents, (7.2, 3.6)),
 }

@@ -386,6 +386,28 @@ def controlled_steps() -> list[Number]:
     ]
 
 
+def controlled_times() -> list[Number]:
+    """List how much longer a step that follows its error takes for an error."""
+    table = f"{SPEED}work.csv"
+
+    def longer(rows: Any) -> Any:
+        """Return the times of each controlled setting over those of a fixed step as exact."""
+        found = []
+        for _, own in rows[rows["engine"] == "flockenv"].groupby("scene"):
+            is_controlled = own["setting"].str.startswith("controlled")
+            fixed = own[~is_controlled].sort_values("error_median_cm")
+            error, time = np.log(fixed[["error_median_cm", "us_per_s"]].to_numpy().T)
+            at = np.log(own[is_controlled]["error_median_cm"])
+            found.append(own[is_controlled]["call_us_per_s"] / np.exp(np.interp(at, error, time)))
+        return pd.concat(found)
+
+    words = "a controlled step takes {} times as long as a fixed one"
+    return [
+        Number(PAGE, words.format("{} to #"), table, {}, lambda rows: longer(rows).min(), ".1f"),
+        Number(PAGE, words.format("# to {}"), table, {}, lambda rows: longer(rows).max(), ".1f"),
+    ]
+
+
 def learners() -> list[Number]:
     """List the speeds of other environments and of the learners' interfaces."""
     many, own = "docs/throughput/many_agents.csv", "docs/throughput/learners.csv"
@@ -444,6 +466,7 @@ def every() -> list[Number]:
         *other_engines(),
         *our_settings(),
         *controlled_steps(),
+        *controlled_times(),
         *overlap_rates(),
         *steps(),
         *throughput(),
