@@ -2,7 +2,6 @@
 
 use super::touches::{TouchPosition, distance, position};
 use super::{Contact, Partner};
-use std::ops::Range;
 
 /// A contact of the last substep with the impulse that it carried.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -94,9 +93,9 @@ impl WarmStartCache {
                 start += 1;
             }
             let entries = if start < last {
-                let entries = self.entries_from(start, contact);
-                next = entries.end;
-                entries
+                let count = self.count_from(start, contact);
+                next = start + count;
+                &self.entries[start..next]
             } else {
                 if !is_indexed {
                     self.index();
@@ -105,7 +104,7 @@ impl WarmStartCache {
                 self.search(contact)
             };
             let second = contacts.get(k + 1).filter(|other| other.is_twin(contact));
-            for entry in &self.entries[entries] {
+            for entry in entries {
                 if entry.impulse > 0.0 {
                     let is_second = second.is_some_and(|second| entry.is_nearer(second, contact));
                     impulses[k + usize::from(is_second)] += entry.impulse;
@@ -115,12 +114,11 @@ impl WarmStartCache {
         }
     }
 
-    /// The entries with the same two bodies as a contact, one or two of them, of which `start` is the first.
+    /// The number of entries with the same two bodies as a contact, one or two, of which `start` is the first.
     #[inline]
-    fn entries_from(&self, start: usize, contact: &Contact) -> Range<usize> {
+    fn count_from(&self, start: usize, contact: &Contact) -> usize {
         let second = self.entries.get(start + 1);
-        let is_two = second.is_some_and(|entry| entry.has_same_bodies(contact));
-        start..start + 1 + usize::from(is_two)
+        1 + usize::from(second.is_some_and(|entry| entry.has_same_bodies(contact)))
     }
 
     // Indexes the entries by boat. Neither this nor the search is inlined, so that the lookup of contacts that come in
@@ -139,7 +137,7 @@ impl WarmStartCache {
 
     /// The entries with the same two bodies as a contact, from a search of all entries.
     #[inline(never)]
-    fn search(&self, contact: &Contact) -> Range<usize> {
+    fn search(&self, contact: &Contact) -> &[CachedImpulse] {
         let mut index = self
             .of_boat
             .get(contact.boat as usize)
@@ -154,6 +152,8 @@ impl WarmStartCache {
             }
             index = self.before[index as usize];
         }
-        first.map_or(0..0, |first| self.entries_from(first, contact))
+        first.map_or(&[], |first| {
+            &self.entries[first..first + self.count_from(first, contact)]
+        })
     }
 }
