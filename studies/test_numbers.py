@@ -285,30 +285,129 @@ def current() -> list[Number]:
 def transition() -> list[Number]:
     page, area = "studies/transition/README.md", "area of the loop in c4 in |m|, 80 min per noise"
     cell = "leapfrog, white, dt = 0.1 s, coverage 0.35, bw = 0, n = "
-    rings, claims = "studies/transition/condensation.csv", "studies/transition/claims.csv"
+    claims = "studies/transition/claims.csv"
     dense = {"c4": 0.1, "coverage": 0.6, "start": "one-jam"}
     ring = "leapfrog, white c4 = 0.1, dt = 0.1 s, bw = 0, ring of 83 cm, n = "
     outside = "coverage outside of jams, {} boats, coverage 0.6"
+    map_of, three = (
+        "studies/transition/phases.csv",
+        "One jam and rotation both last for three hours",
+    )
+    strong = dense | {"scheme": "leapfrog"}
+    loop = {"minutes": 80, "n_boats": 200}
+    added, white = "boats outside of jams per boat added, {} boats", ring.removesuffix(", n = ")
+    literal = "paper, literal c4 = 0.1, dt = 0.02 s, bw = 0, ring of 83 cm"
+
+    def stayed(rows: Any) -> float:
+        return round(rows["measured"].iloc[0] * rows["n_runs"].iloc[0])
+
+    def of_loop(end: Callable[[Any], float]) -> Callable[[Any], float]:
+        return lambda rows: end(
+            rows[name].mean()
+            for name in rows
+            if name.startswith("m_") and float(name.rpartition("_")[2]) <= 0.2
+        )
+
+    def rotate(name: str) -> Callable[[Any], float]:
+        return lambda rows: rows.loc[rows["coverage"] <= 0.3, name].sum()
+
     return [
         *(
-            Number(page, words, rings, dense | {"n_boats": n}, "outside", form=".2f")
-            for words, n in (
-                ("the coverage outside is {}, # and #", 100),
-                ("the coverage outside is #, {} and #", 200),
-                ("the coverage outside is #, # and {}", 400),
+            Number(page, words, claims, {"claim": three, "reading": reading}, stayed, ".0f")
+            for words, reading in (
+                ("for c4 = 0.0141 ({} of 6 from", ring.replace("0.1,", "0.0141,", 1) + "200"),
+                ("0.03 ({} of 12 in", ring.replace("0.1,", "0.03,", 1) + "200"),
+                ("and 0.05 ({} of 6)", ring.replace("0.1,", "0.05,", 1) + "200"),
+                ("for 0.1 ({} of 9)", ring + "200"),
+                ("for the literal noise ({} of 6)", literal + ", n = 200"),
+                ("At c4 = 0.2 it is open ({} of 6)", ring.replace("0.1,", "0.2,", 1) + "200"),
             )
         ),
         *(
-            Number(
+            Number(page, words, map_of, strong | {"n_boats": 200, "c4": c4}, "outside")
+            for words, c4 in (
+                ("the coverage outside is {}, #, #, # and # from", 0.0141),
+                ("the coverage outside is #, {}, #, # and # from", 0.03),
+                ("the coverage outside is #, #, {}, # and # from", 0.05),
+                ("the coverage outside is #, #, #, {} and # from", 0.1),
+                ("the coverage outside is #, #, #, # and {} from", 0.2),
+            )
+        ),
+        *(
+            Number(page, words, map_of, strong | {"n_boats": n}, "outside")
+            for words, n in (
+                ("the coverage outside is {}, #, #, # and # with", 100),
+                ("the coverage outside is #, {}, #, # and # with", 200),
+                ("the coverage outside is #, #, {}, # and # with", 400),
+                ("the coverage outside is #, #, #, {} and # with", 800),
+                ("the coverage outside is #, #, #, # and {} with", 1600),
+            )
+        ),
+        Number(
+            page,
+            "still jam, and {} is outside",
+            map_of,
+            strong | {"n_boats": 800, "c4": 0.03},
+            "outside",
+        ),
+        *(
+            Number(page, words, "studies/transition/results/hysteresis.csv", loop, column, ".3f")
+            for words, column in (
+                ("200 boats |m| is {} to # at", of_loop(min)),
+                ("200 boats |m| is # to {} at", of_loop(max)),
+            )
+        ),
+        *(
+            Number(page, words, map_of, {"start": "rotating"}, rotate(name), ".0f")
+            for words, name in (
+                ("three hours in {} of # flocks", "last"),
+                ("three hours in # of {} flocks", "runs"),
+            )
+        ),
+        *(
+            number
+            for words, reading, boats in (
+                ("make 100 boats 200, {} stay", white, "100 to 200"),
+                ("twice as long, {}.", white, "200 to 400"),
+                ("literal noise it is {} and", literal, "100 to 200"),
+                ("literal noise it is # (# to #) and {}, at", literal, "200 to 400"),
+                ("at c4 = 0.03 {}, −", white.replace("0.1,", "0.03,", 1), "100 to 200"),
+            )
+            for number in interval(
                 page,
                 words,
                 claims,
-                {"quantity": outside.format(sizes), "reading": ring + n},
-                form=".2f",
+                {"quantity": added.format(boats), "reading": reading},
+                # Of few runs one digit is printed.
+                form=".2f" if "c4 = 0.03" in words else "g",
             )
+        ),
+        *(
+            number
             for words, sizes, n in (
-                ("200 have {} (# to #) more than 100", "200 minus 100", "100"),
-                ("400 have {} (# to #) more than 200", "400 minus 200", "200"),
+                ("200 boats have {} more outside than 100", "200 minus 100", "100"),
+                ("400 have {} more than 200", "400 minus 200", "200"),
+            )
+            for number in interval(
+                page, words, claims, {"quantity": outside.format(sizes), "reading": ring + n}
+            )
+        ),
+        Number(
+            page,
+            "800 have {} more than 400",
+            claims,
+            {"quantity": outside.format("800 minus 400"), "reading": ring + "400"},
+            form=".1f",
+        ),
+        *(
+            Number(page, words, claims, {"figure": figure}, count(verdict), ".0f")
+            for figure, verdict, words in (
+                ("condensation", "holds", "# statements, {} hold, # fail"),
+                ("condensation", "fails", "# statements, # hold, {} fail"),
+                ("condensation", "open", "# fail and {} are open; of the second"),
+                ("phases", "holds", "of the second, #, {} hold"),
+                ("phases", "fails", "of the second, #, # hold, {} fail"),
+                ("phases", "open", "# fail and {} are open, most"),
             )
         ),
         *(

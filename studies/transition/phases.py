@@ -186,16 +186,20 @@ _KEY = ["scheme", "c4", "n_boats", "coverage", "start"]
 
 
 def cells(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a line for each cell: how many flocks last, and means of the third hour."""
+    """Return a line for each cell: how many flocks last, and means of the third hour.
+
+    A start half in a jam is no state that could last.
+    """
     rows = []
     for key, runs in table.groupby(_KEY, sort=False):
         row = dict(zip(_KEY, key, strict=True)) | {"runs": len(runs)}
-        row |= {"last": int(lasts(runs).sum()), "last_strict": int(lasts(runs, 2.0).sum())}
+        for name, strict in (("last", 1.0), ("last_strict", 2.0)):
+            row[name] = int(lasts(runs, strict).sum()) if row["start"] in STARTED else ""
         in_jams = runs[f"in_jams_{HOURS}"]
         for name, values in (
             ("in_jams", in_jams),
             ("abs_m", runs[f"abs_m_{HOURS}"]),
-            ("outside", outside(runs).dropna()),
+            ("outside", runs["coverage"] * (1.0 - in_jams)),
             ("not_slow", (runs["coverage"] * (1.0 - runs[f"slow_{HOURS}"])).dropna()),
         ):
             row |= dict(zip((name, f"{name}_low", f"{name}_high"), mean(values), strict=True))
@@ -215,11 +219,14 @@ def draw(options: Options, found: pd.DataFrame) -> None:
         left.set_ylabel(f"coverage outside of jams,\ncoverage {max(DENSE):g}")
         strong = dense[(dense["c4"] == max(condensation.C4)) & (dense["scheme"] != "paper")]
         _draw_outside(right, strong, "n_boats")
-        sizes = sorted(strong["n_boats"].unique())
         right.set(xscale="log", xlabel=f"boats, c4 = {max(condensation.C4):g}")
-        right.set_xticks(sizes, [f"{each:g}" for each in sizes])
-        right.minorticks_off()
-        left.legend(title="started")
+        for axes, name in ((left, "c4"), (right, "n_boats")):
+            values = sorted(found.loc[found["scheme"] != "paper", name].unique())
+            axes.set_xticks(values, [f"{each:g}" for each in values])
+            axes.minorticks_off()
+            axes.axhline(max(DENSE), color="0.7", zorder=0)  # No boat in a jam.
+        if len(dense.dropna(subset="outside")):  # A trial is too short for jams.
+            left.legend(title="started")
 
 
 def _draw_map(figure: Any, found: pd.DataFrame) -> None:

@@ -52,6 +52,11 @@ def test_bounds_twice_as_strict(script: ModuleType) -> None:
     assert not script.lasts(table, 2.0).any()
 
 
+def test_a_mixed_start_is_no_state_that_lasts(script: ModuleType) -> None:
+    mixed = runs(script.NOISES[3], 200, 0.3, 0.5, 0.0).replace("one-jam", "half-and-half")
+    assert script.cells(mixed)["last"].tolist() == ["", 3]
+
+
 def test_boats_added_to_one_ring_are_twice_the_boats_at_twice_the_coverage(script) -> None:
     """0.1 stay outside of jams in both, but 0.2 in the denser ring of as many boats."""
     noise = script.NOISES[0]
