@@ -297,9 +297,18 @@ def transition() -> list[Number]:
     loop = {"minutes": 80, "n_boats": 200}
     added, white = "boats outside of jams per boat added, {} boats", ring.removesuffix(", n = ")
     literal = "paper, literal c4 = 0.1, dt = 0.02 s, bw = 0, ring of 83 cm"
+    of_paper, white_strong = {"scheme": "paper"}, {"scheme": "leapfrog", "c4": 0.1}
 
     def stayed(rows: Any) -> float:
         return round(rows["measured"].iloc[0] * rows["n_runs"].iloc[0])
+
+    def rarer(name: str, *pair: float) -> Callable[[Any], float]:
+        return lambda rows: (
+            rows[rows["coverage"].isin(pair) & (rows["start"] != "half-and-half")]
+            .groupby("start")[name]
+            .sum()
+            .min()
+        )
 
     def of_loop(end: Callable[[Any], float]) -> Callable[[Any], float]:
         return lambda rows: end(
@@ -336,11 +345,11 @@ def transition() -> list[Number]:
         *(
             Number(page, words, map_of, strong | {"n_boats": n}, "outside")
             for words, n in (
-                ("the coverage outside is {}, #, #, # and # with", 100),
-                ("the coverage outside is #, {}, #, # and # with", 200),
-                ("the coverage outside is #, #, {}, # and # with", 400),
-                ("the coverage outside is #, #, #, {} and # with", 800),
-                ("the coverage outside is #, #, #, # and {} with", 1600),
+                ("The coverage outside is {}, #, #, # and # with", 100),
+                ("The coverage outside is #, {}, #, # and # with", 200),
+                ("The coverage outside is #, #, {}, # and # with", 400),
+                ("The coverage outside is #, #, #, {} and # with", 800),
+                ("The coverage outside is #, #, #, # and {} with", 1600),
             )
         ),
         Number(
@@ -353,8 +362,20 @@ def transition() -> list[Number]:
         *(
             Number(page, words, "studies/transition/results/hysteresis.csv", loop, column, ".3f")
             for words, column in (
-                ("200 boats |m| is {} to # at", of_loop(min)),
-                ("200 boats |m| is # to {} at", of_loop(max)),
+                ("their mean |m| is {} to # at", of_loop(min)),
+                ("their mean |m| is # to {} at", of_loop(max)),
+            )
+        ),
+        *(
+            Number(page, words, map_of, chosen | {"n_boats": 200}, rarer(name, *pair), ".0f")
+            for name, words, chosen, pair in (
+                ("last_apart", "at c4 = 0.0141 ({} of 6) and", {"c4": 0.0141}, (0.25, 0.3)),
+                ("last_apart", "and 0.03 ({} of 12), and", {"c4": 0.03}, (0.25, 0.3)),
+                ("last_apart", "literal noise ({} of 6) and at 0.1", {"c4": 0.05}, (0.25, 0.3)),
+                ("last_apart", "literal noise ({} of 6) and at 0.1", of_paper, (0.2, 0.25)),
+                ("last_apart", "and at 0.1 ({} of 9).", white_strong, (0.3, 0.4)),
+                ("last_strict", "open at 0.1 ({} of 9) and", white_strong, (0.3, 0.4)),
+                ("last_strict", "literal noise ({} of 6). Jams", of_paper, (0.2, 0.25)),
             )
         ),
         *(

@@ -9,7 +9,8 @@ the number of boats over those that fit the outer wall in one row.
 If jams condense, what stays *outside* of them is one coverage, the saturation, and all boats beyond
 it are in jams. So at a noise, in the last hour, over flocks with jams (a twentieth of the boats):
 
-1. from a coverage of 0.3 to 0.6 less than a tenth of the boats added stay outside;
+1. from a coverage of 0.3 to 0.6 less than a tenth of the boats added stay outside (judged as within
+   a tenth either way);
 2. starts agree: from rotation, and from half and half, as much stays outside as from one jam;
 3. sizes agree: in twice as large a flock as much stays outside;
 4. it is stationary: as much as in the hour before.

@@ -52,6 +52,12 @@ def test_bounds_twice_as_strict(script: ModuleType) -> None:
     assert not script.lasts(table, 2.0).any()
 
 
+def test_a_flock_with_jams_that_rotates_counts_for_both_unless_they_are_apart(script) -> None:
+    table = runs(script.NOISES[0], 200, 0.3, 0.06, 0.04)
+    assert script.lasts(table).all()
+    assert script.lasts(table, 1.0, True).tolist() == [False] * 3 + [True] * 3
+
+
 def test_a_mixed_start_is_no_state_that_lasts(script: ModuleType) -> None:
     mixed = runs(script.NOISES[3], 200, 0.3, 0.5, 0.0).replace("one-jam", "half-and-half")
     assert script.cells(mixed)["last"].tolist() == ["", 3]
