@@ -42,15 +42,7 @@ def compare_entries(
     prepare(table)
     if flocks < FLOCKS:
         echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
-    policies = [len(entry.trainings.get(level, ())) for entry in entries for level in levels]
-    led = [LEVELS[level].flock_hours(flocks) for _ in entries for level in levels]
-    hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
-    kept = f"{table} holds the rows of entries that were finished."
-    with progress("scoring", 3600 * hours, printing.shows_nothing, kept=kept) as advance:
-        for found in scored(entries, levels, flocks, advance):
-            if len(found.rows):
-                write_csv(table, found.rows, float_format="%.6g")
-                write_csv(out / "orders.csv", found.orders, float_format="%.6g")
+    found = _written(entries, levels, flocks, table, printing.shows_nothing)
     _show(found, out, printing)
     for words in found.broken:
         echo(f"Not scored: {words}", errors)
@@ -58,10 +50,31 @@ def compare_entries(
         raise typer.Exit(1)
 
 
+def _written(
+    entries: Sequence[SuiteEntry], levels: Sequence[str], flocks: int, table: Path, quiet: bool
+) -> Scored:
+    """Score entries and write their rows; warn of overlaps in them, also after Ctrl-C."""
+    policies = [len(entry.trainings.get(level, ())) for entry in entries for level in levels]
+    led = [LEVELS[level].flock_hours(flocks) for _ in entries for level in levels]
+    hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
+    kept = f"{table} holds the rows of entries that were finished."
+    orders = table.with_name("orders.csv")
+    notes: list[str] = []
+    try:
+        with progress("scoring", 3600 * hours, quiet, kept=kept) as advance:
+            for found in scored(entries, levels, flocks, advance):
+                if len(found.rows):
+                    write_csv(table, found.rows, float_format="%.6g")
+                    write_csv(orders, found.orders, float_format="%.6g")
+                    notes = overlap_notes(found.orders)
+    finally:
+        for line in notes:
+            warn(f"{line}; {orders} says which")
+    return found
+
+
 def _show(found: Scored, out: Path, printing: Printing) -> None:
-    """Print the rows and the path of their table; warn of overlaps beyond the tolerance."""
-    for line in overlap_notes(found.orders):
-        warn(line)
+    """Print the rows and the path of their table."""
     if printing.as_json:
         print_json({"entries": json.loads(found.rows.to_json(orient="records"))})
         return

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,7 @@ class Episodes:
     def _batch(self, flocks: int) -> LeaderBatch:
         return LeaderBatch(self.flock, [self.n_leaders] * flocks, "disabled")
 
-    def measure(self, progress: Progress = no_progress) -> dict[str, NDArray[np.float64]]:
+    def measure(self, progress: Progress = no_progress) -> dict[str, NDArray[Any]]:
         """Run the episodes; return what `run_episodes` returns."""
         count = len(self.seeds)
         batch = self._batch(count)
@@ -181,7 +181,7 @@ def run_episodes(
     duration_s: float,
     progress: Progress = no_progress,
     options: Mapping[str, object] = MappingProxyType({}),
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, NDArray[Any]]:
     """Run one episode per seed with leaders that follow a policy; training seeds are accepted.
 
     All flocks, including those without leaders, are stepped together in one batch of the core.

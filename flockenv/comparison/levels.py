@@ -5,6 +5,7 @@ If a level or a number in one changes, it is another suite.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,9 +32,9 @@ NO_STEERING, REFERENCE = "straight ahead", DAMPED_LAW
 """The policies whose scores are 0 and 1."""
 
 MEASURED = ("signed_order", *STEP_STATISTICS)
-"""What is known of each flock: its score, and whether the run kept its tolerance."""
+"""What is known of each flock: its signed order, and whether its run kept the tolerance."""
 
-Led = Mapping[str, NDArray[np.float64]]
+Led = Mapping[str, NDArray[Any]]
 """The `MEASURED` of flocks by name, shape (flocks,), or (policies, flocks) of several policies."""
 
 BUDGETS = (30, 100, 300)
@@ -84,7 +85,7 @@ class Level:
     def run(
         self, steers: Policy | str, flocks: int = FLOCKS, progress: Progress = no_progress
     ) -> Led:
-        """Return what was measured in each of the level's first flocks, led by a policy."""
+        """Return the `MEASURED` of the level's first flocks, led by a policy, shape (flocks,)."""
         if not 2 <= flocks <= FLOCKS:
             raise ParameterError(
                 f"flocks = {short_repr(flocks)} is not accepted: from 2 to {FLOCKS}"
@@ -96,7 +97,10 @@ class Level:
         return {name: found[name] for name in MEASURED}
 
     def references(self, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
-        """Return flocks without steering, and the same flocks under the damped law."""
+        """Return the `MEASURED` of flocks without steering and under the damped law.
+
+        Their shape is (2, flocks); both policies lead the same flocks.
+        """
         return stacked([self.run(name, flocks, progress) for name in (NO_STEERING, REFERENCE)])
 
 

@@ -119,7 +119,7 @@ class SuiteEntry:
         return budget_of(self.flock_hours)
 
     def run(self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
-        """Return the flocks of a level's trainings, shape (trainings, flocks).
+        """Return the `MEASURED` of a level's trainings, shape (trainings, flocks).
 
         Raises ParameterError if a policy cannot steer to the end of the episode.
         """

@@ -20,7 +20,7 @@ Item = TypeVar("Item")
 Value = TypeVar("Value")
 
 Engine = Callable[[int | None], Executor]
-"""Function that makes an executor with this many workers; None: as many as possible."""
+"""Function that makes an executor with this many workers; None: one for each core."""
 
 
 def cores() -> int:

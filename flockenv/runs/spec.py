@@ -67,7 +67,8 @@ class RunSpec:
                 f"parameters must be FlockParameters, not {short_repr(self.parameters)}"
             )
         refuse_unknown((self.policy,), NAMES, "policy of a run")
-        if self.checked_policy.control_hz is not None and self.parameters.n_leaders == 0:
+        steers = _named(self.policy, self.parameters.pool).control_hz is not None
+        if steers and self.parameters.n_leaders == 0:
             raise ParameterError(
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
             )
@@ -101,8 +102,8 @@ class RunSpec:
 
     @property
     def checked_policy(self) -> Policy:
-        """The policy that the spec names, for its pool."""
-        return _named(self.policy, self.parameters.pool)
+        """The policy that the spec names, for its pool, at the start of a run."""
+        return _named(self.policy, self.parameters.pool).started()
 
     @property
     def cost(self) -> float:

@@ -57,23 +57,49 @@ def test_an_entry_is_scored_again_to_the_digit(cli, entry: str, tmp_path: Path) 
     assert printed["entries"][0]["entry"] == "mine"
 
 
+def deep(*arguments):
+    overlaps = {"unsolved": np.array([0, 7, 0]), "worst_overlap_cm": np.array([0.0, 0.25, 0.0])}
+    return run_episodes(*arguments) | overlaps
+
+
+def overlap_warning(out: Path) -> str:
+    line = "4 of 12 episodes left overlaps deeper than tolerance_cm; the deepest is 0.25 cm"
+    return f"Warning: {line}; {out / 'orders.csv'} says which\n"
+
+
 @pytest.mark.parametrize("form", [[], ["--json"]])
 def test_overlaps_beyond_the_tolerance_are_said_in_one_line(
     cli, entry: str, tmp_path: Path, monkeypatch, form
 ) -> None:
     """The second flock of each policy is deep: here of two policies and of two references."""
-
-    def deep(*arguments):
-        overlaps = {"unsolved": np.array([0, 7, 0]), "worst_overlap_cm": np.array([0.0, 0.25, 0.0])}
-        return run_episodes(*arguments) | overlaps
-
     monkeypatch.setattr("flockenv.comparison.levels.run_episodes", deep)
     done = cli.succeeds(*words(entry, out=tmp_path), *form)
-    line = "4 of 12 episodes left overlaps deeper than tolerance_cm; the deepest is 0.25 cm\n"
-    assert done.stderr.count(f"Warning: {line}") == 1
+    assert done.stderr.count(overlap_warning(tmp_path)) == 1
+    assert not form or json.loads(done.stdout)["entries"]
     flocks = pd.read_csv(tmp_path / "orders.csv")
     assert flocks["unsolved"].tolist() == [0, 7, 0] * 4
     assert flocks["worst_overlap_cm"].max() == 0.25
+
+
+def test_ctrl_c_keeps_finished_rows_and_their_warning(
+    cli, entry: str, tmp_path: Path, monkeypatch
+) -> None:
+    """It comes in the second entry: after two references and the two policies of the first."""
+    runs = []
+
+    def stopped(*arguments):
+        runs.append(arguments)
+        if len(runs) > 4:
+            raise KeyboardInterrupt
+        return deep(*arguments)
+
+    monkeypatch.setattr("flockenv.comparison.levels.run_episodes", stopped)
+    other = write_entry(tmp_path, "other", {LEVEL: ["0.npz"]})
+    done = cli(*words(entry, other, out=tmp_path))
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr.count(overlap_warning(tmp_path)) == 1
+    assert f"Interrupted. {tmp_path / 'entries.csv'} holds the rows" in done.stderr
+    assert pd.read_csv(tmp_path / "entries.csv")["entry"].tolist() == ["mine"]
 
 
 BROKEN = """
@@ -106,9 +132,11 @@ def test_a_broken_entry_loses_no_other_row(
 def test_a_broken_entry_alone_writes_nothing(cli, entry: str, tmp_path: Path, monkeypatch) -> None:
     (tmp_path / "broken_policy.py").write_text(BROKEN, "utf-8")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("flockenv.comparison.levels.run_episodes", deep)
     broken = write_entry(tmp_path, "broken", {LEVEL: ["broken_policy:Broken"]})
     done = cli(*words(broken, out=tmp_path / "out"), "--trust")
     assert (done.returncode, done.stdout) == (1, "")
+    assert "Warning" not in done.stderr
     assert not (tmp_path / "out" / "entries.csv").exists()
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import flockenv
+from flockenv.envs.observation import observation_entries
 from flockenv.errors import FlockError
 from flockenv.order import ORDER
 from flockenv.recording import RecordingWarning
@@ -72,6 +73,16 @@ def test_all_that_a_result_depends_on_is_in_the_key(spec: RunSpec) -> None:
     ]
     assert len({RunSpec(**base | change).key for change in changes}) == len(changes)
     assert RunSpec(**base).key == spec.key
+
+
+def test_the_policy_of_a_spec_is_at_the_start_of_a_run(
+    parameters: flockenv.FlockParameters,
+) -> None:
+    steered = parameters.replace(n_leaders=1)
+    spec = RunSpec(parameters=steered, seed=3, duration_s=30.0, policy="random rudders")
+    size = len(observation_entries())
+    drawn, again = (spec.checked_policy.predict(np.zeros(size))[0] for _ in range(2))
+    assert np.array_equal(drawn, again)
 
 
 @pytest.mark.parametrize("damage", ["cut", "flip", "nonsense", "empty"])

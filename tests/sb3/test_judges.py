@@ -313,7 +313,8 @@ def test_files_of_an_evaluation_that_somebody_protected_stay(tmp_path, name):
 def test_a_damaged_file_of_evaluations_is_named(tmp_path):
     model = ppo(make()).learn(96)
     (tmp_path / "evaluations.npz").write_bytes(b"PK")
-    with pytest.raises(ParameterError, match=r"evaluations\.npz is not a complete, undamaged"):
+    words = r"evaluations\.npz is not a complete, undamaged \.npz file"
+    with pytest.raises(ParameterError, match=words):
         model.learn(96, evaluation(make(), str(tmp_path)), reset_num_timesteps=False)
 
 
