@@ -112,7 +112,7 @@ class FlockParameters:
     def preset(cls, name: str) -> Self:
         """Return a named set of parameters.
 
-        A ParameterError refuses an unknown name.
+        Raises ParameterError for an unknown name.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class FlockParameters:
     def preset_sources(cls, name: str) -> dict[str, str]:
         """Return where each number of a preset comes from, by field.
 
-        A ParameterError refuses an unknown name.
+        Raises ParameterError for an unknown name.
         """
         return _core.preset_sources(name)
 

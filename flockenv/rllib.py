@@ -40,8 +40,8 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
 
     ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
     ``activation`` ("tanh" or "relu") and ``first_log_std`` (the
-    logarithm of the first standard deviation of an action, shared by all leaders and learned). A
-    ParameterError is raised for unknown entries of ``model_config`` and for spaces of other
+    logarithm of the first standard deviation of an action, shared by all leaders and learned).
+    Raises ParameterError for unknown entries of ``model_config`` and for spaces of other
     environments.
     """
 

@@ -97,9 +97,10 @@ def simulate(
     schedule
         Changes during the run: pairs of a time in s from the start of the run, and a dictionary of
         the fields of the parameters that change then, after the sample at that time. ``[(60.0,
-        {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp. All changes must come before the last
-        sample. With another pool each boat keeps its angle about the center and its relative
-        distance between the walls. The recording has the parameters of its start.
+        {"bw_s": 0.6}), (120.0, {"bw_s": 0.9})]`` is a ramp. The first change must come before the
+        last sample, and none after the end of the run. With another pool each boat keeps its angle
+        about the center and its relative distance between the walls. The recording has the
+        parameters of its start.
     quantities
         User-defined quantities, by name: functions that take the recording, with read-only arrays,
         and return an array (t,), a real number for each sample. Their values are kept in the
@@ -158,7 +159,7 @@ def _origin(
     noise_seed: int | None,
     control_hz: float | None,
 ) -> dict[str, object]:
-    """Return the recording's fields that tell apart runs of one parameters, seed and policy."""
+    """Return the fields that tell apart runs with the same parameters, seed and policy."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
         "control_hz": None if control_hz is None else float(control_hz),

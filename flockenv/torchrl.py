@@ -235,7 +235,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
 
 
 def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
-    """Return global states with a row for each boat; each row also has the entries of no boat."""
+    """Return states with a row for each boat, which also has the entries that belong to no boat."""
     rest = len(state_entries(0))
     own = states[:, :-rest].reshape(len(states), boats, -1)
     clock = np.broadcast_to(states[:, None, -rest:], (len(states), boats, rest))

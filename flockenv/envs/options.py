@@ -12,7 +12,7 @@ from flockenv.errors import ParameterError, UnknownOptionError, hint, short_repr
 from flockenv.parameters import FlockParameters
 
 TERMS: dict[str, str] = dict(_core.REWARD_TERMS)
-"""Name and meaning of each term of the reward. The better, the larger every term is."""
+"""Name and meaning of each term of the reward. Larger is better for every term."""
 
 
 class Option(NamedTuple):

@@ -75,8 +75,9 @@ class Policy:
     source
         The object that acts, which has ``predict``.
     name
-        The name in recordings: ``str(source)``, or the class's name if that is too long or cannot
-        be printed, followed by the source's ``digest`` if it has one.
+        The name in recordings: ``repr(source)``, or the class's name if it defines no
+        ``__repr__`` or the text is empty, too long or not printable; followed by the source's
+        ``digest`` if it has one.
     control_hz
         Control steps per second that it is made for; None: it steers at every substep, by the
         paper's law.

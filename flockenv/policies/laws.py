@@ -176,7 +176,7 @@ class DampedLaw(LawPolicy):
     def tuned(cls, pool: str, **layout: Unpack[Layout]) -> Self:
         """Return the tuned law of a named pool, for observations with this layout.
 
-        A ParameterError refuses other pools.
+        Raises ParameterError for other pools.
         """
         return cls(*dict(_core.Law.named(TUNED_LAW, pool).gains).values(), **layout)
 
@@ -330,7 +330,7 @@ class LeaningLaw(LawPolicy):
     def learned(cls, pool: str) -> Self:
         """Return the pretrained leaders of a named pool.
 
-        A ParameterError refuses other pools.
+        Raises ParameterError for other pools.
         """
         return cls.from_json(_core.Law.named(LEARNED, pool).to_json())
 

@@ -90,7 +90,7 @@ class FlockMonitor(VecEnvWrapper):
 
 
 def _path(filename: str) -> Path:
-    """Return the path to which stable-baselines3's writer turns a name."""
+    """Return the path that stable-baselines3's writer makes from a name."""
     if filename.endswith(Monitor.EXT):
         return Path(filename)
     return (

@@ -246,7 +246,10 @@ def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]
 
 
 def student_interval(values: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return the mean of a few independent values with Student's interval, NaN for one value."""
+    """Return the mean of a few independent values with Student's interval.
+
+    For one value both ends are NaN.
+    """
     mean, count = float(values.mean()), len(values)
     if count < 2:
         return mean, math.nan, math.nan

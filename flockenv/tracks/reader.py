@@ -207,7 +207,7 @@ def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
 
 
 def _stuck_headings(rows: "pd.DataFrame") -> dict[str, int]:
-    """Return boats that move with one heading in many samples, and with other headings in few."""
+    """Return boats that move with one heading in many samples, and every other one in few."""
     # A boat that never moves keeps its heading, too.
     used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
     counts: Any = used.value_counts(["id", "heading"]).groupby("id")

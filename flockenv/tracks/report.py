@@ -44,8 +44,8 @@ class TrackReport:
     #: or at one point together with other boats: x and y in units of the file, and the number of
     #: samples.
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
-    #: Boats that move, but have one heading in at least 20 samples and other headings in at most a
-    #: tenth as many: the number of samples.
+    #: Boats that move, but have one heading in at least 20 samples and each other heading in at
+    #: most a tenth as many: the number of samples.
     held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:

@@ -151,7 +151,7 @@ class BranchTraining:
 
 
 def training_flocks(pool: str = "wide", **changes: Any) -> FlockParameters:
-    """Return the parameters of 27 boats with three leaders at a pool's critical noise.
+    """Return 27 boats with three leaders at a pool's critical noise, with trainings' physics.
 
     Parameters
     ----------

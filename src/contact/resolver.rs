@@ -81,7 +81,7 @@ impl<'a> Motion<'a> {
 pub(crate) struct ContactResolver {
     /// Geometry of the flock and its pool.
     pub(crate) detector: ContactDetector,
-    /// Impulses of the contacts found last, in cm/s, and the velocities of the last solve.
+    /// Impulses of the contacts found last, in cm/s. Its velocities hold only until the substep takes them.
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,

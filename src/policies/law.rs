@@ -37,7 +37,7 @@ pub struct NamedLaw {
 enum Origin {
     /// It is the same in every pool.
     Everywhere(fn() -> Law),
-    /// Each named pool has another law.
+    /// Each named pool has its own law.
     OfPool(fn(Option<&str>) -> Result<Law>),
 }
 

@@ -122,7 +122,7 @@ impl BranchSettings {
     /// The numbers of decisions.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for times that are no whole numbers of decisions.
+    /// [`FlockError::Parameter`] for times that are not whole numbers of decisions.
     pub(super) fn decisions(&self) -> Result<Decisions> {
         let rate = 1.0 / self.decision_period_s;
         let whole =

@@ -8,7 +8,7 @@ use flockenv::integrator::Steering;
 use flockenv::{Flock, FlockParameters, Result};
 use std::time::{Duration, Instant};
 
-/// The longest step in the shortest half of one.
+/// Number of shortest half steps in the longest step.
 const PARTS: u64 = 256;
 /// The next step is twice as long if the error is less than this share of what is accepted.
 const GROWS_BELOW: f64 = 0.1;

@@ -4,7 +4,7 @@ import { roundNumber } from "./words.mjs";
 
 /** Length of the bar of the scale's force, and width of all bars below the greatest length, in hull widths. */
 const [LENGTH, NARROWEST] = [0.5, 0.2];
-/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam do not join to one line. */
+/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam do not join into one line. */
 const LONGEST = 0.45;
 /** Bars shorter than this fraction of a hull's width are left out. */
 const SHORTEST = 0.025;
@@ -29,7 +29,7 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 is not a bar. */
+/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 means no bar. */
 export function barOf(force, scale, boat) {
   const [widths, longest] = [(LENGTH * force) / scale, LONGEST * boat];
   const length = widths < SHORTEST ? 0 : Math.min(widths, longest);

@@ -15,7 +15,9 @@ pub(super) struct Relinearization {
     pub(super) tolerance: f64,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
-    /// The gap of each of their contacts at the substep's end in cm; infinite if it cannot close or its touch is gone.
+    /// By contact: its gap at the substep's end in cm, plus the overlap that a shortened substep may leave. Infinite if
+    /// it is beyond the slop, cannot close, or its touch is gone. Valid only for contacts of islands that the last check
+    /// looked at.
     end_gaps: Vec<f64>,
 }
 

@@ -54,7 +54,7 @@ pub struct ContactSolver {
     pub active: Vec<bool>,
     /// Impulses λ in cm/s (mass 1): a guess for Gauss–Seidel before, the solution after.
     pub impulses: Vec<f64>,
-    /// Velocities after contact.
+    /// Velocities after contact; scratch once a flock has swapped them with its own.
     pub velocities: Vec<Velocity>,
 }
 
