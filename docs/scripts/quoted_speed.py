@@ -75,7 +75,7 @@ def deeper(than: dict[str, Any], digits: Callable[[float], float] = two_digits) 
 
 
 def speed() -> list[Number]:
-    """List times over those of other engines."""
+    """List our times and memory, and how other engines compare."""
     page, table, threads = PAGE, f"{SPEED}speed.csv", f"{SPEED}threads.csv"
     found = [
         Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
@@ -292,7 +292,12 @@ def our_settings() -> list[Number]:
             ".0f",
         ),
         Number(
-            PAGE, "and time {}-fold", f"{SPEED}speed.csv", {"scene": "jam", **OURS}, per_boat, ".1f"
+            PAGE,
+            "and time grows {}-fold",
+            f"{SPEED}speed.csv",
+            {"scene": "jam", **OURS},
+            per_boat,
+            ".1f",
         ),
         *(
             Number(PAGE, f"Ψ_o is higher by {words}", changes, training | {"dt, s": dt_s}, column)
@@ -340,9 +345,10 @@ def controlled_steps() -> list[Number]:
     table = f"{SPEED}step_control.csv"
 
     def extra(rows: Any) -> Any:
-        """Return the substeps of each controlled setting over those of a fixed step as exact.
+        """Return the ratio of the substeps of controlled steps to those of fixed ones, by setting.
 
-        Settings more exact than every fixed step have none to be compared with.
+        Both have the same error, interpolated between fixed steps. A setting with a smaller error
+        than every fixed step is left out.
         """
         fixed = rows[rows["step"] == "fixed"].sort_values("error_cm")
         own = rows[rows["step"] == "controlled"]
@@ -395,7 +401,7 @@ def controlled_times() -> list[Number]:
     table = f"{SPEED}work.csv"
 
     def longer(column: str) -> Callable[[Any], Any]:
-        """Return the times of each controlled setting over those of a fixed step as exact."""
+        """Return a function for the ratio of controlled to fixed times at the same error."""
 
         def of(rows: Any) -> Any:
             found = []

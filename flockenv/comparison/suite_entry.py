@@ -171,7 +171,7 @@ class Scored(NamedTuple):
 
     #: The ranked rows of entries.
     rows: "pd.DataFrame"
-    #: The `MEASURED` of all flocks, which start with those of each level's two references.
+    #: The `MEASURED` of all flocks; those of each level's two references come first.
     orders: "pd.DataFrame"
     #: Why other entries have no row, in a sentence each.
     broken: tuple[str, ...]

@@ -67,7 +67,7 @@ class ModelPolicy:
     Raises
     ------
     ParameterError
-        If its spaces are not those of an environment of flockenv, or have unknown options.
+        If its spaces do not belong to a flockenv environment, or have unknown options.
     """
 
     def __init__(self, model: Any, *, provenance: Mapping[str, str] | None = None) -> None:

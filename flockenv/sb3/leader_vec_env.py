@@ -245,8 +245,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, flat, np.float32)
         except Exception:
-            # After an error in a flock's motion or in the reward, flocks whose episode is over
-            # start again.
+            # After an error in the motion or in the reward, episodes that are over start again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
