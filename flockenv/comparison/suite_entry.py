@@ -33,7 +33,6 @@ from flockenv.policies.base import Policy
 from flockenv.policies.registry import FILES, policy
 from flockenv.policies.wrapped import WrappedPolicy
 from flockenv.runs.seeds import FIRST_TRAINING_SEED
-from flockenv.runs.store import RESULTS_VERSION
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,7 +97,7 @@ class SuiteEntry:
         refuse_unknown(values, _KEYS, "key of an entry")
         for key in (key for key in _KEYS if key not in values and key != "searched_hours"):
             raise ParameterError(f"{key} is missing")
-        _check_versions(values)
+        _check_suite(values)
         _check_training_seeds(values["training_seeds"])
         searched = values.get("searched_hours")
         return cls(
@@ -238,20 +237,15 @@ def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":
 
 
 _KEYS = (
-    *("suite", "results_version", "name", "class", "link"),
+    *("suite", "name", "class", "link"),
     *("flock_hours", "searched_hours", "training_seeds", "levels"),
 )
 
 
-def _check_versions(values: Mapping[str, Any]) -> None:
-    """Refuse entries of another suite or results version."""
+def _check_suite(values: Mapping[str, Any]) -> None:
+    """Refuse entries of another suite."""
     if values["suite"] != SUITE:
         raise ParameterError(f"suite = {short_repr(values['suite'])} is not accepted: {SUITE!r}")
-    if values["results_version"] != RESULTS_VERSION:
-        raise ParameterError(
-            f"results_version = {short_repr(values['results_version'])} is not accepted: this "
-            f"flockenv has version {RESULTS_VERSION}, in which flocks move otherwise; train again"
-        )
 
 
 def _check_training_seeds(seeds: object) -> None:
@@ -319,12 +313,6 @@ def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
         raise ParameterError(f"{level.name}, {given}: {error}") from error
     _check_weights(found.source, given)
     provenance = getattr(found.source, "provenance", None) or {}
-    version = provenance.get("results_version", str(RESULTS_VERSION))
-    if version != str(RESULTS_VERSION):
-        raise ParameterError(
-            f"{given} was trained in results version {version}, and this flockenv has version "
-            f"{RESULTS_VERSION}"
-        )
     if seeds := provenance.get("training_seeds"):
         first, separator, last = seeds.partition("-")
         if not separator or not (first.isdecimal() and last.isdecimal()):

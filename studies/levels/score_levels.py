@@ -42,7 +42,7 @@ from flockenv.errors import FlockError
 from flockenv.flock import STEP_STATISTICS
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, two_way_interval
 from studies.levels import level_curves
-from studies.store import StudyError, existing, resumed, write, write_table
+from studies.store import StudyError, check_version, existing, resumed, write, write_table
 from studies.study import run
 from studies.suite.compare_grid import holm
 
@@ -50,6 +50,7 @@ HERE = Path(__file__).parent
 ENTRIES, RESULTS = HERE / "entries", HERE / "results"
 PAGE = HERE.parents[1] / "docs" / "levels.md"
 BEGIN, END = "<!-- entries -->\n\n", "\n\n<!-- end -->"
+TABLES = [f"{name}.csv" for name in ("entries", "orders", "curves", "areas", "pairs", "ranks")]
 FORM = "%.6g"
 KEY = ["level", "budget", "entry"]
 
@@ -294,6 +295,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     given, refused = entered(options.entries)
     if not options.no_runs:
+        for name in TABLES:
+            check_version(options.out / name)
         refused += score([*given.values()], options.out, is_checked=options.check)
     if not options.check:
         orders = pd.read_csv(existing(options.out / "orders.csv"), dtype={"budget": str})

@@ -11,7 +11,6 @@ import tomli_w
 from flockenv.comparison.levels import LEVELS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
-from flockenv.runs.store import RESULTS_VERSION
 from studies.store import existing
 
 FLOCKS = 64
@@ -89,7 +88,7 @@ def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_p
         weights = np.random.default_rng(seed).normal(size=(size, 1))
         NetworkPolicy([weights], [[0.0]], **network).save(tmp_path / f"{place}.npz")
     for name, own in (("a", ["0.npz", "1.npz"]), ("b", ["2.npz", "3.npz"])):
-        entry = {"suite": "v3", "results_version": RESULTS_VERSION, "name": name, "class": "none"}
+        entry = {"suite": "v3", "name": name, "class": "none"}
         entry |= {"link": "studies/levels/README.md", "flock_hours": 0.0}
         entry |= {"training_seeds": [2**32, 2**32], "levels": {"order-easy": own}}
         (tmp_path / f"{name}.toml").write_text(tomli_w.dumps(entry), "utf-8")

@@ -12,13 +12,12 @@ from flockenv.comparison.episodes import run_episodes
 from flockenv.comparison.levels import LEVELS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
-from flockenv.runs.store import RESULTS_VERSION
 
 LEVEL = "order-easy"
 
 
 def write_entry(folder: Path, name: str, levels: dict[str, list[str]]) -> str:
-    values = {"suite": "v3", "results_version": RESULTS_VERSION, "name": name, "class": "by hand"}
+    values = {"suite": "v3", "name": name, "class": "by hand"}
     values |= {"link": "here", "flock_hours": 30.0, "training_seeds": [2**32, 2**32]}
     path = folder / f"{name}.toml"
     path.write_text(tomli_w.dumps({**values, "levels": levels}), "utf-8")

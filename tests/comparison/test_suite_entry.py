@@ -14,7 +14,6 @@ from flockenv.comparison.suite_entry import SuiteEntry, ranked, scored
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError
 from flockenv.policies import NetworkPolicy, WrappedPolicy
-from flockenv.runs.store import RESULTS_VERSION
 
 LEVEL = "order-easy"
 LAYOUT = {"observation": LEVELS[LEVEL].observation, "mirror_to_target": True}
@@ -33,7 +32,6 @@ def entered(tmp_path: Path):
     def write(**changes: object) -> Path:
         values: dict[str, object] = {
             "suite": "v3",
-            "results_version": RESULTS_VERSION,
             "name": "mine",
             "class": "by hand",
             "link": "https://example.org/mine",
@@ -73,7 +71,6 @@ class Wrong:
     ("changes", "words"),
     [
         ({"suite": "v2"}, "suite = 'v2' is not accepted"),
-        ({"results_version": RESULTS_VERSION - 1}, f"results_version = {RESULTS_VERSION - 1} is"),
         (
             {"levels": {"order-esy": ["a.npz"]}},
             "'order-esy' is not a level of suite v3: did you mean",
@@ -104,7 +101,6 @@ def test_what_a_policy_says_of_its_training_counts(entered, tmp_path: Path) -> N
     for made, words in (
         ({"training_seeds": "77-4294967300"}, "training_seeds of b.npz"),
         ({"training_seeds": "all"}, "not FIRST-LAST"),
-        ({"results_version": "5"}, "b.npz was trained in results version 5"),
     ):
         network(tmp_path / "b.npz", **made)
         with pytest.raises(ParameterError) as error:
