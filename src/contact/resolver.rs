@@ -1,6 +1,7 @@
 //! From free velocities to velocities that respect the contacts: detection, warm start, solution,
 //! relinearization, and the fallback if constraints contradict each other.
 
+mod biases;
 mod relinearization;
 
 use super::depenetration::{
@@ -10,7 +11,6 @@ use super::passivity::{self, Passivity};
 use super::predicted_poses::PredictedPoses;
 use super::skipped_contacts::SkippedContacts;
 use super::solver::ContactSolver;
-use super::velocity_bias::VelocityBias;
 use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
@@ -57,6 +57,10 @@ enum Solution {
 pub(crate) struct Motion<'a> {
     /// Poses at the substep's start.
     pub poses: &'a [Pose],
+    /// The hulls at these poses.
+    pub hulls: &'a [HullPose],
+    /// Velocities before the substep; `None` where gaps are taken as linear.
+    pub before: Option<&'a [Velocity]>,
     /// Velocities without contacts.
     pub free: &'a [Velocity],
     /// Effective inertia.
@@ -312,13 +316,8 @@ impl ContactResolver {
     /// Solves the contacts that are not skipped, and checks the solution: the gaps at the substep's end, the skipped
     /// contacts, and the energy.
     fn solve_and_check(&mut self, motion: &Motion, statistics: &mut Statistics) -> Solution {
-        let (free, bias) = (motion.free, self.bias(motion));
-        self.biases.clear();
-        self.biases.extend(self.contacts.iter().map(|contact| {
-            let spin = free[contact.boat as usize].angular;
-            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
-        }));
-        self.solver.reset(free.len(), &self.contacts);
+        self.fill_biases(motion);
+        self.solver.reset(motion.free.len(), &self.contacts);
         let mut solution = self.solve(None, motion, statistics);
         if self.relinearization.is_on() && solution != Solution::Exhausted {
             solution = self.relinearize(motion, solution, statistics);
@@ -337,14 +336,6 @@ impl ContactResolver {
             return Solution::Driven;
         }
         solution
-    }
-
-    fn bias(&self, motion: &Motion) -> VelocityBias {
-        VelocityBias {
-            dt: motion.dt,
-            closing_s: motion.dt.max(self.whole_substep_s),
-            penetration_slop: self.penetration_slop,
-        }
     }
 
     /// Finds the islands that contacts would drive or turn back, and computes their velocity biases from the present

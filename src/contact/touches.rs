@@ -33,6 +33,12 @@ pub(super) fn first_of_two(contacts: &[Contact], k: usize) -> Option<usize> {
     }
 }
 
+/// The number of the other contact of the pair to which contact k belongs, if there is one.
+#[inline]
+pub(super) fn twin(contacts: &[Contact], k: usize) -> Option<usize> {
+    first_of_two(contacts, k).map(|first| 2 * first + 1 - k)
+}
+
 /// Whether the touches of a pair at other poses belong to its two contacts in reverse order: the order with the smaller
 /// change of positions and gaps. A missing touch has no position, so the remaining one goes to the nearer contact.
 #[inline]

@@ -25,12 +25,17 @@ impl VelocityBias {
         select_unpredictable(is_deep, 0.0, gap.gap / time)
     }
 
-    /// Part of the bias that a flank loses by turning into the inner wall with this spin.
-    pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
+    /// Part of the bias by which a gap curves within the substep, from its second derivative in cm/s².
+    pub(super) fn of_curve(&self, gap: &Gap, second_derivative: f64) -> f64 {
         if gap.gap < -self.penetration_slop {
             0.0
         } else {
-            0.5 * gap.bend * self.dt * spin * spin
+            0.5 * self.dt * second_derivative
         }
+    }
+
+    /// Part of the bias that a flank loses by turning into the inner wall with this spin.
+    pub(super) fn of_flank(&self, gap: &Gap, spin: f64) -> f64 {
+        self.of_curve(gap, gap.bend * spin * spin)
     }
 }

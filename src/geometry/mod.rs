@@ -2,6 +2,7 @@
 
 mod annulus;
 mod capsule;
+mod curving;
 mod gap;
 pub mod lap_frame;
 mod neighbors;
@@ -10,6 +11,7 @@ mod pose;
 
 pub use annulus::{inner_wall_gap, outer_wall_gap};
 pub use capsule::{Hull, HullPose, resized_gyration_radius_cm};
+pub use curving::Moving;
 pub(crate) use gap::{EndTouch, end_touches, smallest_gap};
 pub use gap::{Feature, Gap, Placed, pair_gap, pair_gaps};
 pub(crate) use lap_frame::LapFrame;

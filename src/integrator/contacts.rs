@@ -38,6 +38,8 @@ impl Integrator {
         }
         let motion = Motion {
             poses: &self.poses,
+            hulls: &self.boats,
+            before: Some(&self.velocities),
             free,
             inertia: &self.inertia,
             dt,

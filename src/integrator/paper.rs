@@ -31,6 +31,9 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
         let motion = Motion {
             poses,
+            hulls: &flock.boats,
+            // Eq. (A.4) has linear gaps.
+            before: None,
             free: velocities,
             inertia: &flock.inertia,
             dt,

@@ -55,8 +55,8 @@ fn hash(trainer: &Trainer) -> u64 {
 }
 
 const MODES: [(ActionMode, u64); 2] = [
-    (ActionMode::Lean, 0xbffb_10ab_f3f8_d3ad),
-    (ActionMode::Rudder, 0xb77c_8c5f_5ef5_d229),
+    (ActionMode::Lean, 0x3075_31aa_0b73_dfd5),
+    (ActionMode::Rudder, 0x1430_8873_849e_9f93),
 ];
 
 #[test]
@@ -170,15 +170,19 @@ fn settings_are_refused_by_their_names() {
 fn from_nothing_leaders_learn_to_raise_the_order() {
     let (_, parameters) = task(ActionMode::Rudder);
     let settings = BranchSettings {
-        flock_hours: 12.0,
+        flock_hours: 24.0,
         pairs: 16,
         ..BranchSettings::usual(ActionMode::Rudder)
     };
-    let start = Trainer::new(settings, parameters, 1, 0).unwrap();
-    let trained = trained(start, usize::MAX);
-    let orders: Vec<f64> = trained.curve().map(|(_, order)| order).collect();
     let mean = |orders: &[f64]| orders.iter().sum::<f64>() / orders.len() as f64;
-    let (early, late) = orders.split_at(orders.len() / 2);
-    let (early, late) = (mean(&early[..8]), mean(&late[late.len() - 8..]));
-    assert!(late > early + 0.1, "{early} {late}");
+    // Eight rounds of one training say too little: their mean is off by some 0.09.
+    let raised: Vec<f64> = (0..4)
+        .map(|seed| {
+            let start = Trainer::new(settings.clone(), parameters.clone(), seed, 0).unwrap();
+            let trained = trained(start, usize::MAX);
+            let orders: Vec<f64> = trained.curve().map(|(_, order)| order).collect();
+            mean(&orders[orders.len() / 2..]) - mean(&orders[..8])
+        })
+        .collect();
+    assert!(mean(&raised) > 0.1, "{raised:?}");
 }

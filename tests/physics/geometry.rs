@@ -3,7 +3,7 @@
 //!
 //! On paper: boats nose to tail, side by side, crossed and at right angles.
 
-use crate::support::{H, R, cases, core_distance, displaced, near, pose};
+use crate::support::{H, R, cases, core_distance, displaced, near, pose, same_curve, velocity};
 use flockenv::geometry::{
     Feature, Gap, Hull, HullPose, Pose, Vec2, inner_wall_gap, outer_wall_gap, pair_gap, pair_gaps,
     resized_gyration_radius_cm,
@@ -204,5 +204,41 @@ proptest! {
                 prop_assert!((measured - slope(gap, true, direction)).abs() < 1e-4);
             }
         }
+    }
+
+    #[test]
+    fn a_gap_curves_as_its_second_derivative_says(
+        a in pose(16.0, 4.0), b in pose(16.0, 4.0), v in velocity(), w in velocity(),
+    ) {
+        let hulls = |s: f64| [a.moved(&v, s), b.moved(&w, s)].map(|pose| HullPose::new(&pose));
+        let [first, second] = hulls(0.0);
+        for (feature, gap) in gaps(&a, &b, 20.0) {
+            if feature == Feature::Crossed || gap.gap < -9.0 {
+                continue;
+            }
+            let stated = gap.second_derivative(HULL, gap.gap + 2.0 * R, (&first, &v), Some((&second, &w)));
+            let at = |s: f64| {
+                let [a, b] = hulls(s);
+                pair_gap(feature, (&a, HULL), (&b, HULL))
+            };
+            same_curve(at, stated)?;
+        }
+    }
+
+    #[test]
+    fn wall_gaps_curve_as_their_second_derivatives_say(
+        radius in 20.0..80.0_f64, polar in -4.0..4.0_f64, heading in -4.0..4.0_f64, v in velocity(),
+    ) {
+        let pose = Pose::new(radius * polar.cos(), radius * polar.sin(), heading);
+        let boat = |s: f64| HullPose::new(&pose.moved(&v, s));
+        let stated = |gap: Gap, from_center: f64| {
+            gap.second_derivative(HULL, gap.gap + R + from_center, (&boat(0.0), &v), None)
+        };
+        for side in [-1.0, 1.0] {
+            let at = |s: f64| outer_wall_gap(&boat(s), side, HULL, 90.0);
+            same_curve(at, stated(at(0.0), -90.0))?;
+        }
+        let at = |s: f64| inner_wall_gap(&boat(s), HULL, 10.0);
+        same_curve(at, stated(at(0.0), 10.0))?;
     }
 }

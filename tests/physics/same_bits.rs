@@ -60,26 +60,26 @@ fn a_minute_and_ten_minutes_end_in_the_same_bits_on_every_machine() {
         (
             wide,
             Noise::White,
-            0x4bb9_b34b_4243_cd57,
-            0xc9aa_b80b_f643_c3ac,
+            0x94d1_ca52_c9cf_a966,
+            0x115b_b64f_1a6a_5770,
         ),
         (
             wide,
             Noise::PerStep,
-            0xe555_82b3_ec15_3dfc,
-            0xf90e_d7e3_3e0a_c01f,
+            0x7739_3203_f862_0846,
+            0x0624_5d93_eb0f_4c86,
         ),
         (
             narrow,
             Noise::White,
-            0x8ccd_1617_0848_6c51,
-            0xd6a8_d5bf_07a4_48c5,
+            0xfa40_25fd_2cfa_d2ad,
+            0xf456_9796_63bb_b7a1,
         ),
         (
             narrow,
             Noise::PerStep,
-            0xf90d_bdfb_f5f3_4a7b,
-            0xa080_18ed_3069_c90b,
+            0xcb1b_3300_9c3d_6d28,
+            0x56bb_1c7e_0877_0c97,
         ),
     ] {
         let found =
@@ -98,6 +98,6 @@ fn a_stated_error_has_the_same_bits_on_every_machine() {
         assert!(stated > 0.0);
         fnv(numbers(&flock).chain([stated]))
     });
-    let expected = [0x7986_8034_62e8_72a1, 0x1545_205f_57c0_c5a5];
+    let expected = [0xd570_5eb4_ea68_0705, 0xf686_c6d5_3035_37ac];
     assert_eq!(found, expected, "{found:#x?}");
 }

@@ -1,10 +1,12 @@
 //! Small scenes to check laws on, and what is measured of them.
 
 use flockenv::flock::State;
-use flockenv::geometry::{Pose, Vec2, Velocity, cross};
+use flockenv::geometry::{Gap, Pose, Vec2, Velocity, cross};
 use flockenv::parameters::{Disc, Noise, Pool, Preset, Scheme, Wall};
 use flockenv::{Flock, FlockError, FlockParameters};
+use proptest::prop_assert;
 use proptest::strategy::Strategy;
+use proptest::test_runner::TestCaseError;
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 use std::fmt::Debug;
 
@@ -393,4 +395,28 @@ pub fn refused_field<T: Debug>(result: Result<T, FlockError>) -> &'static str {
 /// The parameters of Table 3, with leapfrog and white noise.
 pub fn table_3() -> FlockParameters {
     FlockParameters::preset(Preset::Simulation)
+}
+
+/// Velocities of up to 20 cm/s in each direction and 5 rad/s.
+pub fn velocity() -> impl Strategy<Value = Velocity> {
+    let linear = || -20.0..20.0_f64;
+    (linear(), linear(), -5.0..5.0_f64).prop_map(|(x, y, turn)| Velocity::new(x, y, turn))
+}
+
+/// Checks that the second derivative of a gap, given after a time in s, is the stated one. Where the touch passes an end,
+/// it has none.
+pub fn same_curve(at: impl Fn(f64) -> Gap, stated: f64) -> Result<(), TestCaseError> {
+    let step = 3e-4;
+    let [behind, gap, ahead] = [-step, 0.0, step].map(at);
+    let ends = |gap: &Gap| [gap.along, gap.along_j].map(|along| along.abs() < H);
+    if ends(&behind) != ends(&gap) || ends(&ahead) != ends(&gap) {
+        return Ok(());
+    }
+    let measured = (ahead.gap - 2.0 * gap.gap + behind.gap) / (step * step);
+    let allowed = 1e-3 * (100.0 + stated.abs());
+    prop_assert!(
+        (measured - stated).abs() < allowed,
+        "{measured} {stated} {gap:?}"
+    );
+    Ok(())
 }

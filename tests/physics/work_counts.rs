@@ -36,6 +36,23 @@ fn one_boat_at_the_wall() {
 }
 
 #[test]
+fn a_slide_along_a_curve_needs_one_solve_a_substep() {
+    // A gap taken as linear would close by v²·dt²/(2Q), 2e-4 cm at 10 cm/s, and be solved again in each substep.
+    for scheme in VELOCITY_SCHEMES {
+        let p = changed(driven(scheme), |p| p.pool = disc(90.0));
+        let mut flock = flock_of(&p, &[([82.0, 0.0, 1.2], [0.0; 3])]);
+        flock.advance(5.0, None).expect("finite motion");
+        assert!(flock.velocities()[0].linear.norm() > 10.0);
+        let before = *flock.statistics();
+        take_substeps(&mut flock, 200);
+        let now = flock.statistics();
+        assert!(now.contacts - before.contacts >= 200);
+        assert_eq!(now.solves - before.solves, 200, "{scheme:?}");
+        assert!(now.worst_overlap_cm < 1e-4);
+    }
+}
+
+#[test]
 fn a_row_factors_each_contact_once_a_substep() {
     for k in [3_u64, 6] {
         let statistics = row_at_the_wall(k);

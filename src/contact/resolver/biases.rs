@@ -1,0 +1,50 @@
+//! The biases of a substep's contacts: what their gaps may close before anything is solved.
+
+use super::{ContactResolver, Motion};
+use crate::contact::Contact;
+use crate::contact::touches::twin;
+use crate::contact::velocity_bias::VelocityBias;
+
+impl ContactResolver {
+    /// Computes the biases of all contacts. They look ahead along the curves of gaps where two bodies have pushed each
+    /// other in the substep before: the velocities there hardly change. At an impact they jump, so that its gaps count as
+    /// linear. So do those at a straight wall, which may continue another one: nothing is known of that touch before. And
+    /// where a boat moves by more than its radius, its velocity says nothing of the substep's end.
+    pub(super) fn fill_biases(&mut self, motion: &Motion) {
+        let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
+        let linear = |contact: &Contact| {
+            let spin = motion.free[contact.boat as usize].angular;
+            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
+        };
+        let is_far = self.detector.farthest > self.detector.hull().radius;
+        let is_on = self.relinearization.is_on() && !is_far;
+        self.biases.clear();
+        let Some(before) = motion.before.filter(|_| is_on) else {
+            self.biases.extend(contacts.iter().map(linear));
+            return;
+        };
+        let persistent = &self.persistent;
+        let have_pushed = |k| persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k]);
+        let detector = &self.detector;
+        let curve = |contact| detector.second_derivative(contact, motion.hulls, before);
+        let looking_ahead = contacts.iter().enumerate().map(|(k, contact)| {
+            if have_pushed(k)
+                && let Some(curve) = curve(contact)
+            {
+                bias.of_gap(&contact.gap) + bias.of_curve(&contact.gap, curve)
+            } else {
+                linear(contact)
+            }
+        });
+        self.biases.extend(looking_ahead);
+    }
+
+    /// How the biases of this motion follow from gaps.
+    pub(super) fn bias(&self, motion: &Motion) -> VelocityBias {
+        VelocityBias {
+            dt: motion.dt,
+            closing_s: motion.dt.max(self.whole_substep_s),
+            penetration_slop: self.penetration_slop,
+        }
+    }
+}

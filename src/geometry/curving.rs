@@ -1,0 +1,46 @@
+//! The second derivative of a gap: how it curves while its bodies keep their velocities.
+
+use super::{Gap, Hull, HullPose, Velocity, turned_left};
+
+/// A hull with its velocity.
+pub type Moving<'a> = (&'a HullPose, &'a Velocity);
+
+impl Gap {
+    /// Second derivative of the gap in cm/s² while two hulls of one shape, or a hull at a round wall, keep their
+    /// velocities. `distance` is that of the two cores in cm, or of the core from the wall's center, negative if the wall
+    /// curves around the hull. The cores do not cross.
+    ///
+    /// With the touch at r_i and r_j on the cores, seen from their centers, its speed u along the tangent, the distance d
+    /// and the rate Ω at which the normal n turns: gap″ = ω_j²·r_j·n − ω_i²·r_i·n + Ω·(2u − Ω·d). The normal turns with
+    /// the hull whose flank is touched, and at Ω = u/d where the touch slides around an end or a wall.
+    #[inline]
+    pub fn second_derivative(
+        &self,
+        hull: Hull,
+        distance: f64,
+        first: Moving,
+        second: Option<Moving>,
+    ) -> f64 {
+        let tangent = turned_left(self.normal);
+        // The share of one side in the speed along the tangent, and in the acceleration along the normal.
+        let share = |(pose, velocity): Moving, along: f64| {
+            let turn = velocity.angular;
+            let offset = along * pose.axis.dot(&self.normal);
+            let slide = tangent.dot(&velocity.linear) + turn * offset;
+            (slide, -turn * turn * offset)
+        };
+        let (mut slide, mut acceleration) = share(first, self.along);
+        let is_flank = |along: f64| along.abs() < hull.half_length;
+        let mut normal_turn = is_flank(self.along).then_some(first.1.angular);
+        if let Some(second) = second {
+            let (its_slide, its_acceleration) = share(second, self.along_j);
+            slide -= its_slide;
+            acceleration -= its_acceleration;
+            if is_flank(self.along_j) {
+                normal_turn = Some(second.1.angular);
+            }
+        }
+        let normal_turn = normal_turn.unwrap_or(slide / distance);
+        acceleration + normal_turn * (2.0 * slide - normal_turn * distance)
+    }
+}
