@@ -8,7 +8,7 @@ fails. The numbers go to docs/throughput/soak.csv.
 import argparse
 import csv
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 
@@ -24,11 +24,11 @@ POOLS = ("wide", "narrow")
 PHYSICS = ("training", "default", "publication")
 SPEEDS_CM_S = (5.0, 20.0, 60.0)
 FLOCKS = 8
-#: Share of the steps before memory is stationary, and number of readings.
-TRANSIENT, SAMPLES = 0.2, 200
+#: Repetitions of one stretch of rounds, of which the last half tells of leaks.
+REPEATS, STRETCH = 16, 300
 #: Rounds between two round trips through bytes, and steps until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5
-MOST_GROWTH_KIB = 1024.0
+MOST_GROWTH_KIB = 256.0
 WORST_RESIDUAL_CM_S = 1e-8
 
 
@@ -111,12 +111,12 @@ def resident_kib() -> float:
     return float(next(line.split()[1] for line in lines if line.startswith("VmRSS")))
 
 
-def soak(total: int, seed: int) -> tuple[list[Batch], np.ndarray]:
-    """Step until `total` control steps; return the batches and (steps, KiB) as they went."""
+def soak(total: int, seed: int) -> tuple[list[Batch], list[float]]:
+    """Step until `total` control steps; return the batches and what `repeated` reads then."""
     random = np.random.default_rng(seed)
     kinds = enumerate(product(POOLS, PHYSICS, SPEEDS_CM_S))
     batches = [make(*kind, seed + 1000 * place) for place, kind in kinds]
-    memory, rounds = [], 0
+    rounds = 0
     with Progress() as progress:
         task = progress.add_task("control steps", total=total)
         while (done := sum(batch.control_steps for batch in batches)) < total:
@@ -126,22 +126,39 @@ def soak(total: int, seed: int) -> tuple[list[Batch], np.ndarray]:
             if rounds % STORED_EVERY == 0:
                 for batch in batches:
                     batch.env.set_state(batch.env.get_state())
-            if done >= len(memory) * total / SAMPLES:
-                memory.append((done, resident_kib()))
                 progress.update(task, completed=done)
-    return batches, np.array(memory)
+    return batches, repeated(batches, seed)
 
 
-def growth(memory: np.ndarray) -> tuple[float, float]:
-    """Return KiB per million control steps (least squares) and the range of all samples in KiB."""
-    late = memory[memory[:, 0] >= TRANSIENT * memory[-1, 0]]
-    return 1e6 * np.polyfit(*late.T, 1)[0], np.ptp(late[:, 1])
+def repeated(batches: list[Batch], seed: int) -> list[float]:
+    """Return the resident memory in KiB after each repetition of one stretch of rounds.
+
+    New states need more memory now and then, the same ones again and again do not: then what grows
+    is a leak.
+    """
+    starts = [(batch.env.get_state(), batch.rudders, batch.ended) for batch in batches]
+    readings = []
+    for _ in range(REPEATS):
+        random = np.random.default_rng(seed)
+        again = [replace(batch) for batch in batches]
+        for batch, (state, rudders, ended) in zip(again, starts, strict=True):
+            batch.env.set_state(state)
+            batch.rudders, batch.ended = rudders.copy(), ended.copy()
+        for _ in range(STRETCH):
+            for batch in again:
+                batch.step(random)
+        readings.append(resident_kib())
+    return readings
 
 
-def failures(batches: list[Batch], memory: np.ndarray) -> list[str]:
-    late = memory[memory[:, 0] >= TRANSIENT * memory[-1, 0]]
-    grown = growth(memory)[0] * (late[-1, 0] - late[0, 0]) / 1e6
-    found = [f"memory grew by {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
+def growth(readings: list[float]) -> float:
+    """Return by how many KiB memory grew in the last half of the repetitions."""
+    return readings[-1] - readings[len(readings) // 2 - 1]
+
+
+def failures(batches: list[Batch], readings: list[float]) -> list[str]:
+    grown = growth(readings)
+    found = [f"memory leaked {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
     for batch in batches:
         if batch.unsolved:
             found.append(f"{batch.name}: {batch.unsolved} substeps were not solved")
@@ -188,16 +205,16 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "throughput" / "soak.csv")
     options = parser.parse_args()
-    batches, memory = soak(int(options.steps), options.seed)
+    batches, readings = soak(int(options.steps), options.seed)
     text = table(batches)
     write_text(options.out, text)
-    slope, apart = growth(memory)
     print(text)
+    steps = STRETCH * FLOCKS * len(batches)
     print(
-        f"Resident memory, {memory[0, 1]:.0f} KiB at the start, changes by {slope:+.1f} KiB per "
-        f"million control steps after the first {TRANSIENT:.0%}, within {apart:.0f} KiB."
+        f"Resident memory, {readings[-1]:.0f} KiB at the end, grew by {growth(readings):+.0f} KiB "
+        f"in the last half of {REPEATS} times the same {steps} control steps"
     )
-    if found := failures(batches, memory):
+    if found := failures(batches, readings):
         raise SystemExit("\n".join(found))
 
 
