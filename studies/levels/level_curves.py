@@ -63,10 +63,22 @@ class Curve:
         }
 
 
+def trained_in(entries: Iterable[SuiteEntry]) -> set[str]:
+    """Return the results versions that policies with a curve name: its orders are of these."""
+    every = (
+        training.provenance
+        for each in entries
+        for own in each.trainings.values()
+        for training in own
+    )
+    return {made.get("results_version", "unknown") for made in every if ORDER in made}
+
+
 def points(entries: Iterable[SuiteEntry], orders: pd.DataFrame) -> pd.DataFrame:
     """Return a row for each point of each training that has a curve, with its score.
 
-    `orders` has the references' signed order in each flock of the levels.
+    `orders` has the references' signed order in each flock of the levels, in the results version
+    of the trainings: in another one the same seeds are other flocks.
     """
     first = orders["flock"] < orders["level"].map(flocks_of)
     ends = orders[(orders["entry"] == "reference") & first]

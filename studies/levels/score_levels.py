@@ -40,6 +40,7 @@ from flockenv.comparison.report import overlap_notes
 from flockenv.comparison.suite_entry import SuiteEntry, scored
 from flockenv.errors import FlockError
 from flockenv.flock import STEP_STATISTICS
+from flockenv.runs.store import RESULTS_VERSION
 from flockenv.statistics import CONFIDENCE, bootstrap_interval, two_way_interval
 from studies.levels import level_curves
 from studies.store import StudyError, check_version, existing, resumed, write, write_table
@@ -50,7 +51,7 @@ HERE = Path(__file__).parent
 ENTRIES, RESULTS = HERE / "entries", HERE / "results"
 PAGE = HERE.parents[1] / "docs" / "levels.md"
 BEGIN, END = "<!-- entries -->\n\n", "\n\n<!-- end -->"
-TABLES = [f"{name}.csv" for name in ("entries", "orders", "curves", "areas", "pairs", "ranks")]
+TABLES = [f"{name}.csv" for name in ("entries", "orders", "pairs", "ranks")]
 FORM = "%.6g"
 KEY = ["level", "budget", "entry"]
 
@@ -243,8 +244,12 @@ def joined(results: Path, given: Mapping[Path, SuiteEntry], page: Path) -> pd.Da
     """
     same = [*KEY, "trainings"]
     table = pd.read_csv(existing(results / "entries.csv"), dtype={"budget": str})
-    for name, columns in (("unlike", ["unlike", "unlike_low", "unlike_high"]), ("areas", ["area"])):
-        other = resumed(results / f"{name}.csv", dtype={"budget": str})
+    kept = {"dtype": {"budget": str}}
+    unlike = resumed(results / "unlike.csv", **kept)
+    # Areas were measured during the trainings, whose results version may be an earlier one.
+    path = existing(results / "areas.csv")
+    areas = pd.read_csv(path, **kept) if path.exists() else pd.DataFrame()
+    for other, columns in ((unlike, ["unlike", "unlike_low", "unlike_high"]), (areas, ["area"])):
         if other.empty:
             table = table.assign(**dict.fromkeys(columns, np.nan))
         else:
@@ -324,9 +329,12 @@ def score(given: Sequence[SuiteEntry], out: Path, *, is_checked: bool) -> list[s
     orders = flocks.drop(columns=[*STEP_STATISTICS])
     write_table(out / "entries.csv", rows, FORM)
     write_table(out / "orders.csv", orders, FORM)
-    during = level_curves.points(given, orders)
-    write_table(out / "curves.csv", during, FORM)
-    write_table(out / "areas.csv", level_curves.areas(during), "%.4g")
+    if level_curves.trained_in(given) <= {str(RESULTS_VERSION)}:
+        during = level_curves.points(given, orders)
+        write_table(out / "curves.csv", during, FORM)
+        write_table(out / "areas.csv", level_curves.areas(during), "%.4g")
+    else:
+        print("Trainings are of another results version: curves.csv and areas.csv stay")
     compared = pairs(rows, orders)
     write_table(out / "pairs.csv", compared, "%.4g")
     print(compared.round(3).to_string(index=False))
