@@ -199,7 +199,7 @@ def other_engines() -> list[Number]:
         ),
         Number(
             PAGE,
-            "interquartile range of {} to # %",
+            "of # % in the jam and {} % in the cycle",
             f"{SPEED}speed.csv",
             CYCLE | RAPIER,
             spread,
@@ -207,7 +207,7 @@ def other_engines() -> list[Number]:
         ),
         Number(
             PAGE,
-            "interquartile range of # to {} %",
+            "interquartile range of {} % in the jam and",
             f"{SPEED}speed.csv",
             JAM | RAPIER,
             spread,

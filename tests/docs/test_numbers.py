@@ -230,11 +230,11 @@ def readme() -> list[Number]:
         Number(page, "{} times in a jam of 1000", f"{SPEED}speed.csv", LARGE_JAM, "faster", ".1f"),
         Number(page, "needs {} times as long in that", f"{SPEED}speed.csv", LARGE, box2d, ".1f"),
         *(
-            Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", ".2g")
-            for words, row in (
-                ("ends {} cm from its exact position with the default scheme", OURS),
-                ("{} cm with the first-order scheme `moreau`", MOREAU),
-                ("and {} cm in rapier", RAPIER),
+            Number(page, words, f"{SPEED}slide.csv", row, "slide_median_cm", form)
+            for words, row, form in (
+                ("ends {} cm from its exact position with the default scheme", OURS, ".5f"),
+                ("{} cm with the first-order scheme `moreau`", MOREAU, ".2g"),
+                ("and {} cm in rapier", RAPIER, ".2g"),
             )
         ),
         *(
@@ -448,8 +448,8 @@ def solving(boats: int) -> float:
     ("words", "fraction", "found"),
     [
         (
-            "1e-6 cm leaves three fifths of the error at 0.01 s",
-            3 / 5,
+            "1e-6 cm leaves nine tenths of the error at 0.01 s",
+            9 / 10,
             ratio(
                 f"{SPEED}slide.csv",
                 "slide_median_cm",
@@ -476,15 +476,15 @@ def test_a_fraction_in_words_is_that_of_the_data(words: str, fraction: float, fo
     assert found == pytest.approx(fraction, abs=0.05)
 
 
-def test_two_of_eleven_settings_change_the_order():
+def test_none_of_eleven_settings_changes_the_order():
     """And the setting of trainings lies within three standard errors."""
     page = (REPOSITORY / quoted_speed.PAGE).read_text("utf-8")
-    assert "Of eleven settings of `leapfrog` and `moreau` two show a change" in page
+    assert "Of eleven settings of `leapfrog` and `moreau` none shows a change" in page
     rows = pd.read_csv(REPOSITORY / SPEED / "order.csv")
     kept = rows["scheme"].isin(["leapfrog", "moreau"]) & (rows["psi_o_half_width"] > 0)
     ours = rows[kept & (rows["first_seed"] == 1)]
     assert len(ours) == 11
-    assert (ours["psi_o_error"].abs() > ours["psi_o_half_width"]).sum() == 2
+    assert (ours["psi_o_error"].abs() > ours["psi_o_half_width"]).sum() == 0
     training = ours[(ours["dt_s"] == 0.1) & (ours["tolerance_cm"] == 1e-4)].iloc[0]
     for name in ("psi_o_{}", "c_v_{}_cm2_s2"):
         error, half = (training[name.format(each)] for each in ("error", "half_width"))
