@@ -126,6 +126,14 @@ def speed() -> list[Number]:
         *found,
         Number(paper, "27 jammed boats take {} µs per step", table, JAM, "us_per_step", ".1f"),
         Number(paper, "and {} times as long in rapier", table, JAM, "faster", ".1f"),
+        *(
+            Number(paper, words, f"{SPEED}slide.csv", row, "slide_median_cm", form)
+            for words, row, form in (
+                ("the default scheme is {} cm and", OURS, ".5f"),
+                ("that of rapier {} cm, since", RAPIER, ".2g"),
+                ("of `flockenv` comes to {} cm.", MOREAU, ".2g"),
+            )
+        ),
     ]
 
 

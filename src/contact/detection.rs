@@ -343,6 +343,7 @@ impl ContactDetector {
     }
 
     /// Second derivative of a contact's gap in cm/s², if its boats keep these velocities; `None` at a straight wall.
+    /// Meaningless for crossed cores, whose overlap is too deep for it to count.
     #[inline]
     pub(super) fn second_derivative(
         &self,

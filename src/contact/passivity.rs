@@ -1,9 +1,9 @@
 //! Frictionless plastic contacts never add energy to the boats that they join, except when they open an overlap.
 //!
 //! If biases follow from the present gaps alone, every solution obeys this, since rest satisfies the constraints.
-//! Biases may also look ahead along a curve, where two bodies have pushed each other before, for a flank on the inner
-//! wall or by relinearization. Such biases demand too much if a boat turns far in one substep: the contact then passes from one end of the hull to the other, and a
-//! push at the first end opens nothing.
+//! Biases may also look ahead: along the curve of a gap whose bodies pushed each other before, for a flank on the inner
+//! wall, or by relinearization. Such biases demand too much if a boat turns far in one substep: the contact then passes
+//! from one end of the hull to the other, and a push at the first end opens nothing.
 
 use super::ContactProblem;
 use super::solver::ContactSolver;

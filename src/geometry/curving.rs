@@ -10,9 +10,10 @@ impl Gap {
     /// velocities. `distance` is that of the two cores in cm, or of the core from the wall's center, negative if the wall
     /// curves around the hull. The cores do not cross.
     ///
-    /// With the touch at r_i and r_j on the cores, seen from their centers, its speed u along the tangent, the distance d
-    /// and the rate Ω at which the normal n turns: gap″ = ω_j²·r_j·n − ω_i²·r_i·n + Ω·(2u − Ω·d). The normal turns with
-    /// the hull whose flank is touched, and at Ω = u/d where the touch slides around an end or a wall.
+    /// Let r_i and r_j point from the centers to the touch on the cores, let d be the distance, u the speed of the first
+    /// core's point relative to the second's along the tangent, and Ω the rate at which the normal n turns:
+    /// gap″ = ω_j²·r_j·n − ω_i²·r_i·n + Ω·(2u − Ω·d). If a hull is touched at its flank, the normal turns with it;
+    /// otherwise Ω = u/d.
     #[inline]
     pub fn second_derivative(
         &self,

@@ -51,7 +51,9 @@ HERE = Path(__file__).parent
 ENTRIES, RESULTS = HERE / "entries", HERE / "results"
 PAGE = HERE.parents[1] / "docs" / "levels.md"
 BEGIN, END = "<!-- entries -->\n\n", "\n\n<!-- end -->"
-TABLES = [f"{name}.csv" for name in ("entries", "orders", "pairs", "ranks")]
+TABLES = ("entries.csv", "orders.csv", "pairs.csv", "ranks.csv")
+CURVES = ("curves.csv", "areas.csv")
+"""Tables of what was measured during the trainings, in the results version of the trainings."""
 FORM = "%.6g"
 KEY = ["level", "budget", "entry"]
 
@@ -300,7 +302,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     given, refused = entered(options.entries)
     if not options.no_runs:
-        for name in TABLES:
+        has_curves = level_curves.trained_in(given.values()) <= {str(RESULTS_VERSION)}
+        for name in (*TABLES, *(CURVES if has_curves else ())):
             check_version(options.out / name)
         refused += score([*given.values()], options.out, is_checked=options.check)
     if not options.check:

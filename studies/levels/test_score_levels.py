@@ -11,7 +11,8 @@ import tomli_w
 from flockenv.comparison.levels import LEVELS
 from flockenv.envs.observation import observation_entries
 from flockenv.policies import NetworkPolicy
-from studies.store import existing
+from flockenv.runs.store import RESULTS_VERSION
+from studies.store import StudyError, existing
 
 FLOCKS = 64
 
@@ -105,6 +106,14 @@ def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_p
     written, committed = tmp_path / "out" / "orders.csv", existing(script.RESULTS / "orders.csv")
     assert [*pd.read_csv(written, nrows=0)] == [*pd.read_csv(committed, nrows=0)]
     script.main([*given, "--check"])
+    rows = tmp_path / "out" / "entries.csv"
+    kept = rows.read_text("utf-8")
+    rows.write_text(kept.replace(f",{RESULTS_VERSION}\n", f",{RESULTS_VERSION - 1}\n"), "utf-8")
+    with monkeypatch.context() as patched:
+        patched.setattr(script, "scored", None)
+        with pytest.raises(StudyError, match=r"entries\.csv has rows of results version"):
+            script.main(given)
+    rows.write_text(kept, "utf-8")
     entry |= {"name": "c", "levels": {"order-easy": ["module:attribute"]}}
     (tmp_path / "a.0.toml").write_text(tomli_w.dumps(entry), "utf-8")
     for how in ([], ["--check"], ["--no-runs"]):
@@ -116,6 +125,29 @@ def test_entries_are_scored_compared_and_scored_again(script, monkeypatch, tmp_p
     with pytest.raises(SystemExit, match="order-easy, 30, b"):
         script.main([*given, "--check"])
     assert page.read_text("utf-8") == text
+
+
+def test_curves_stay_where_the_trainings_are_of_another_version(
+    script, monkeypatch, tmp_path
+) -> None:
+    """Their orders are of flocks with other bits than the laws that would scale them."""
+    scored = script.scored
+    monkeypatch.setattr(script, "scored", lambda given, levels: scored(given, levels, 2))
+    network = {"observation": LEVELS["order-easy"].observation, "mirror_to_target": True}
+    size = len(observation_entries(network["observation"]))
+    made = {"curve_flock_hours": "6 30", "curve_signed_order": "0.1 0.2"}
+    entry = {"suite": "v3", "name": "a", "class": "none", "link": "here", "flock_hours": 30.0}
+    entry |= {"training_seeds": [2**32, 2**32], "levels": {"order-easy": ["a.npz"]}}
+    (tmp_path / "a.toml").write_text(tomli_w.dumps(entry), "utf-8")
+    page = tmp_path / "page.md"
+    page.write_text("<!-- entries -->\n\nold\n\n<!-- end -->\n", "utf-8")
+    given = ["--entries", str(tmp_path), "--out", str(tmp_path / "out"), "--page", str(page)]
+    for version, has_curves in ((RESULTS_VERSION - 1, False), (RESULTS_VERSION, True)):
+        made["results_version"] = str(version)
+        weights = [np.zeros((size, 1))]
+        NetworkPolicy(weights, [[0.0]], **network, provenance=made).save(tmp_path / "a.npz")
+        script.main(given)
+        assert (tmp_path / "out" / "areas.csv").exists() is has_curves
 
 
 def test_committed_entries_are_scored_again_to_the_digit(script) -> None:

@@ -108,6 +108,13 @@ def test_what_a_policy_says_of_its_training_counts(entered, tmp_path: Path) -> N
         assert words in str(error.value)
 
 
+def test_a_policy_of_any_results_version_may_enter(entered, tmp_path: Path) -> None:
+    """Whoever scores it names the version of the row."""
+    name = network(tmp_path / "b.npz", results_version="5")
+    entry = SuiteEntry.from_file(entered(levels={LEVEL: [name]}))
+    assert entry.trainings[LEVEL][0].provenance["results_version"] == "5"
+
+
 def test_weights_that_are_not_finite_are_refused(entered, tmp_path: Path) -> None:
     name = network(tmp_path / "b.npz")
     with np.load(tmp_path / name) as file:

@@ -37,7 +37,7 @@ fn one_boat_at_the_wall() {
 
 #[test]
 fn a_slide_along_a_curve_needs_one_solve_a_substep() {
-    // A gap taken as linear would close by v²·dt²/(2Q), 2e-4 cm at 10 cm/s, and be solved again in each substep.
+    // A gap taken as linear would overlap by v²·dt²/(2·85 cm), 2e-4 cm at 10 cm/s, and be solved again each time.
     for scheme in VELOCITY_SCHEMES {
         let p = changed(driven(scheme), |p| p.pool = disc(90.0));
         let mut flock = flock_of(&p, &[([82.0, 0.0, 1.2], [0.0; 3])]);

@@ -6,10 +6,10 @@ use crate::contact::touches::twin;
 use crate::contact::velocity_bias::VelocityBias;
 
 impl ContactResolver {
-    /// Computes the biases of all contacts. They look ahead along the curves of gaps where two bodies have pushed each
-    /// other in the substep before: the velocities there hardly change. At an impact they jump, so that its gaps count as
-    /// linear. So do those at a straight wall, which may continue another one: nothing is known of that touch before. And
-    /// where a boat moves by more than its radius, its velocity says nothing of the substep's end.
+    /// Computes the biases of all contacts. Where two bodies pushed each other in the substep before, velocities hardly
+    /// change, and biases look ahead along the curve of the gap. Gaps count as linear at an impact, where velocities jump,
+    /// and at a straight wall: a touch there may come from the wall beside it. All gaps do if the fastest boat would move
+    /// by more than its radius, since velocities before then say nothing of the substep's end.
     pub(super) fn fill_biases(&mut self, motion: &Motion) {
         let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
         let linear = |contact: &Contact| {
