@@ -342,31 +342,6 @@ impl ContactDetector {
         }
     }
 
-    /// Second derivative of a contact's gap in cm/s², if its boats keep these velocities; `None` at a straight wall.
-    /// Meaningless for crossed cores, whose overlap is too deep for it to count.
-    #[inline]
-    pub(super) fn second_derivative(
-        &self,
-        contact: &Contact,
-        boats: &[HullPose],
-        velocities: &[Velocity],
-    ) -> Option<f64> {
-        let moving = |boat: usize| (&boats[boat], &velocities[boat]);
-        let (gap, radius) = (&contact.gap, self.hull.radius);
-        let from_center = match contact.partner {
-            Partner::Boat(_) => radius,
-            Partner::OuterWall => -self.pool.outer_radius_cm,
-            Partner::InnerWall => self.pool.inner_radius_cm,
-            Partner::Obstacle(number) => match self.obstacles.obstacles[number as usize] {
-                Obstacle::Disc { radius, .. } => radius,
-                Obstacle::Wall { .. } => return None,
-            },
-        };
-        let distance = gap.gap + radius + from_center;
-        let (first, second) = (moving(contact.boat as usize), contact.second().map(moving));
-        Some(gap.second_derivative(self.hull, distance, first, second))
-    }
-
     /// The gap of contact k at other poses, at the point to which its touch has moved. If two bodies have one contact, it
     /// describes both of their touches: the smaller gap counts.
     pub(crate) fn moved_gap(&self, contacts: &[Contact], k: usize, boats: &[HullPose]) -> Gap {

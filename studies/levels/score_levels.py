@@ -305,7 +305,9 @@ def main(arguments: list[str] | None = None) -> None:
         has_curves = level_curves.trained_in(given.values()) <= {str(RESULTS_VERSION)}
         for name in (*TABLES, *(CURVES if has_curves else ())):
             check_version(options.out / name)
-        refused += score([*given.values()], options.out, is_checked=options.check)
+        refused += score(
+            [*given.values()], options.out, is_checked=options.check, has_curves=has_curves
+        )
     if not options.check:
         orders = pd.read_csv(existing(options.out / "orders.csv"), dtype={"budget": str})
         write_table(options.out / "ranks.csv", ranks(orders), "%.4f")
@@ -313,10 +315,12 @@ def main(arguments: list[str] | None = None) -> None:
     named_at_the_end(refused)
 
 
-def score(given: Sequence[SuiteEntry], out: Path, *, is_checked: bool) -> list[str]:
+def score(
+    given: Sequence[SuiteEntry], out: Path, *, is_checked: bool, has_curves: bool
+) -> list[str]:
     """Score entries, and write what follows or compare their rows with those that there are.
 
-    Return why entries have no row.
+    Return why entries have no row. With `has_curves` their trainings are of this results version.
     """
     count, hours = flock_hours(given)
     print(f"{count} policies lead {hours:.0f} flock-hours", file=sys.stderr, flush=True)
@@ -332,7 +336,7 @@ def score(given: Sequence[SuiteEntry], out: Path, *, is_checked: bool) -> list[s
     orders = flocks.drop(columns=[*STEP_STATISTICS])
     write_table(out / "entries.csv", rows, FORM)
     write_table(out / "orders.csv", orders, FORM)
-    if level_curves.trained_in(given) <= {str(RESULTS_VERSION)}:
+    if has_curves:
         during = level_curves.points(given, orders)
         write_table(out / "curves.csv", during, FORM)
         write_table(out / "areas.csv", level_curves.areas(during), "%.4g")

@@ -1,9 +1,10 @@
 //! The biases of a substep's contacts: what their gaps may close before anything is solved.
 
 use super::{ContactResolver, Motion};
-use crate::contact::Contact;
 use crate::contact::touches::twin;
 use crate::contact::velocity_bias::VelocityBias;
+use crate::contact::{Contact, ContactDetector, Partner};
+use crate::geometry::{HullPose, Obstacle, Velocity};
 
 impl ContactResolver {
     /// Computes the biases of all contacts. Where two bodies pushed each other in the substep before, velocities hardly
@@ -26,7 +27,7 @@ impl ContactResolver {
         let persistent = &self.persistent;
         let have_pushed = |k| persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k]);
         let detector = &self.detector;
-        let curve = |contact| detector.second_derivative(contact, motion.hulls, before);
+        let curve = |contact| second_derivative(detector, contact, motion.hulls, before);
         let looking_ahead = contacts.iter().enumerate().map(|(k, contact)| {
             if have_pushed(k)
                 && let Some(curve) = curve(contact)
@@ -47,4 +48,29 @@ impl ContactResolver {
             penetration_slop: self.penetration_slop,
         }
     }
+}
+
+/// Second derivative of a contact's gap in cm/s², if its boats keep these velocities; `None` at a straight wall.
+/// Meaningless for crossed cores, whose overlap is too deep for it to count.
+#[inline]
+fn second_derivative(
+    detector: &ContactDetector,
+    contact: &Contact,
+    boats: &[HullPose],
+    velocities: &[Velocity],
+) -> Option<f64> {
+    let moving = |boat: usize| (&boats[boat], &velocities[boat]);
+    let (gap, hull, pool) = (&contact.gap, detector.hull(), detector.pool);
+    let from_center = match contact.partner {
+        Partner::Boat(_) => hull.radius,
+        Partner::OuterWall => -pool.outer_radius_cm,
+        Partner::InnerWall => pool.inner_radius_cm,
+        Partner::Obstacle(number) => match detector.obstacles.obstacles[number as usize] {
+            Obstacle::Disc { radius, .. } => radius,
+            Obstacle::Wall { .. } => return None,
+        },
+    };
+    let distance = gap.gap + hull.radius + from_center;
+    let (first, second) = (moving(contact.boat as usize), contact.second().map(moving));
+    Some(gap.second_derivative(hull, distance, first, second))
 }
