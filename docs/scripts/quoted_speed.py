@@ -301,7 +301,7 @@ def our_settings() -> list[Number]:
         ),
         Number(
             PAGE,
-            "and time grows {}-fold",
+            "and time by a factor of {}, because",
             f"{SPEED}speed.csv",
             {"scene": "jam", **OURS},
             per_boat,

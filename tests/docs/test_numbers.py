@@ -476,6 +476,16 @@ def test_a_fraction_in_words_is_that_of_the_data(words: str, fraction: float, fo
     assert found == pytest.approx(fraction, abs=0.05)
 
 
+def test_the_error_in_the_jam_does_not_come_from_the_tolerance():
+    rows = pd.read_csv(REPOSITORY / SPEED / "horizon.csv")
+    ours = {"engine": "flockenv", "scheme": "leapfrog", "solver": "block-pivoting", "scene": "jam"}
+    rows = rows[(rows[list(ours)] == pd.Series(ours)).all(axis=1)]
+    errors = rows.pivot_table("horizon_median_cm", "dt_s", "tolerance_cm")
+    assert len(errors) == 5
+    assert (errors[1e-6] / errors[1e-4]).between(0.99, 1.01).all()
+    assert (errors[1e-9] / errors[1e-4]).between(0.75, 1.01).all()
+
+
 def test_none_of_eleven_settings_changes_the_order():
     """And the setting of trainings lies within three standard errors."""
     page = (REPOSITORY / quoted_speed.PAGE).read_text("utf-8")
