@@ -22,7 +22,7 @@ from flockenv.runs.spec import RunSpec, execute
 RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
-RESULTS_VERSION = 7
+RESULTS_VERSION = 8
 """Rises when the same specs give other numbers than before; stored runs are then made again."""
 
 

@@ -55,8 +55,8 @@ fn hash(trainer: &Trainer) -> u64 {
 }
 
 const MODES: [(ActionMode, u64); 2] = [
-    (ActionMode::Lean, 0x3075_31aa_0b73_dfd5),
-    (ActionMode::Rudder, 0x1430_8873_849e_9f93),
+    (ActionMode::Lean, 0xe748_45d7_cf34_466c),
+    (ActionMode::Rudder, 0x06c8_b9e0_4f8b_6b4f),
 ];
 
 #[test]

@@ -60,26 +60,26 @@ fn a_minute_and_ten_minutes_end_in_the_same_bits_on_every_machine() {
         (
             wide,
             Noise::White,
-            0x94d1_ca52_c9cf_a966,
-            0x115b_b64f_1a6a_5770,
+            0x65dc_4632_95f3_f648,
+            0xad64_6e2a_db47_0185,
         ),
         (
             wide,
             Noise::PerStep,
-            0x7739_3203_f862_0846,
-            0x0624_5d93_eb0f_4c86,
+            0x1e37_b8ff_d6fe_682d,
+            0x047e_eeea_d758_adfb,
         ),
         (
             narrow,
             Noise::White,
-            0xfa40_25fd_2cfa_d2ad,
-            0xf456_9796_63bb_b7a1,
+            0x797f_9f9e_1c76_e474,
+            0x7849_4211_ef2e_1a39,
         ),
         (
             narrow,
             Noise::PerStep,
-            0xcb1b_3300_9c3d_6d28,
-            0x56bb_1c7e_0877_0c97,
+            0xb33f_83d1_22f3_4d3f,
+            0x438c_2d63_92f4_8b2a,
         ),
     ] {
         let found =
@@ -98,6 +98,6 @@ fn a_stated_error_has_the_same_bits_on_every_machine() {
         assert!(stated > 0.0);
         fnv(numbers(&flock).chain([stated]))
     });
-    let expected = [0xd570_5eb4_ea68_0705, 0xf686_c6d5_3035_37ac];
+    let expected = [0xf986_a072_6762_4fea, 0xe0c8_35e7_029f_80a1];
     assert_eq!(found, expected, "{found:#x?}");
 }

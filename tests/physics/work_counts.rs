@@ -5,8 +5,8 @@
 //! contact alone in its island needs no guess and no factor.
 
 use crate::support::{
-    VELOCITY_SCHEMES, assert_near, assert_solved, changed, disc, driven, flock_of, inert, table_3,
-    take_substeps,
+    VELOCITY_SCHEMES, assert_near, assert_solved, bits, changed, disc, disc_at, driven, flock_of,
+    inert, table_3, take_substeps,
 };
 use flockenv::contact::Statistics;
 use flockenv::parameters::{Pool, Scheme};
@@ -49,6 +49,40 @@ fn a_slide_along_a_curve_needs_one_solve_a_substep() {
         assert!(now.contacts - before.contacts >= 200);
         assert_eq!(now.solves - before.solves, 200, "{scheme:?}");
         assert!(now.worst_overlap_cm < 1e-4);
+    }
+}
+
+#[test]
+fn curves_that_open_a_gap_change_nothing() {
+    // Two bows that push each other aside, and a bow that slides along the inner wall or a post: their gaps open as they
+    // curve, so that nothing overlaps and linear gaps lead to the same bits.
+    let two = [
+        ([-7.0, 0.0, 0.0], [10.0, 0.0, 0.0]),
+        ([7.0, 5.0, PI], [-10.0, 0.0, 0.0]),
+    ];
+    let one = [([-18.0, 6.0, 0.0], [10.0, 0.0, 0.0])];
+    for scheme in VELOCITY_SCHEMES {
+        let open = driven(scheme);
+        let inner = changed(open.clone(), |p| p.pool.inner_radius_cm = 9.0);
+        let post = changed(open.clone(), |p| p.discs = vec![disc_at(0.0, 0.0, 9.0)]);
+        let scenes = [(&open, &two[..]), (&inner, &one), (&post, &one)];
+        for (number, (p, states)) in scenes.into_iter().enumerate() {
+            let flock = |tolerance_cm: f64| {
+                flock_of(
+                    &changed(p.clone(), |p| p.tolerance_cm = tolerance_cm),
+                    states,
+                )
+            };
+            let (mut ours, mut linear) = (flock(1e-4), flock(f64::INFINITY));
+            let mut pushes = 0;
+            for _ in 0..50 {
+                take_substeps(&mut ours, 1);
+                take_substeps(&mut linear, 1);
+                pushes += ours.contacts().iter().filter(|c| c.force > 0.0).count();
+                assert_eq!(bits(&ours), bits(&linear), "{scheme:?} scene {number}");
+            }
+            assert!(pushes > 10, "{scheme:?} scene {number}: {pushes}");
+        }
     }
 }
 

@@ -4,13 +4,13 @@ use super::{ContactResolver, Motion};
 use crate::contact::touches::twin;
 use crate::contact::velocity_bias::VelocityBias;
 use crate::contact::{Contact, ContactDetector, Partner};
-use crate::geometry::{HullPose, Obstacle, Velocity};
+use crate::geometry::{HullPose, Velocity};
 
 impl ContactResolver {
     /// Computes the biases of all contacts. Where two bodies pushed each other in the substep before, velocities hardly
-    /// change, and biases look ahead along the curve of the gap. Gaps count as linear at an impact, where velocities jump,
-    /// and at a straight wall: a touch there may come from the wall beside it. All gaps do if the fastest boat would move
-    /// by more than its radius, since velocities before then say nothing of the substep's end.
+    /// change, and biases look ahead along the curve of a gap that closes. Gaps count as linear at an impact, where
+    /// velocities jump. All gaps do if the fastest boat would move by more than its radius, since velocities before then
+    /// say nothing of the substep's end.
     pub(super) fn fill_biases(&mut self, motion: &Motion) {
         let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
         let linear = |contact: &Contact| {
@@ -24,18 +24,15 @@ impl ContactResolver {
             self.biases.extend(contacts.iter().map(linear));
             return;
         };
-        let persistent = &self.persistent;
+        let (persistent, detector) = (&self.persistent, &self.detector);
         let have_pushed = |k| persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k]);
-        let detector = &self.detector;
-        let curve = |contact| second_derivative(detector, contact, motion.hulls, before);
         let looking_ahead = contacts.iter().enumerate().map(|(k, contact)| {
-            if have_pushed(k)
-                && let Some(curve) = curve(contact)
-            {
-                bias.of_gap(&contact.gap) + bias.of_curve(&contact.gap, curve)
+            let curve = if have_pushed(k) {
+                closing_curve(detector, contact, motion.hulls, before)
             } else {
-                linear(contact)
-            }
+                0.0
+            };
+            linear(contact) + bias.of_curve(&contact.gap, curve)
         });
         self.biases.extend(looking_ahead);
     }
@@ -50,27 +47,25 @@ impl ContactResolver {
     }
 }
 
-/// Second derivative of a contact's gap in cm/s², if its boats keep these velocities; `None` at a straight wall.
-/// Meaningless for crossed cores, whose overlap is too deep for it to count.
+/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities, or 0 if it is positive: looking
+/// ahead along a curve that opens a gap spares no solve, and lets boats approach that were parting. Therefore it is 0 at
+/// the inner wall and at obstacles, too. Meaningless for crossed cores, whose overlap is too deep for it to count.
 #[inline]
-fn second_derivative(
+fn closing_curve(
     detector: &ContactDetector,
     contact: &Contact,
     boats: &[HullPose],
     velocities: &[Velocity],
-) -> Option<f64> {
+) -> f64 {
     let moving = |boat: usize| (&boats[boat], &velocities[boat]);
-    let (gap, hull, pool) = (&contact.gap, detector.hull(), detector.pool);
+    let (gap, hull) = (&contact.gap, detector.hull());
     let from_center = match contact.partner {
         Partner::Boat(_) => hull.radius,
-        Partner::OuterWall => -pool.outer_radius_cm,
-        Partner::InnerWall => pool.inner_radius_cm,
-        Partner::Obstacle(number) => match detector.obstacles.obstacles[number as usize] {
-            Obstacle::Disc { radius, .. } => radius,
-            Obstacle::Wall { .. } => return None,
-        },
+        Partner::OuterWall => -detector.pool.outer_radius_cm,
+        Partner::InnerWall | Partner::Obstacle(_) => return 0.0,
     };
     let distance = gap.gap + hull.radius + from_center;
     let (first, second) = (moving(contact.boat as usize), contact.second().map(moving));
-    Some(gap.second_derivative(hull, distance, first, second))
+    gap.second_derivative(hull, distance, first, second)
+        .min(0.0)
 }
