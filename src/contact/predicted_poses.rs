@@ -90,14 +90,38 @@ impl PredictedPoses {
         pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
+    /// Whether a contact that its boats move far enough to close overlaps by more than `allowed` at the predicted poses.
+    pub(super) fn closing_overlap(
+        &self,
+        detector: &ContactDetector,
+        contacts: &[Contact],
+        allowed: f64,
+    ) -> bool {
+        let mut looked_at: Option<&Contact> = None;
+        contacts.iter().any(|contact| {
+            if contact.gap.gap > self.displacements(contact) {
+                return false;
+            }
+            let is_known =
+                looked_at.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
+            looked_at = Some(contact);
+            !is_known && detector.overlaps_at(contact, &self.hulls, allowed)
+        })
+    }
+
+    /// Sum of the displacements of a contact's boats, in cm.
+    #[inline]
+    fn displacements(&self, contact: &Contact) -> f64 {
+        let displacement = |boat: usize| self.displacements[boat];
+        displacement(contact.boat as usize) + contact.second().map_or(0.0, displacement)
+    }
+
     /// Whether the boats of contact k move far enough to close it, or to close the other contact of the same two
     /// bodies: a touch may slide from one to the other.
     #[inline]
     pub(super) fn may_close(&self, contacts: &[Contact], k: usize) -> bool {
         let contact = &contacts[k];
-        let displacement = |boat: usize| self.displacements[boat];
-        let displacements =
-            displacement(contact.boat as usize) + contact.second().map_or(0.0, displacement);
+        let displacements = self.displacements(contact);
         contact.gap.gap <= displacements
             || contact.has_ends()
                 && first_of_two(contacts, k).is_some_and(|first| {

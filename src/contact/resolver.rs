@@ -319,6 +319,11 @@ impl ContactResolver {
         self.fill_biases(motion);
         self.solver.reset(motion.free.len(), &self.contacts);
         let mut solution = self.solve(None, motion, statistics);
+        if solution == Solution::Overlapping && self.look_ahead_along_all(motion) {
+            self.warm_start();
+            self.solver.reset(motion.free.len(), &self.contacts);
+            solution = self.solve(None, motion, statistics);
+        }
         if self.relinearization.is_on() && solution != Solution::Exhausted {
             solution = self.relinearize(motion, solution, statistics);
         }

@@ -125,7 +125,10 @@ fn a_closed_ring_under_way_accelerates_as_one_boat_on_a_rail() {
     for velocity in flock.velocities() {
         assert_near(velocity.angular, first, 1e-6, "as one");
     }
-    assert_eq!(flock.statistics().unsolved, 0);
+    let statistics = flock.statistics();
+    assert_eq!(statistics.unsolved, 0);
+    // Gaps at the wall close as they curve, and those between boats open: with the former alone there is no solution.
+    assert!(statistics.halved_substeps <= 3000, "{statistics:?}");
 }
 
 /// Accelerations of two boats side by side, one pressed on the other, with every near contact closed.

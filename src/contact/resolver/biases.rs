@@ -4,30 +4,27 @@ use super::{ContactResolver, Motion};
 use crate::contact::touches::twin;
 use crate::contact::velocity_bias::VelocityBias;
 use crate::contact::{Contact, ContactDetector, Partner};
-use crate::geometry::{HullPose, Velocity};
+use crate::geometry::{HullPose, Obstacle, Velocity};
 
 impl ContactResolver {
     /// Computes the biases of all contacts. Where two bodies pushed each other in the substep before, velocities hardly
     /// change, and biases look ahead along the curve of a gap that closes. Gaps count as linear at an impact, where
-    /// velocities jump. All gaps do if the fastest boat would move by more than its radius, since velocities before then
-    /// say nothing of the substep's end.
+    /// velocities jump.
     pub(super) fn fill_biases(&mut self, motion: &Motion) {
         let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
         let linear = |contact: &Contact| {
             let spin = motion.free[contact.boat as usize].angular;
             bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
         };
-        let is_far = self.detector.farthest > self.detector.hull().radius;
-        let is_on = self.relinearization.is_on() && !is_far;
+        let before = self.velocities_before(motion);
         self.biases.clear();
-        let Some(before) = motion.before.filter(|_| is_on) else {
+        let Some(before) = before else {
             self.biases.extend(contacts.iter().map(linear));
             return;
         };
-        let (persistent, detector) = (&self.persistent, &self.detector);
-        let have_pushed = |k| persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k]);
+        let detector = &self.detector;
         let looking_ahead = contacts.iter().enumerate().map(|(k, contact)| {
-            let curve = if have_pushed(k) {
+            let curve = if have_pushed(&self.persistent, contacts, k) {
                 closing_curve(detector, contact, motion.hulls, before)
             } else {
                 0.0
@@ -35,6 +32,35 @@ impl ContactResolver {
             linear(contact) + bias.of_curve(&contact.gap, curve)
         });
         self.biases.extend(looking_ahead);
+    }
+
+    /// Computes the biases of all contacts from the start, and looks ahead also along curves that open a gap. A closed ring
+    /// of boats under way has no other solution: its gaps at the wall close, and those between boats open. Returns whether
+    /// any bias looks ahead.
+    #[cold]
+    pub(super) fn look_ahead_along_all(&mut self, motion: &Motion) -> bool {
+        self.fill_biases(motion);
+        let Some(before) = self.velocities_before(motion) else {
+            return false;
+        };
+        let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
+        for (k, contact) in contacts.iter().enumerate() {
+            if have_pushed(&self.persistent, contacts, k)
+                && let Some(curve) =
+                    second_derivative(&self.detector, contact, motion.hulls, before)
+            {
+                self.biases[k] = bias.of_gap(&contact.gap) + bias.of_curve(&contact.gap, curve);
+            }
+        }
+        true
+    }
+
+    /// The velocities before the substep, if gaps may count as curved. They may not if the fastest boat would move by more
+    /// than its radius, since these velocities then say nothing of the substep's end.
+    fn velocities_before<'a>(&self, motion: &Motion<'a>) -> Option<&'a [Velocity]> {
+        let is_far = self.detector.farthest > self.detector.hull().radius;
+        let is_on = self.relinearization.is_on() && !is_far;
+        motion.before.filter(|_| is_on)
     }
 
     /// How the biases of this motion follow from gaps.
@@ -47,9 +73,15 @@ impl ContactResolver {
     }
 }
 
+/// Whether the two bodies of a contact pushed each other in the substep before. `persistent` says it of each contact.
+#[inline]
+fn have_pushed(persistent: &[bool], contacts: &[Contact], k: usize) -> bool {
+    persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k])
+}
+
 /// Second derivative of a contact's gap in cm/s² while its boats keep these velocities, or 0 if it is positive: looking
-/// ahead along a curve that opens a gap spares no solve, and lets boats approach that were parting. Therefore it is 0 at
-/// the inner wall and at obstacles, too. Meaningless for crossed cores, whose overlap is too deep for it to count.
+/// ahead along a curve that opens a gap spares no solve, and after an impact it would let boats approach further.
+/// Therefore it is 0 at walls inside the pool, too.
 #[inline]
 fn closing_curve(
     detector: &ContactDetector,
@@ -57,15 +89,37 @@ fn closing_curve(
     boats: &[HullPose],
     velocities: &[Velocity],
 ) -> f64 {
+    match contact.partner {
+        Partner::InnerWall | Partner::Obstacle(_) => 0.0,
+        Partner::Boat(_) | Partner::OuterWall => {
+            second_derivative(detector, contact, boats, velocities)
+                .map_or(0.0, |curve| curve.min(0.0))
+        }
+    }
+}
+
+/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities; `None` at a straight wall, where a
+/// touch may come from the wall beside it. Meaningless for crossed cores, whose overlap is too deep for it to count.
+// Always, since it is also called where speed does not matter.
+#[inline(always)]
+fn second_derivative(
+    detector: &ContactDetector,
+    contact: &Contact,
+    boats: &[HullPose],
+    velocities: &[Velocity],
+) -> Option<f64> {
     let moving = |boat: usize| (&boats[boat], &velocities[boat]);
-    let (gap, hull) = (&contact.gap, detector.hull());
+    let (gap, hull, pool) = (&contact.gap, detector.hull(), detector.pool);
     let from_center = match contact.partner {
         Partner::Boat(_) => hull.radius,
-        Partner::OuterWall => -detector.pool.outer_radius_cm,
-        Partner::InnerWall | Partner::Obstacle(_) => return 0.0,
+        Partner::OuterWall => -pool.outer_radius_cm,
+        Partner::InnerWall => pool.inner_radius_cm,
+        Partner::Obstacle(number) => match detector.obstacles.obstacles[number as usize] {
+            Obstacle::Disc { radius, .. } => radius,
+            Obstacle::Wall { .. } => return None,
+        },
     };
     let distance = gap.gap + hull.radius + from_center;
     let (first, second) = (moving(contact.boat as usize), contact.second().map(moving));
-    gap.second_derivative(hull, distance, first, second)
-        .min(0.0)
+    Some(gap.second_derivative(hull, distance, first, second))
 }

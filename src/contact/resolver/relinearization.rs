@@ -13,6 +13,8 @@ const MOST_PASSES: u32 = 20;
 pub(super) struct Relinearization {
     /// Deepest overlap in cm that a substep may leave; infinite: gaps are linearized once.
     pub(super) tolerance: f64,
+    /// Whether the first solve of the last substep left overlaps. That of the next one then probably does, too.
+    had_overlaps: bool,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
     /// By contact: its gap at the substep's end in cm, plus the overlap that a shortened substep may leave. Infinite if
@@ -26,6 +28,7 @@ impl Relinearization {
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         Self {
             tolerance: parameters.allowed_overlap_cm(),
+            had_overlaps: false,
             overlapping: Vec::new(),
             end_gaps: Vec::new(),
         }
@@ -50,6 +53,9 @@ impl ContactResolver {
     ) -> Solution {
         let dt = motion.dt;
         self.predict(motion);
+        if first == Solution::Solved && !self.may_overlap(dt) {
+            return first;
+        }
         let mut left = std::mem::take(&mut self.relinearization.overlapping);
         left.clear();
         left.extend(0..self.solver.islands().count() as u32);
@@ -69,7 +75,21 @@ impl ContactResolver {
             }
         }
         self.relinearization.overlapping = left;
+        self.relinearization.had_overlaps = passes > 0 || solution != Solution::Solved;
         solution
+    }
+
+    /// Whether the first solve may leave overlaps deeper than the tolerance. A look at all contacts at once takes less time
+    /// than one island after another, which are needed only if something overlaps. It finds a little too much, so that
+    /// rounding decides nothing: what was seen in the last substep must not alter this one.
+    fn may_overlap(&self, dt: f64) -> bool {
+        let is_whole = dt >= self.whole_substep_s;
+        let allowed = (1.0 - 1e-9) * self.relinearization.tolerance;
+        !is_whole
+            || self.relinearization.had_overlaps
+            || self
+                .predicted
+                .closing_overlap(&self.detector, &self.contacts, allowed)
     }
 
     /// Computes biases for which the gaps of some islands at the substep's end open to zero. The biases of the others stay
