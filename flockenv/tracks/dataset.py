@@ -7,17 +7,12 @@ import numpy as np
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError
-from flockenv.tracks.formats import CM, key_points
+from flockenv.tracks.formats import CM, recognized
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.table import Table, listed
 
 if TYPE_CHECKING:
     import xarray
-
-
-def is_dataset(source: object) -> bool:
-    """Return whether a source is a dataset of xarray."""
-    return hasattr(source, "data_vars")
 
 
 def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
@@ -37,26 +32,25 @@ def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
     values = {axis: position.sel(space=axis).values for axis in "xy"}
     if "confidence" in dataset.data_vars:
         values["confidence"] = _standard(dataset["confidence"]).values
-    names, points = (_named(position, name) for name in ("individuals", "keypoints"))
+    boats, points = (_named(position, name) for name in ("individuals", "keypoints"))
     columns: dict[str, Any] = {
-        "time": np.repeat(dataset["time"].values, len(names)),
-        "individuals": np.tile(names, len(dataset["time"])),
+        "time": np.repeat(dataset["time"].values, len(boats)),
+        "individuals": np.tile(boats, len(dataset["time"])),
     }
-    stems = {point: f"{point}_" if point else "" for point in points}
-    for index, stem in enumerate(stems.values()):
+    is_alone = points == ["0"] and "keypoints" not in position.coords
+    for index, point in enumerate(points):
+        stem = "" if is_alone else f"{point}_"
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
     rows = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return Table(rows, _completed(dataset, layout, stems))
+    return Table(rows, _completed(dataset, layout, rows, "one" if is_alone else listed(points)))
 
 
 def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
     """Return a variable with the dimensions time, `own`, individuals and key points."""
     order = ("time", *own, "individuals", "keypoints")
-    for name in order[-2:]:
-        # Later versions of movement have the names in the singular: individual, keypoint.
-        one = name.removesuffix("s")
-        variable = variable.rename({one: name}) if one in variable.dims else variable
-        variable = variable if name in variable.dims else variable.expand_dims(name)
+    # Later versions of movement have the names in the singular: individual, keypoint.
+    variable = variable.rename({n: f"{n}s" for n in variable.dims if f"{n}s" in order})
+    variable = variable.expand_dims([n for n in order[-2:] if n not in variable.dims])
     if {*variable.dims} != {*order} or not {"time", *own} <= {*variable.coords}:
         raise ParameterError(
             f"{variable.name} has the dimensions {', '.join(map(str, variable.dims))}, and "
@@ -66,10 +60,7 @@ def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
 
 
 def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
-    """Return the names along a dimension; a single unnamed one is "0", or "" for a key point."""
-    if dimension not in position.coords:
-        only = dimension == "keypoints" and position.sizes[dimension] == 1
-        return [""] if only else [str(n) for n in range(position.sizes[dimension])]
+    """Return the names along a dimension, or its numbers if there are none."""
     names = [str(name) for name in position[dimension].values]
     for name in names:
         if names.count(name) > 1:
@@ -80,22 +71,23 @@ def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
 
 
 def _completed(
-    dataset: "xarray.Dataset", layout: TrackLayout, stems: dict[str, str]
+    dataset: "xarray.Dataset", layout: TrackLayout, columns: Any, points: str
 ) -> TrackLayout:
-    """Return a layout with missing fields taken from the dataset."""
+    """Return a layout with missing fields taken from the dataset and its columns."""
     given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
-    known, points = key_points(stems), listed([*stems])
-    if "heading" not in known and not {"heading", "quaternion"} & given:
+    form = {"frame": "time", "id": "individuals"} | recognized(columns)
+    form.pop("confidence", None)
+    if "heading" not in form and not {"heading", "quaternion"} & given:
         raise ParameterError(
-            f"the dataset has no headings: its key points are {points or 'one'}; name those of "
-            "tail and head in heading, or heading = None takes the direction of motion"
+            f"the dataset has no headings: its key points are {points}; name those of tail and "
+            "head in heading, or heading = None takes the direction of motion"
         )
-    if not known and "x" not in given:
+    if not {"x", "y"} <= form.keys() | given:
+        columns = [name for name in columns if name.endswith("_x")]
         raise ParameterError(
             f"which of the key points {points} is the center is not known: name its columns in x "
-            f"and y, such as x = {[f'{stem}x' for stem in stems.values()]}"
+            f"and y, such as x = {columns}"
         )
-    form = {"frame": "time", "id": "individuals"} | known
     unit = str(dataset["position"].attrs.get("space_unit", "pixels"))
     if unit in CM:
         form["cm_per_unit"] = CM[unit]

@@ -5,7 +5,7 @@ point and ``*`` for anything. The column of y is that of x with one letter excha
 """
 
 import re
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -93,11 +93,13 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 }
 """Frequent names of columns, in lower case without a unit, the better names first."""
 
-_PARTS = {
-    "head": ("head", "nose", "snout", "bow", "front"),
-    "tail": ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
-    "middle": ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
-}
+_PARTS = (
+    ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
+    ("head", "nose", "snout", "bow", "front"),
+    ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
+)
+"""Names of the key points tail, head and middle."""
+
 CM = {"cm": 1.0, "mm": 0.1, "m": 100.0}
 """Units of length by their names, in cm."""
 
@@ -116,16 +118,17 @@ _PLACEHOLDERS = {
     "{id}": r"(?P<id>.+?)",
     "{part}": r"(?P<part>[^.]+)",
     "{n}": r"[ _#.]?(?P<id>\d+)",
+    "*": ".*",
 }
+Names = dict[str, None]
 _UNIT = re.compile(r"[\s_]*(?:\[(.*)\]|\((.*)\)|_(px|cm|mm|m|rad|deg|s|ms))\s*$")
 
 
 def plain(name: str) -> tuple[str, str]:
     """Return a column's name without its unit, in lower case, and the unit."""
-    name = name[:_LONGEST]
-    found = _UNIT.search(name)
-    unit = next(filter(None, found.groups()), "") if found else ""
-    base = re.sub(r"([a-z])([A-Z])", r"\1_\2", _UNIT.sub("", name)).lower()
+    base, *units = _UNIT.split(name[:_LONGEST])
+    base = re.sub(r"([a-z])([A-Z])", r"\1_\2", base).lower()
+    unit = next(filter(None, units), "")
     return re.sub(r"[^a-z0-9]+", "_", base).strip("_"), unit.strip().lower()
 
 
@@ -142,11 +145,11 @@ def header_of(count: int) -> list[str]:
 
 
 def _matches(pattern: str, names: Iterable[str]) -> list[re.Match[str]]:
-    text = re.escape(pattern).replace(r"\*", ".*")
+    text = re.escape(pattern)
     for placeholder, expression in _PLACEHOLDERS.items():
         text = text.replace(re.escape(placeholder), expression)
-    compiled = re.compile(text, re.IGNORECASE)
-    return [found for name in names if (found := compiled.fullmatch(name))]
+    found = (re.fullmatch(text, name, re.IGNORECASE) for name in names)
+    return [match for match in found if match]
 
 
 def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | None:
@@ -154,114 +157,101 @@ def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | Non
     return next((found[0] for pattern in patterns if (found := _matches(pattern, names))), None)
 
 
-def _as_written(found: re.Match[str]) -> str:
-    """Return the name of a column with ``{id}`` in place of a boat's name or number."""
-    if "id" not in found.groupdict():
-        return found[0]
-    return f"{found[0][: found.start('id')]}{{id}}{found[0][found.end('id') :]}"
+def _siblings(name: str, letter: str, others: str, names: Names) -> list[str]:
+    """Return columns with other letters in place of one letter of a name, if all are in `names`."""
+    swaps = [str.maketrans(letter + letter.upper(), other + other.upper()) for other in others]
+    spans = [(at, at + 1) for at in reversed(range(len(name))) if name[at].lower() == letter]
+    for start, end in [*spans, (0, len(name))] if spans else []:
+        found = [f"{name[:start]}{name[start:end].translate(swap)}{name[end:]}" for swap in swaps]
+        if names.keys() >= {*found}:
+            return found
+    return []
 
 
-def _as_y(name: str, names: Set[str], boat: str = "") -> str | None:
-    """Return the y column that belongs to an x column, or None; `boat` stands in place of {id}."""
-    swapped = name.replace("x", "y").replace("X", "Y")
-    at = [index for index, letter in enumerate(name) if letter in "xX"]
-    by_letter = [f"{name[:index]}{swapped[index]}{name[index + 1 :]}" for index in reversed(at)]
-    others = (other for other in [*by_letter, swapped] if at)
-    return next((other for other in others if other.replace("{id}", boat) in names), None)
-
-
-def quaternion(names: Iterable[str]) -> list[str] | None:
-    """Return the columns x, y, z and w of the first quaternion among names, or None."""
-    by_key = {name.casefold(): name for name in names}
-    for key in by_key:
-        for index in (at for at, letter in enumerate(key) if letter == "w"):
-            four = [by_key.get(f"{key[:index]}{axis}{key[index + 1 :]}", "") for axis in "xyzw"]
-            if all(four):
-                return four
-    return None
-
-
-def key_points(
-    stems: Mapping[str, str], present: Set[str] = frozenset(), boat: str = ""
-) -> dict[str, Any]:
-    """Return the fields x, y, heading and confidence that follow from key points.
+def _key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
+    """Return the columns of x, y, heading and confidence that follow from key points.
 
     The center is a point in the middle, or the middle of head and tail, or the only point. If there
-    are several others, the center is ambiguous, and no fields are returned. The column of a
-    confidence must be in `present`, with `boat` in place of {id}.
+    are several others, the center is ambiguous, and no fields are returned.
     """
-    by_part = {
-        part: next((stem for name, stem in stems.items() if plain(name)[0] in words), None)
-        for part, words in _PARTS.items()
-    }
-    ends = [by_part["tail"], by_part["head"]]
-    ends = [] if None in ends else ends
-    used = [by_part["middle"]] if by_part["middle"] else ends or [*stems.values()]
-    if used is not ends and len(used) > 1:
+    tail, head, middle = (
+        [stem for name, stem in stems.items() if plain(name)[0] in words][:1] for words in _PARTS
+    )
+    ends = tail + head if tail and head else []
+    center = middle or ends or [*stems.values()]
+    if center != ends and len(center) > 1:
         return {}
-    form: dict[str, Any] = {axis: [f"{stem}{axis}" for stem in used] for axis in "xy"}
-    if len(used) == 1:
-        form = {axis: columns[0] for axis, columns in form.items()}
+    form = {axis: [f"{stem}{axis}" for stem in center] for axis in "xy"}
     if ends:
         form["heading"] = [f"{stem}{axis}" for stem in ends for axis in "xy"]
     for word in ("likelihood", "score", "confidence"):
-        sure = sorted(f"{stem}{word}" for stem in {*used, *ends})
-        if {column.replace("{id}", boat) for column in sure} <= present:
-            form["confidence"] = sure
+        sure = {f"{stem}{word}" for stem in (*center, *ends)}
+        if names.keys() >= sure:
+            form["confidence"] = sorted(sure)
     return form
 
 
-def _fields_of(program: Format, names: list[str], present: Set[str]) -> dict[str, Any] | None:
+def _of_all(boat: re.Match[str], name: str) -> str:
+    """Return a column of a boat with ``{id}`` in place of the boat's name or number."""
+    return f"{name[: boat.start('id')]}{{id}}{name[boat.end('id') :]}"
+
+
+def _fields_of(program: Format, names: Names) -> dict[str, Any] | None:
     """Return the fields of a layout if the table is this program's, otherwise None."""
     columns = dict(program.columns)
-    y, x_pattern = columns.pop("y", None), columns.pop("x")
+    y, x = columns.pop("y", ""), columns.pop("x")
     found = {field: _first([pattern], names) for field, pattern in columns.items()}
-    pairs = [match for match in _matches(x_pattern, names) if y or _as_y(match[0], present)]
+    pairs = [pair for pair in _matches(x, names) if y or _siblings(pair[0], "x", "y", names)]
     if not pairs or None in found.values():
         return None
-    first = pairs[0]
-    groups, x = first.groupdict(), _as_written(first)
-    boat = groups.get("id", "")
+    first, groups = pairs[0], pairs[0].groupdict()
     form = {field: match[0] for field, match in found.items() if match} | dict(program.fields)
-    form |= {"id": ""} if "id" in groups else {}
     if "part" in groups:
         form.pop("confidence", None)
-        own = [match for match in pairs if match.groupdict().get("id", "") == boat]
-        stems = {match["part"]: _as_written(match)[:-1] for match in own}
-        return form | key_points(stems, present, boat)
-    form |= {"x": x, "y": y or _as_y(x, present, boat)}
-    angle = _first([f"*{word}{{n}}*" for word in _ANGLES], names) if "id" in groups else None
-    return form | ({"heading": _as_written(angle)} if angle else {})
+        own = [pair for pair in pairs if pair.groupdict().get("id") == groups.get("id")]
+        known = _key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
+    else:
+        known = {"x": [first[0]], "y": [y] if y else _siblings(first[0], "x", "y", names)}
+    if "id" in groups:
+        form["id"] = ""
+        known = {
+            field: [name if "{id}" in name else _of_all(first, name) for name in columns]
+            for field, columns in known.items()
+        }
+        if "part" not in groups and (
+            angle := _first([f"*{word}{{n}}*" for word in _ANGLES], names)
+        ):
+            form["heading"] = _of_all(angle, angle[0])
+    return form | {field: each[0] if len(each) == 1 else each for field, each in known.items()}
 
 
-def recognized(names: list[str]) -> dict[str, Any]:
+def recognized(columns: Iterable[str]) -> dict[str, Any]:
     """Return the fields of a layout that follow from names of columns; some may be empty."""
-    names = [name for name in names if len(name) <= _LONGEST]
-    present, by_plain = set(names), dict[str, str]()
+    names = dict.fromkeys(name for name in columns if len(name) <= _LONGEST)
+    by_plain = dict[str, str]()
     for name in names:
         by_plain.setdefault(plain(name)[0], name)
     found = {field: _first(words, by_plain) for field, words in WORDS.items()}
     form: dict[str, Any] = {field: by_plain[match[0]] for field, match in found.items() if match}
-    if y := _as_y(form.get("x", ""), present):
-        form["y"] = y
-    else:
-        form.pop("x", None)
+    x = form.pop("x", "")
+    if y := _siblings(x, "x", "y", names):
+        form |= {"x": x, "y": y[0]}
     for program in FORMATS:
-        known = _fields_of(program, names, present)
-        # Any pair of columns looks like a key point of the general formats.
-        if known is None or ("id" in form and _may_be_box(known, names)):
+        known = _fields_of(program, names)
+        if known is None or ("id" in form and _may_be_box(known.get("x", ""), names)):
             continue
+        # Any pair of columns looks like a key point of the general formats.
         if "y" not in form or "{" not in program.columns["x"] or _TELLING & known.keys():
             form |= known
             break
-    if "heading" not in form and "quaternion" not in form and (four := quaternion(names)):
-        form["quaternion"] = four
+    if not {"heading", "quaternion"} & form.keys():
+        turns = (_siblings(name, "w", "xyzw", names) for name in names)
+        if turn := next(filter(None, turns), []):
+            form["quaternion"] = turn
     return form | ({"heading": ""} if "quaternion" in form else {})
 
 
-def _may_be_box(known: Mapping[str, Any], names: list[str]) -> bool:
+def _may_be_box(x: str | list[str], names: Names) -> bool:
     """Return whether x1, y1, x2 and y2 may be a box around a named boat instead of two boats."""
-    x = known.get("x", "")
-    if "{id}" not in x:
-        return False
-    return {match["id"] for match in _matches(x.replace("{id}", "{n}"), names)} == {"1", "2"}
+    numbered = _matches(str(x).replace("{id}", "{n}"), names) if "{id}" in x else []
+    return {match["id"] for match in numbered} == {"1", "2"}

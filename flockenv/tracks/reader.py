@@ -13,7 +13,7 @@ from flockenv.errors import ParameterError, short_repr
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import frames_of
-from flockenv.tracks.dataset import is_dataset, table_of
+from flockenv.tracks.dataset import table_of
 from flockenv.tracks.headings import bows_of, check_by_motion, direction, unwrapped
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
 from flockenv.tracks.motion import Motion
@@ -65,7 +65,7 @@ def read_tracks(
     if not isinstance(source, str | os.PathLike):
         if layout is None:
             raise ParameterError("layout is missing: a table in memory has no file beside it")
-        as_table: Any = table_of if is_dataset(source) else plain_table
+        as_table: Any = table_of if hasattr(source, "data_vars") else plain_table
         table = as_table(source, layout)
         return _recording(table, report)
     path = Path(source)
