@@ -160,7 +160,9 @@ def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) ->
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
     present = ~np.isnan(pose[..., 0])
-    outside = present & ~in_water(parameters.pool, pose, 2 * parameters.boat_radius_cm)
+    outside = present & ~in_water(
+        parameters.pool, np.hypot(pose[..., 0], pose[..., 1]), 2 * parameters.boat_radius_cm
+    )
     if outside.any():
         raise ParameterError(
             f"{outside.sum() / present.sum():.0%} of the centers ({outside.sum()}) lie outside the "

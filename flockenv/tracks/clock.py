@@ -1,7 +1,5 @@
 """Times of tracks: seconds from any column of times, and frames."""
 
-import re
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,56 +9,57 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
 from flockenv.tracks.formats import PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.table import Floats, Table
+from flockenv.tracks.table import Floats, numbers
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _DAY_S = 86_400.0
-_STOPWATCH = re.compile(r"^\s*(\d+:\d+\.\d*)\s*$")
+_DATES = ("ISO8601", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f")
 
 
-def times_of(table: Table) -> Floats:
-    """Return the times of all boats' rows in s, from the earliest one on."""
-    layout, found = table.layout, table.column(table.layout.frame)
-    times = _typed(require("pandas", "plot"), found)
-    if times is None:
-        times = table.numbers(layout.frame)
+def times_of(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
+    """Return times in s, from the earliest one on."""
+    first = str(next(iter(column.dropna()), ""))
+    if column.dtype.kind in "mM" or (column.dtype.kind not in "iuf" and ":" in first):
+        if layout.fps is not None:
+            raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
+        times: Floats = _seconds(column) if column.dtype.kind in "mM" else _read(column, first)
+    else:
+        times = numbers(column, layout)
         _check_kind(times, layout)
         times = times / (layout.fps or 1.0)
-    elif layout.fps is not None:
-        raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
     if not np.isfinite(times).all():
-        line = found.index[~np.isfinite(times)][0]
+        line = column.index[~np.isfinite(times)][0]
         raise ParameterError(
-            f"column {layout.frame!r} has rows without a number, such as {found.index.name} {line}"
+            f"column {layout.frame!r} has rows without a number, such as {column.index.name} {line}"
         )
-    return np.tile(times - times.min() if len(times) else times, len(table.boats))
+    since: Floats = times - times.min(initial=np.inf)
+    return since
 
 
-def _typed(pandas: ModuleType, found: "pd.Series[Any]") -> Floats | None:
-    """Return dates, clock times or durations in s; None for anything else."""
-    types = pandas.api.types
-    if types.is_datetime64_any_dtype(found):
-        found = found - found.min()
-    if types.is_timedelta64_dtype(found):
-        seconds: Floats = found.dt.total_seconds().to_numpy(np.float64)
-        return seconds
-    texts = found.dropna()
-    if types.is_numeric_dtype(found) or not len(texts) or ":" not in str(texts.iloc[0]):
-        return None
+def _seconds(times: "pd.Series[Any]") -> Floats:
+    """Return dates, from the earliest one on, or durations in s."""
+    durations = times - times.min() if times.dtype.kind == "M" else times
+    seconds: Floats = durations.dt.total_seconds().to_numpy(np.float64)
+    return seconds
+
+
+def _read(column: "pd.Series[Any]", first: str) -> Floats:
+    """Return dates or clock times that are written as text in s."""
+    pandas = require("pandas", "plot")
     # Loggers write 12:34:56,789, and stopwatches 34:56.7.
-    points = found.astype(str).str.replace(",", ".")
-    points = points.str.replace(_STOPWATCH, r"00:\1", regex=True)
-    times = pandas.to_timedelta(points, errors="coerce")
-    if times[texts.index].notna().all():
-        return _past_midnight(times.dt.total_seconds().to_numpy(np.float64))
-    for form in ("ISO8601", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f"):
-        dates = pandas.to_datetime(points, errors="coerce", utc=True, format=form)
-        if dates[texts.index].notna().all():
-            return _typed(pandas, dates)
+    texts = column.astype(str).str.replace(",", ".")
+    clock = texts.str.replace(r"^\s*(\d+:\d+\.\d*)\s*$", r"00:\1", regex=True)
+    times = pandas.to_timedelta(clock, errors="coerce")
+    if (times.notna() | column.isna()).all():
+        return _past_midnight(_seconds(times))
+    for form in _DATES:
+        times = pandas.to_datetime(texts, errors="coerce", utc=True, format=form)
+        if (times.notna() | column.isna()).all():
+            return _seconds(times)
     raise ParameterError(
-        f"column {found.name!r} holds {short_repr(str(texts.iloc[0]))}, which is not a number, "
+        f"column {column.name!r} holds {short_repr(first)}, which is not a number, "
         "a time 12:34:56.7 or a date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
     )
 
@@ -68,10 +67,10 @@ def _typed(pandas: ModuleType, found: "pd.Series[Any]") -> Floats | None:
 def _past_midnight(seconds: Floats) -> Floats:
     """Return clock times, with a day added to those past midnight: the ones before a long gap."""
     stamps = np.unique(seconds[np.isfinite(seconds)])
-    gap = int(np.diff(stamps).argmax()) if len(stamps) > 1 else 0
-    if len(stamps) < 2 or stamps[-1] > _DAY_S or stamps[gap + 1] - stamps[gap] < _DAY_S / 2:
+    steps = np.diff(stamps)
+    if steps.max(initial=0.0) < _DAY_S / 2 or stamps[-1] > _DAY_S:
         return seconds
-    return np.where(seconds <= stamps[gap], seconds + _DAY_S, seconds)
+    return np.where(seconds <= stamps[steps.argmax()], seconds + _DAY_S, seconds)
 
 
 def _check_kind(times: Floats, layout: TrackLayout) -> None:
@@ -81,14 +80,15 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     if not len(steps):
         return
     is_whole = bool((stamps == np.rint(stamps)).all())
-    per_s = PER_S.get(unit_of(layout.frame))
+    unit = unit_of(layout.frame)
+    per_s = PER_S.get(unit)
     # Steps of 12 may be seconds if the column's name says so; 0, 1, 2 are frames whatever it says.
     says_s = per_s == 1.0 and steps.min() > 1.0
-    missing = f"fps is missing: column {layout.frame!r}"
-    if layout.fps is None and per_s not in (None, 1.0):
-        raise ParameterError(f"{missing} counts {unit_of(layout.frame)} (fps = {per_s:.6g})")
-    if layout.fps is None and is_whole and not says_s:
-        raise ParameterError(f"{missing} holds whole numbers (fps = 1 if it counts s)")
+    if layout.fps is None and (per_s not in (None, 1.0) or (is_whole and not says_s)):
+        holds = "holds whole numbers (fps = 1 if it counts s)"
+        if per_s not in (None, 1.0):
+            holds = f"counts {unit} (fps = {per_s:.6g})"
+        raise ParameterError(f"fps is missing: column {layout.frame!r} {holds}")
     if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "

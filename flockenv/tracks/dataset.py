@@ -9,14 +9,17 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, recognized
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.table import Table, listed
+from flockenv.tracks.table import listed
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray
 
 
-def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
-    """Return a dataset as a table, whose layout is completed by the dataset.
+def dataset_table(
+    dataset: "xarray.Dataset", layout: TrackLayout
+) -> "tuple[pd.DataFrame, TrackLayout]":
+    """Return a dataset as a table, and the layout, which is completed by the dataset.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
     such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
@@ -41,8 +44,8 @@ def table_of(dataset: "xarray.Dataset", layout: TrackLayout) -> Table:
     for index, point in enumerate(points):
         stem = "" if is_alone else f"{point}_"
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
-    rows = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return Table(rows, _completed(dataset, layout, rows, "one" if is_alone else listed(points)))
+    rows: pd.DataFrame = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
+    return rows, _completed(dataset, layout, [*rows], "one" if is_alone else listed(points))
 
 
 def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
@@ -71,7 +74,7 @@ def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
 
 
 def _completed(
-    dataset: "xarray.Dataset", layout: TrackLayout, columns: Any, points: str
+    dataset: "xarray.Dataset", layout: TrackLayout, columns: list[str], points: str
 ) -> TrackLayout:
     """Return a layout with missing fields taken from the dataset and its columns."""
     given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}

@@ -3,7 +3,7 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,15 +12,21 @@ from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, LOST, PER_S, header_of, plain, recognized, unit_of
 from flockenv.tracks.headings import FULL_TURN
 from flockenv.tracks.layout import TrackLayout, description_of, naming
+from flockenv.tracks.samples import names_of
 from flockenv.tracks.table import (
     Floats,
-    Table,
     check_ending,
     is_value,
     listed,
+    long_table,
+    numbers,
+    points_of,
     read_table,
     spelling_of,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Form = dict[str, Any]
 Doubts = dict[str, tuple[Any, str]]
@@ -54,22 +60,21 @@ def _toml(value: object) -> str:
 def _guessed(path: Path) -> tuple[Form, Doubts]:
     """Return the fields of a layout, and the doubtful ones with a hint what to do about them."""
     form, doubts = spelling_of(path), Doubts()
-    table = read_table(path, TrackLayout(pool="wide", **form))
-    if all(is_value(name) or name.startswith("unnamed") for name in table.names):
-        count = len(table.names)
-        header = header_of(count) if "separator" not in form else []
-        form["header"] = header or [f"column {n}" for n in range(count)]
-        if not header:
-            words = "fill in: names of the columns, which the file lacks"
-            doubts["header"] = (form["header"], words)
-        table = read_table(path, TrackLayout(pool="wide", **form))
-    form |= recognized(table.names) if "header" not in doubts else {}
+    rows = read_table(path, TrackLayout(pool="wide", **form))
+    names = [*map(str, rows)]
+    if all(is_value(name) or name.startswith("unnamed") for name in names):
+        known = header_of(len(names)) if "separator" not in form else []
+        names = form["header"] = known or [f"column {n}" for n in range(len(names))]
+        if not known:
+            doubts["header"] = (names, "fill in: names of the columns, which the file lacks")
+        rows = read_table(path, TrackLayout(pool="wide", **form))
+    form |= recognized(names) if "header" not in doubts else {}
     missing = [name for name in ("frame", "x", "y", "id") if name not in form]
-    words = f"fill in: one of the columns {listed(table.names)}"
+    words = f"fill in: one of the columns {listed(names)}"
     for name in missing:
         doubts[name], words = ("", words), "fill in: another column"
     if missing in ([], ["id"]):
-        _guess_from_values(table, form, doubts)
+        _guess_from_values(rows, form, doubts)
     else:
         doubts["pool"] = ("", "fill in: outer and inner radius in cm")
     if "confidence" in form:
@@ -79,56 +84,58 @@ def _guessed(path: Path) -> tuple[Form, Doubts]:
     return form, doubts
 
 
-def _guess_from_values(table: Table, form: Form, doubts: Doubts) -> None:
+def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None:
     """Add fields that follow from the table's values to those from its columns' names."""
-    layout = TrackLayout(pool="wide", **{"heading": "", **form, "confidence": ""})
-    table = Table(table.rows, layout)
-    if "id" in form and not table.is_named:
+    layout = TrackLayout(pool="wide", **{"heading": "", "id": "", **form, "confidence": ""})
+    table, boats = long_table(rows, layout)
+    if "id" in form and not names_of(table, boats, layout)[1]:
         form["id"] = ""
-    _guess_pool(table, form, doubts)
-    _guess_time(table, form, doubts)
+    _guess_pool(table, layout, form, doubts)
+    _guess_time(table, layout, form, doubts)
     if len(layout.columns["heading"]) == 1:
-        _guess_turn(table.numbers(form["heading"]), form, doubts)
+        _guess_turn(numbers(table[layout.columns["heading"][0]], layout), form, doubts)
 
 
-def _guess_pool(table: Table, form: Form, doubts: Doubts) -> None:
+def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
     """Guess the pool, its center and the scale from all positions."""
-    names = [table.layout.columns[axis][0] for axis in ("x", "y")]
-    points = np.stack([table.numbers(name) for name in names], axis=-1)
-    points = points[np.isfinite(points).all(axis=1)]
-    lost = [mark for mark in LOST if 1 < (points == mark).all(axis=1).sum() < len(points)]
-    for mark in lost:
-        points = points[(points != mark).any(axis=1)]
+    x, y = (layout.columns[axis][:1] for axis in "xy")
+    (points,), _ = points_of(table, layout, x, y)
+    points = points[np.isfinite(points)]
+    lost = [mark for mark in LOST if 1 < (points == complex(*mark)).sum() < len(points)]
+    points = points[~np.isin(points, [complex(*mark) for mark in lost])]
     if len(points) == 0:
         raise ParameterError("no row has a position")
-    low, high = points.min(axis=0), points.max(axis=0)
-    center = (low + high) / 2
-    unit = plain(names[0])[1]
-    radius = float(np.hypot(*(points - center).T).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
-    words = "check: outer and inner radius in cm, here about all positions"
-    doubts["pool"] = ([round(radius, 1), 0.0], words)
-    words = "check: the pool's, in units of the file, here of all positions"
-    doubts["center"] = ([round(float(coordinate), 2) for coordinate in center], words)
+    low, high = (complex(f(points.real), f(points.imag)) for f in (np.min, np.max))
+    center, unit = (low + high) / 2, plain(x[0])[1]
+    radius = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
+    middle = [round(center.real, 2), round(center.imag, 2)]
+    doubts |= {
+        "pool": (
+            [round(radius, 1), 0.0],
+            "check: outer and inner radius in cm, here about all positions",
+        ),
+        "center": (middle, "check: the pool's, in units of the file, here of all positions"),
+    }
     if unit in CM:
         form["cm_per_unit"] = CM[unit]
     else:
         word = "fill in" if unit else "check"
         doubts["cm_per_unit"] = (1.0, f"{word}: how many cm a unit of x and y has")
     # Pixel coordinates count from the upper left corner.
-    is_down = form.get("y_down", bool((low >= 0.0).all()))
+    is_down = form.get("y_down", bool(low.real >= 0.0 and low.imag >= 0.0))
     words = "check: whether y points down; compare `analyze --plot` with the video"
     doubts["y_down"] = (is_down, words)
     if lost:
         doubts["lost"] = (lost, "check: points that stand for a missing boat")
 
 
-def _guess_time(table: Table, form: Form, doubts: Doubts) -> None:
+def _guess_time(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
     try:
-        counts = table.numbers(form["frame"])
+        counts = numbers(table[layout.frame], layout)
     except ParameterError:  # Dates and clock times.
         return
     is_whole = (counts[np.isfinite(counts)] % 1 == 0).all()
-    per_s = PER_S.get(unit_of(form["frame"]))
+    per_s = PER_S.get(unit_of(layout.frame))
     if per_s is not None and (per_s != 1.0 or is_whole):
         form.setdefault("fps", per_s)
     elif is_whole and "fps" not in form:
@@ -139,8 +146,7 @@ def _guess_turn(heading: Floats, form: Form, doubts: Doubts) -> None:
     name = plain(form["heading"])[1].replace("°", "deg")
     said = next((unit for unit in ("deg", "rad") if name.startswith(unit)), None)
     # A few may be placeholders.
-    turns = np.abs(heading[np.isfinite(heading)])
-    largest = np.quantile(turns, 0.99) if len(turns) else 0.0
+    largest = np.quantile(turns, 0.99) if len(turns := np.abs(heading[np.isfinite(heading)])) else 0
     unit = said or ("deg" if largest > FULL_TURN["rad"] else "rad")
     if said:
         form["heading_unit"] = said

@@ -1,6 +1,8 @@
 """Headings in rad from columns in any convention; impossible columns and units are refused."""
 
+from contextlib import suppress
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +10,10 @@ from numpy.typing import NDArray
 from flockenv.errors import ParameterError
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import Motion
-from flockenv.tracks.table import Floats, Table, listed
+from flockenv.tracks.table import Floats, finder, listed, numbers, points_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
 """Zero of headings, in rad counter-clockwise from x."""
@@ -23,32 +28,30 @@ _MOST_STRANGE = 0.01
 _AXIS_JUMP = 0.8
 
 
-def headings_of(table: Table) -> tuple[Floats, NDArray[np.bool_]]:
+def headings_of(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArray[np.bool_]]:
     """Return headings in rad from x (0 without a column), and which exceed a full turn."""
-    layout, columns = table.layout, table.layout.columns["heading"]
-    strange = np.zeros(len(table.index), bool)
+    columns, strange = layout.columns["heading"], np.zeros(len(table), bool)
     if len(columns) == 4:
-        x_tail, y_tail, tail_lost = table.points(columns[:1], columns[1:2])
-        x_head, y_head, head_lost = table.points(columns[2:3], columns[3:])
-        heading = direction(x_head - x_tail, (y_head - y_tail) * layout.y_sign)
-        return np.where(tail_lost | head_lost, np.nan, heading), strange
+        (tail, head), is_lost = points_of(table, layout, columns[::2], columns[1::2])
+        heading = direction(head - tail) * layout.y_sign
+        return np.where(is_lost, np.nan, heading), strange
     if columns:
-        _check_no_component(table)
-        heading = table.numbers(columns[0])
+        heading = numbers(table[columns[0]], layout)
         strange = (np.abs(heading) > FULL_TURN[layout.heading_unit]) & layout.wrapped
         _check_largest(heading, strange, layout)
-        turned = heading * (TURN["rad"] / TURN[layout.heading_unit])
+        heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
     elif layout.quaternion is not None:
-        turned = _turned(table, layout.quaternion)
+        heading = _turned(table, layout)
     else:
-        return np.zeros(len(strange)), strange
+        return np.zeros(len(table)), strange
     sign = 1.0 if layout.turns == "ccw" else -1.0
-    return HEADING_ZERO[layout.heading_zero] + sign * turned, strange
+    return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
 
 
-def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
+def _turned(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
     """Return the angle about the vertical of unit quaternions."""
-    x, y, z, w = map(table.numbers, columns)
+    columns = layout.columns["quaternion"]
+    x, y, z, w = (numbers(table[name], layout) for name in columns)
     off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
     if np.nanmedian(off) > 0.01:
         raise ParameterError(
@@ -56,45 +59,39 @@ def _turned(table: Table, columns: tuple[str, str, str, str]) -> Floats:
             "add up to 1"
         )
     # If turns are counted from y to x, the axis belongs to a mirrored system.
-    is_mirrored = table.layout.turns == ("ccw" if table.layout.y_down else "cw")
+    is_mirrored = layout.turns == ("ccw" if layout.y_down else "cw")
     across = -x * y if is_mirrored else x * y
     heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
     return np.where(off > 0.1, np.nan, heading)
 
 
-def _check_no_component(table: Table) -> None:
+def check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout) -> None:
     """Refuse a component of a quaternion, a sine or a cosine as a heading.
 
     They are recognized without names of columns: the squares of neighboring columns add up to 1.
     """
-    heading = table.layout.columns["heading"][0]
-    own = table.index_of(heading.replace("{id}", table.boats[0]))
-    beside = table.names[max(0, own - 3) : own + 4]
-    squares = {name: values for name in beside if (values := _squares(table, name)) is not None}
-    square = squares.pop(table.names[own], np.zeros(1))
+    own = finder(rows)(heading)
+    squares = dict[int, Floats]()
+    for index in range(max(0, own - 3), min(own + 4, rows.shape[1])):
+        with suppress(ParameterError):  # A column of remarks.
+            values = np.nan_to_num(numbers(rows.iloc[:, index], layout))
+            if len(values) and np.abs(values).max() <= 1.01:
+                squares[index] = values**2
+    square = squares.pop(own, np.zeros(1))
     for others in (*combinations(squares, 3), *combinations(squares, 1)):
-        total = square + sum(squares[name] for name in others)
+        total = square + sum(squares[index] for index in others)
         if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(square):
-            names = [name for name in beside if name in (table.names[own], *others)]
+            names = [str(rows.columns[index]) for index in sorted((own, *others))]
             raise ParameterError(
-                f"heading = {heading!r} is a part of a turn: the squares of {listed(names)} add "
-                "up to 1. Name the columns x, y, z and w in quaternion, or make angles of a sine "
-                "and a cosine"
+                f"heading = {layout.heading!r} is a part of a turn: the squares of {listed(names)} "
+                "add up to 1. Name the columns x, y, z and w in quaternion, or make angles of a "
+                "sine and a cosine"
             )
 
 
-def _squares(table: Table, name: str) -> Floats | None:
-    """Return the squares of a column if it may be such a component; 0 for missing numbers."""
-    try:
-        values = np.nan_to_num(table.numbers(name))
-    except ParameterError:  # A column of remarks, or a repeated name.
-        return None
-    return values**2 if len(values) and np.abs(values).max() <= 1.01 else None
-
-
-def direction(x: Floats, y: Floats) -> Floats:
-    """Return the angle of vectors, in radians; NaN for none."""
-    return np.where((x == 0.0) & (y == 0.0), np.nan, np.arctan2(y, x))
+def direction(way: NDArray[np.complex128]) -> Floats:
+    """Return the angle of vectors x + iy in rad; NaN for none."""
+    return np.where(way == 0.0, np.nan, np.angle(way))
 
 
 def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLayout) -> None:
@@ -146,18 +143,16 @@ def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
 
 def _spans_half_turn(heading: Floats) -> bool:
     """Return whether headings lie within half a turn, as axes do, apart from whole turns."""
-    wrapped = np.mod(heading[~np.isnan(heading)], np.pi * 2)
-    return any(
-        (np.mod(wrapped - start, 2 * np.pi) <= np.pi + 1e-6).all()
-        for start in np.pi * np.array([0.0, 0.5, 1.0, 1.5])
-    )
+    starts = np.pi * np.array([[0.0], [0.5], [1.0], [1.5]])
+    turned = np.mod(heading[~np.isnan(heading)] - starts, 2 * np.pi)
+    return bool((turned <= np.pi + 1e-6).all(axis=1).any())
 
 
 def bows_of(axis: Floats, motion: Motion) -> Floats:
     """Return axes as headings: continuous, and mostly along the boat's motion."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):
-        for part in motion.parts(boat):
+        for part in motion.split(boat)[0]:
             heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
             if np.nansum(motion.ahead(heading)[part, boat]) < 0.0:
                 heading[part, boat] += np.pi

@@ -227,6 +227,11 @@ class TrackLayout:
         return self.heading_turns or ("cw" if self.y_down else "ccw")
 
     @property
+    def fields(self) -> list[str]:
+        """All columns but those of times and names."""
+        return [name for columns in self.columns.values() for name in columns]
+
+    @property
     def columns(self) -> dict[str, tuple[str, ...]]:
         """The columns of each field, without those of times and names."""
         heading = self.heading if self.quaternion is None else None

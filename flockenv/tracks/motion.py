@@ -1,7 +1,6 @@
 """Motion of tracked boats: velocities, gaps and speeds."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -45,18 +44,14 @@ class Motion:
 
     def gaps(self) -> Floats:
         """Return the length in s of each gap between two successive poses of a boat."""
-        ends = [
-            self.stamps[[before[-1], after[0]], boat]
-            for boat in range(self.stamps.shape[1])
-            for before, after in pairwise(self.parts(boat))
-        ]
-        return np.diff(np.reshape(ends, (-1, 2)))[:, 0]
+        return np.concatenate([self.split(boat)[1] for boat in range(self.present.shape[1])])
 
-    def parts(self, boat: int) -> list[NDArray[np.intp]]:
-        """Return the frames of a boat's poses, split at its gaps."""
+    def split(self, boat: int) -> tuple[list[NDArray[np.intp]], Floats]:
+        """Return the frames of a boat's poses, split at its gaps, and the lengths of the gaps."""
         frames = np.flatnonzero(self.present[:, boat])
-        is_gap = np.diff(self.stamps[frames, boat]) > self.longest_s
-        return np.split(frames, np.flatnonzero((np.diff(frames) > 1) | is_gap) + 1)
+        steps = np.diff(self.stamps[frames, boat])
+        is_gap = (np.diff(frames) > 1) | (steps > self.longest_s)
+        return np.split(frames, np.flatnonzero(is_gap) + 1), steps[is_gap]
 
     def empty_frames(self, time_s: Floats) -> int:
         """Return the number of empty frames on a regular clock."""
@@ -91,9 +86,8 @@ class Motion:
 
 
 def in_water(
-    pool: str | tuple[float, float], positions: Floats, margin_cm: float
+    pool: str | tuple[float, float], distance_cm: Floats, margin_cm: float
 ) -> NDArray[np.bool_]:
-    """Return whether positions are in a pool's water, or at most `margin_cm` outside of it."""
+    """Return whether distances from the center are in the water, or `margin_cm` outside of it."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
-    distance = np.hypot(positions[..., 0], positions[..., 1])
-    return np.asarray((distance <= outer_cm + margin_cm) & (distance >= inner_cm - margin_cm))
+    return (distance_cm <= outer_cm + margin_cm) & (distance_cm >= inner_cm - margin_cm)

@@ -13,20 +13,19 @@ from flockenv.errors import ParameterError, short_repr
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.clock import frames_of
-from flockenv.tracks.dataset import table_of
+from flockenv.tracks.dataset import dataset_table
 from flockenv.tracks.headings import bows_of, check_by_motion, direction, unwrapped
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
 from flockenv.tracks.motion import Motion
 from flockenv.tracks.report import TrackReport
-from flockenv.tracks.rows import rows_of
-from flockenv.tracks.table import Floats, Table, check_ending, plain_table, read_table
+from flockenv.tracks.samples import TWICE, samples_of
+from flockenv.tracks.table import Floats, check_ending, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
 _STUCK = 20
-_TWICE = "that are repeated"
 
 
 def read_tracks(
@@ -62,35 +61,37 @@ def read_tracks(
     if not isinstance(layout, TrackLayout | None):
         raise TypeError(f"layout must be a TrackLayout, not {short_repr(layout)}")
     check_function(report, "report")
-    if not isinstance(source, str | os.PathLike):
+    if isinstance(source, str | os.PathLike):
+        path = Path(source)
         if layout is None:
-            raise ParameterError("layout is missing: a table in memory has no file beside it")
-        as_table: Any = table_of if hasattr(source, "data_vars") else plain_table
-        table = as_table(source, layout)
-        return _recording(table, report)
-    path = Path(source)
+            description = description_of(path)
+            check_ending(path)
+            layout = read_layout(description)
+        with naming(path):
+            return _recording(read_table(path, layout), layout, report)
     if layout is None:
-        description = description_of(path)
-        check_ending(path)
-        layout = read_layout(description)
-    with naming(path):
-        return _recording(read_table(path, layout), report)
+        raise ParameterError("layout is missing: a table in memory has no file beside it")
+    table: Any = source
+    if hasattr(table, "data_vars"):
+        return _recording(*dataset_table(table, layout), report)
+    return _recording(plain_table(table), layout, report)
 
 
-def _recording(table: Table, report: Callable[[TrackReport], object]) -> Recording:
-    layout, rows = table.layout, rows_of(table)
-    twice = rows["id"].notna() & rows.duplicated(["id", "time", "x", "y", "heading"])
-    rows["why"] = rows["why"].mask(twice & (rows["why"] == ""), _TWICE)
-    unsorted = int((rows[rows["why"] != _TWICE].groupby("id")["time"].diff() < 0.0).sum())
-    rows = rows.sort_values("time", kind="stable")
-    rows["frame"] = frames_of(rows)
-    names, time_s, stamps, pose = _poses(rows, table)
+def _recording(
+    rows: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
+) -> Recording:
+    samples, is_named = samples_of(rows, layout)
+    unsorted = samples[samples["why"] != TWICE].groupby("id")["time"].diff() < 0.0
+    samples = samples.sort_values("time", kind="stable")
+    samples["frame"] = frames_of(samples)
+    _check_samples(samples, layout, is_named)
+    names, time_s, stamps, pose = _poses(samples)
     motion = _turned_into_motion(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
-    unnamed = layout.id is not None and not table.is_named and not layout.is_wide
-    found = _report(rows, time_s, pose, motion, layout)
-    report(replace(found, unsorted=unsorted, unnamed=unnamed))
+    found = _report(samples, time_s, pose, motion, layout)
+    unnamed = layout.id is not None and not is_named
+    report(replace(found, unsorted=int(unsorted.sum()), unnamed=unnamed))
     return recording
 
 
@@ -98,7 +99,7 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
     """Return the motion of poses, after turning their headings into continuous ones of the bows."""
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if layout.heading is None and layout.quaternion is None:
-        pose[..., 2] = direction(*np.moveaxis(motion.velocity[..., :2], -1, 0))
+        pose[..., 2] = direction(motion.velocity[..., 0] + 1j * motion.velocity[..., 1])
         pose[np.isnan(pose[..., 2])] = np.nan
     elif layout.axis:
         pose[..., 2] = bows_of(pose[..., 2], motion)
@@ -141,50 +142,52 @@ def _median(values: Floats) -> float:
     return float(np.median(found)) if len(found) else float("nan")
 
 
-def _poses(every: "pd.DataFrame", table: Table) -> tuple[list[str], Floats, Floats, Floats]:
-    """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
-    rows = every[every["why"] == ""]
-    if rows.empty:
-        counts = [f"{count} {why}" for why, count in every["why"].value_counts().items()]
+def _check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
+    """Refuse samples of which none counts, or two of one boat at one time."""
+    used = samples[samples["why"] == ""]
+    if used.empty:
+        counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
         found = ", ".join(counts) or "there are no rows"
         raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
-    again = rows.duplicated(["id", "time"])
-    if again.any():
-        row = rows[again].iloc[0]
-        if not table.is_named and not table.layout.is_wide:
-            raise ParameterError("id is missing: several rows have one time, so boats have names")
-        same = rows[(rows["id"] == row["id"]) & (rows["time"] == row["time"])]
-        frame = row["time"] * (table.layout.fps or 1)
+    again = used[used.duplicated(["id", "time"])]
+    if len(again) and not is_named:
+        raise ParameterError("id is missing: several rows have one time, so boats have names")
+    for line, name, time in again[["id", "time"]].head(1).itertuples():
+        count = ((used["id"] == name) & (used["time"] == time)).sum()
         raise ParameterError(
-            f"{row['id']!r} appears {len(same)} times in frame {frame:g}, at different positions, "
-            f"the second time in {rows.index.name} {row.name}: were there two films, or "
+            f"{name!r} appears {count} times in frame {time * (layout.fps or 1):g}, at different "
+            f"positions, the second time in {used.index.name} {line}: were there two films, or "
             "was the clock set back? Give each film a table of its own"
         )
-    _check_names(rows)
+    _check_names(used)
+
+
+def _poses(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
+    """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
+    used = samples[samples["why"] == ""]
     # Sorted by length, then alphabetically, so that 2 comes before 10.
-    names = sorted(rows["id"].unique(), key=lambda name: (len(name), name))
-    frames = every.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1)
+    names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
+    time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()
     # Arrays hold a pose for each frame and name; in large ones at least a sixteenth must exist.
-    if len(frames) * len(names) > max(1 << 22, 16 * len(every)):
+    if len(time_s) * len(names) > max(1 << 22, 16 * len(samples)):
         raise ParameterError(
-            f"{len(names)} names in {len(frames)} frames are too many for {len(every)} rows: join "
-            "fragments of tracks"
+            f"{len(names)} names in {len(time_s)} frames are too many for {len(samples)} rows: "
+            "join fragments of tracks"
         )
-    wide = rows.pivot(index="frame", columns="id").reindex(frames.index)
-    time_s = frames.to_numpy()
-    stamps = wide["time"][names].to_numpy()
-    stamps = np.where(np.isnan(stamps), time_s[:, None], stamps)
-    pose = np.stack([wide[column][names] for column in ("x", "y", "heading")], axis=-1)
+    pose = np.full((len(time_s), len(names), 3), np.nan)
+    stamps = np.tile(time_s[:, None], len(names))
+    at = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
+    pose[at], stamps[at] = used[["x", "y", "heading"]], used["time"]
     return names, time_s - time_s[0], stamps, pose
 
 
-def _check_names(rows: "pd.DataFrame") -> None:
+def _check_names(used: "pd.DataFrame") -> None:
     """Refuse two spellings of a name that never appear in one frame: they would be two boats."""
-    names = rows["id"].drop_duplicates()
+    names = used["id"].drop_duplicates()
     plain = names.str.normalize("NFKC").str.casefold()
     plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
     for _, like in names.groupby(plain):
-        if len(like) > 1 and rows.loc[rows["id"].isin(like), "frame"].is_unique:
+        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
             raise ParameterError(
                 f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
                 "case or leading zeros only: give each boat one spelling of its name"

@@ -7,8 +7,7 @@ import io
 import itertools
 import os
 import re
-from collections.abc import Iterable
-from functools import cached_property
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -33,100 +32,82 @@ SUFFIXES = (*_TEXTS, *(f"{text}.gz" for text in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
 
-class Table:
-    """Rows of tracks, numbered by their line or row, as a layout reads them.
+def long_table(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, list[str]]":
+    """Return the columns that a layout names, and the boats whose rows follow one another.
 
-    Columns are found by their names in any case. A column whose name in the layout holds {id}
-    stands for the columns of all boats, one after the other.
+    A column whose name holds {id} stands for the columns of all boats. In a table with one row per
+    boat there is one, "0".
     """
+    pandas, find, fields = require("pandas", "plot"), finder(rows), layout.fields
+    boats = _boats([*map(str, rows)], fields) if layout.is_wide else ["0"]
+    own = [layout.id] if layout.id and not layout.is_wide else []
+    columns = {
+        name: pandas.concat([rows.iloc[:, find(name.replace("{id}", boat))] for boat in boats])
+        for name in (*own, *fields, layout.frame)
+    }
+    return pandas.DataFrame(columns), boats
 
-    def __init__(self, rows: "pd.DataFrame", layout: TrackLayout) -> None:
-        self.rows, self.layout = rows, layout
-        self.names = [*map(str, rows)]
-        self._by_key: dict[str, list[int]] = {}
-        for index, name in enumerate(self.names):
-            self._by_key.setdefault(_key(name), []).append(index)
 
-    @cached_property
-    def boats(self) -> list[str]:
-        """The names that stand for {id}; "0" in a table that has one row per boat."""
-        if not self.layout.is_wide:
-            return ["0"]
-        fields = [name for columns in self.layout.columns.values() for name in columns]
-        first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-        names = [found[1] for name in self.names if (found := first.fullmatch(name.strip()))]
-        wanted = {name: {_key(field.replace("{id}", name)) for field in fields} for name in names}
-        names = [name for name in names if wanted[name] <= self._by_key.keys()]
-        if not names:
-            looks = " and ".join(map(repr, fields))
-            raise ParameterError(f"no columns look like {looks}; there are {listed(self.names)}")
-        return names
+def finder(rows: "pd.DataFrame") -> Callable[[str], int]:
+    """Return a function that finds a column by its name, in any case and with any blanks."""
+    names, places = [*map(str, rows)], dict[str, list[int]]()
+    for index, name in enumerate(names):
+        places.setdefault(_key(name), []).append(index)
 
-    @cached_property
-    def is_named(self) -> bool:
-        """Whether a column names the boats. If no row has a name, all rows belong to one boat."""
-        if self.layout.id is None or self.layout.is_wide:
-            return False
-        ids = self.column(self.layout.id)
-        return not (ids.isna() | ids.astype(str).str.strip().str.lower().isin(NO_NUMBER)).all()
-
-    @property
-    def index(self) -> "pd.Index[Any]":
-        """The line or row of each of the boats' rows."""
-        index = self.rows.index
-        return index.append([index] * (len(self.boats) - 1)).rename(index.name)
-
-    def index_of(self, name: str) -> int:
-        """Return the index of a column, whose name may differ in case or blanks."""
-        like = self._by_key.get(_key(name), [])
-        found = [index for index in like if self.names[index] == name] or like
+    def find(name: str) -> int:
+        like = places.get(_key(name), [])
+        found = [index for index in like if names[index] == name] or like
         if len(found) > 1:
             raise ParameterError(f"there are several columns {name!r}: give each its own name")
         if not found:
-            hint = f"there are {listed(self.names)}{_separator_hint(self.names)}"
+            hint = f"there are {listed(names)}{_separator_hint(names)}"
             raise ParameterError(f"column {name!r} is missing; {hint}")
         return found[0]
 
-    def column(self, name: str) -> "pd.Series[Any]":
-        """Return the column of a name, or the columns of all boats one after the other."""
-        if "{id}" not in name:
-            return self.rows.iloc[:, self.index_of(name)]
-        boats = [self.index_of(name.replace("{id}", boat)) for boat in self.boats]
-        cells = self.rows.iloc[:, boats].to_numpy().T.ravel()
-        return require("pandas", "plot").Series(cells, self.index)  # type: ignore[no-any-return]
+    return find
 
-    def numbers(self, name: str) -> Floats:
-        """Return a column as numbers, NaN for missing and infinite ones."""
-        to_numeric, found = require("pandas", "plot").to_numeric, self.column(name)
-        if found.dtype.kind not in "iuf":
-            texts = found.astype(object).where(found.notna(), "").astype(str).str.strip()
-            decimals = texts.str.replace(self.layout.decimal, ".")
-            found = to_numeric(decimals, errors="coerce")
-            self._check_words(name, texts[found.isna()])
-        values = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-        none = to_numeric(list(self.layout.missing), errors="coerce")
-        values[np.isinf(values) | np.isin(values, none)] = np.nan
-        return values
 
-    def points(self, x: Iterable[str], y: Iterable[str]) -> tuple[Floats, Floats, Any]:
-        """Return the means of x and of y columns, and whether any of them marks a lost boat."""
-        points = np.array([[self.numbers(name) for name in names] for names in (x, y)])
-        is_lost = np.zeros(points.shape[-1], bool)
-        for mark in self.layout.lost:
-            is_lost |= ((points[0] == mark[0]) & (points[1] == mark[1])).any(axis=0)
-        return *points.mean(axis=1), is_lost
+def _boats(names: list[str], fields: list[str]) -> list[str]:
+    """Return what stands in place of {id} in the columns of a table with one row per frame."""
+    first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+    keys = {_key(name) for name in names}
+    boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
+    boats = [b for b in boats if keys.issuperset(_key(f.replace("{id}", b)) for f in fields)]
+    if not boats:
+        looks = " and ".join(map(repr, fields))
+        raise ParameterError(f"no columns look like {looks}; there are {listed(names)}")
+    return boats
 
-    def _check_words(self, name: str, texts: "pd.Series[Any]") -> None:
-        """Refuse texts that are not numbers and do not stand for a missing one."""
-        none = NO_NUMBER | {word.strip().lower() for word in self.layout.missing}
-        strange = texts[~texts.str.lower().isin(none)]
+
+def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
+    """Return a column as numbers, NaN for missing and infinite ones; refuse other texts."""
+    to_numeric, found = require("pandas", "plot").to_numeric, column
+    if column.dtype.kind not in "iuf":
+        texts = column.astype(object).where(column.notna(), "").astype(str).str.strip()
+        found = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
+        none = NO_NUMBER | {word.strip().lower() for word in layout.missing}
+        strange = texts[found.isna() & ~texts.str.lower().isin(none)]
         if len(strange):
-            decimal = "," if self.layout.decimal == "." else "."
+            decimal = "," if layout.decimal == "." else "."
             hint = f"; is decimal = {decimal!r}?" if _has_decimal(strange.iloc[0], decimal) else ""
             raise ParameterError(
-                f"column {name!r} holds other things than numbers: {short_repr(strange.iloc[0])} "
-                f"in {texts.index.name} {strange.index[0]}{hint}"
+                f"column {column.name!r} holds other things than numbers: "
+                f"{short_repr(strange.iloc[0])} in {texts.index.name} {strange.index[0]}{hint}"
             )
+    values: Floats = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
+    none = to_numeric(list(layout.missing), errors="coerce")
+    values[np.isinf(values) | np.isin(values, none)] = np.nan
+    return values
+
+
+def points_of(
+    table: "pd.DataFrame", layout: TrackLayout, x: Iterable[str], y: Iterable[str]
+) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+    """Return points x + iy, shape (points, rows), and whether any of them marks a lost boat."""
+    pairs = [[numbers(table[name], layout) for name in pair] for pair in zip(x, y, strict=True)]
+    points = np.array([across + 1j * up for across, up in pairs])
+    is_mark = np.isin(points, [complex(*mark) for mark in layout.lost])
+    return points, np.asarray(is_mark.any(axis=0))
 
 
 def _has_decimal(cell: str, mark: str) -> bool:
@@ -152,24 +133,19 @@ def check_ending(path: Path) -> None:
         )
 
 
-def read_table(path: Path, layout: TrackLayout) -> Table:
+def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
     """Return the rows of a text or Parquet file; those of a text are numbered by their line."""
     pandas = require("pandas", "plot")
     check_ending(path)
     try:
-        if not _is_text(path):
-            return plain_table(_read_parquet(pandas, path), layout)
-        separator = layout.separator or _usual_separator(path)
-        return _read_text(pandas, _text_of(path), layout, separator)
+        if ending(path) in _PARQUET:
+            return plain_table(_read_parquet(pandas, path))
+        return _read_text(pandas, _text_of(path), layout, layout.separator or _usual(path))
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"it cannot be read as a table: {error}") from error
 
 
-def _is_text(path: Path) -> bool:
-    return ending(path) not in _PARQUET
-
-
-def _usual_separator(path: Path) -> str:
+def _usual(path: Path) -> str:
     """Return the separator that follows from a text file's ending."""
     return "\t" if ending(path).startswith(".tsv") else ","
 
@@ -205,7 +181,7 @@ def _text_of(path: Path) -> str:
 
 def spelling_of(path: Path) -> dict[str, Any]:
     """Return the unusual ones among the separator, decimal and skip of a text file."""
-    if not _is_text(path):
+    if ending(path) in _PARQUET:
         return {}
     lines = _text_of(path).splitlines()[:100] or [""]
     mark = _separator_of(lines)
@@ -215,7 +191,7 @@ def spelling_of(path: Path) -> dict[str, Any]:
     in_levels = (line for line in range(4) if _levels(rows[line : line + 10])[0])
     skip = next(in_levels, widths.index(max(widths)))
     form: dict[str, Any] = {"skip": skip} if skip else {}
-    if mark != _usual_separator(path):
+    if mark != _usual(path):
         form["separator"] = mark
     if mark != "," and any(_has_decimal(cell.strip(), ",") for row in rows[1:] for cell in row):
         form["decimal"] = ","
@@ -230,7 +206,9 @@ def _separator_of(lines: list[str]) -> str:
     return max(counts, key=lambda mark: counts[mark])
 
 
-def _read_text(pandas: ModuleType, text: str, layout: TrackLayout, separator: str) -> Table:
+def _read_text(
+    pandas: ModuleType, text: str, layout: TrackLayout, separator: str
+) -> "pd.DataFrame":
     rows = _cells_of(text, separator, layout.skip, 10)
     names, height = (list(layout.header), 0) if layout.header else _header(rows)
     first = layout.skip + height + 1
@@ -241,29 +219,24 @@ def _read_text(pandas: ModuleType, text: str, layout: TrackLayout, separator: st
                 f"every column needs a name{_separator_hint(names)}"
             )
     names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
-    is_id = [bool(layout.id) and _key(name) == _key(layout.id) for name in names]
     table: pd.DataFrame = pandas.read_csv(
         io.StringIO(text),
         sep=r"\s+" if separator == " " else separator,
-        decimal=layout.decimal,
         skiprows=first - 1,
         header=None,
         names=range(len(names)),
         index_col=False,
-        dtype=dict.fromkeys(np.flatnonzero(is_id), str),
+        dtype=str,
         keep_default_na=False,
         na_values=[""],
         skipinitialspace=True,
         skip_blank_lines=False,
-        low_memory=False,
     )
     lines = pandas.RangeIndex(first, first + len(table), name="line")
     table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
-    if layout.header:
-        return Table(table, layout)
     # Some programs write units, or longer names, into the lines under the header.
-    under = [line for line, row in table.head(4).iterrows() if not any(map(is_value, row))]
-    return Table(table.drop(index=under), layout)
+    head = table.head(0 if layout.header else 4)
+    return table.drop(index=[line for line, row in head.iterrows() if not any(map(is_value, row))])
 
 
 def _cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
@@ -313,7 +286,7 @@ def is_value(cell: object) -> bool:
     return str(cell).lstrip("-+.")[:1].isdigit()
 
 
-def plain_table(table: "pd.DataFrame", layout: TrackLayout) -> Table:
+def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
     """Return a table with one name per column, in which the index is a column, too."""
     if not hasattr(table, "columns") or not hasattr(table, "index"):
         raise TypeError(
@@ -338,7 +311,7 @@ def plain_table(table: "pd.DataFrame", layout: TrackLayout) -> Table:
                 f"the index and a column are both called {name!r}, and differ: rename one"
             )
         table = table if name is None else table.assign(**{str(name): values})
-    return Table(table.reset_index(drop=True).rename_axis(index="row"), layout)
+    return table.reset_index(drop=True).rename_axis(index="row")
 
 
 def _key(name: object) -> str:
