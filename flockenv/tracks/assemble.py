@@ -13,8 +13,7 @@ from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
-from flockenv.tracks.headings import unwrapped
-from flockenv.tracks.motion import Motion, in_water
+from flockenv.tracks.motion import Motion, in_water, unwrapped
 
 Floats = NDArray[np.float64]
 

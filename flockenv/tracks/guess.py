@@ -10,9 +10,9 @@ import numpy as np
 from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, LOST, PER_S, header_of, plain, recognized, unit_of
-from flockenv.tracks.headings import FULL_TURN
 from flockenv.tracks.layout import TrackLayout, description_of, naming
-from flockenv.tracks.samples import names_of
+from flockenv.tracks.motion import FULL_TURN
+from flockenv.tracks.samples import names_of, points_of
 from flockenv.tracks.table import (
     Floats,
     check_ending,
@@ -20,7 +20,6 @@ from flockenv.tracks.table import (
     listed,
     long_table,
     numbers,
-    points_of,
     read_table,
     spelling_of,
 )
@@ -93,13 +92,13 @@ def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None
     _guess_pool(table, layout, form, doubts)
     _guess_time(table, layout, form, doubts)
     if len(layout.columns["heading"]) == 1:
-        _guess_turn(numbers(table[layout.columns["heading"][0]], layout), form, doubts)
+        _guess_turn(table[layout.columns["heading"][0]].to_numpy(), form, doubts)
 
 
 def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
     """Guess the pool, its center and the scale from all positions."""
     x, y = (layout.columns[axis][:1] for axis in "xy")
-    (points,), _ = points_of(table, layout, x, y)
+    (points,), _ = points_of(table, x, y, layout)
     points = points[np.isfinite(points)]
     lost = [mark for mark in LOST if 1 < (points == complex(*mark)).sum() < len(points)]
     points = points[~np.isin(points, [complex(*mark) for mark in lost])]

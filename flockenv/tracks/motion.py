@@ -8,10 +8,20 @@ from numpy.typing import NDArray
 
 from flockenv import _core
 from flockenv.errors import ParameterError
+from flockenv.tracks.layout import TrackLayout
 
 Floats = NDArray[np.float64]
 
-_MOST_BROKEN = 0.5
+HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2}
+"""Zero of headings, in rad counter-clockwise from x."""
+
+TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
+"""A full turn in the units of headings."""
+
+FULL_TURN = {unit: turn + 1e-6 for unit, turn in TURN.items()}
+"""The greatest heading within a full turn, rounded up."""
+
+_MOST_BROKEN, _AXIS_JUMP = 0.5, 0.8
 
 
 @dataclass(frozen=True)
@@ -91,3 +101,68 @@ def in_water(
     """Return whether distances from the center are in the water, or `margin_cm` outside of it."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
     return (distance_cm <= outer_cm + margin_cm) & (distance_cm >= inner_cm - margin_cm)
+
+
+def direction(way: NDArray[np.complex128]) -> Floats:
+    """Return the angle of vectors x + iy in rad; NaN for none."""
+    return np.where(way == 0.0, np.nan, np.angle(way))
+
+
+def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
+    """Refuse a column of headings that fits the motion better in another unit, or as axes."""
+    if len(layout.columns["heading"]) != 1:
+        return
+    _check_unit(heading, motion, layout)
+    jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & motion.steps
+    if layout.axis or jumps.sum() < 3 or not _spans_half_turn(heading):
+        return
+    if motion.cosine(bows_of(heading, motion)) > motion.cosine(heading):
+        raise ParameterError(
+            "headings lie within half a turn and jump from one end of it to the other: set "
+            "axis = true if they are axes without a bow, as of ellipses"
+        )
+
+
+def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
+    """Refuse headings that stay within a full turn of a smaller unit, if they fit that unit."""
+    zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
+    turned = heading - zero
+    for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
+        # Headings must stay within a full turn of the smaller unit, and span more than half of one.
+        share = TURN[unit] / TURN[given]
+        least = TURN["rad"] * share
+        is_wide = np.ptp(turned[motion.present]) > 0.5 * least
+        if np.nanmax(np.abs(turned)) > 1.003 * least or not is_wide:
+            continue
+        if motion.cosine(zero + turned / share) > motion.cosine(heading):
+            raise ParameterError(
+                f"headings never exceed a full turn in {unit}, and fit the motion better than "
+                f"in {given}: is heading_unit = {unit!r}?"
+            )
+
+
+def _spans_half_turn(heading: Floats) -> bool:
+    """Return whether headings lie within half a turn, as axes do, apart from whole turns."""
+    starts = np.pi * np.array([[0.0], [0.5], [1.0], [1.5]])
+    turned = np.mod(heading[~np.isnan(heading)] - starts, 2 * np.pi)
+    return bool((turned <= np.pi + 1e-6).all(axis=1).any())
+
+
+def bows_of(axis: Floats, motion: Motion) -> Floats:
+    """Return axes as headings: continuous, and mostly along the boat's motion."""
+    heading = axis.copy()
+    for boat in range(axis.shape[1]):
+        for part in motion.split(boat)[0]:
+            heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
+            if np.nansum(motion.ahead(heading)[part, boat]) < 0.0:
+                heading[part, boat] += np.pi
+    return heading
+
+
+def unwrapped(heading: Floats) -> Floats:
+    """Return headings without jumps of full turns between successive samples of a boat."""
+    continuous = heading.copy()
+    for boat in continuous.T:
+        present = ~np.isnan(boat)
+        boat[present] = np.unwrap(boat[present])
+    return continuous

@@ -7,19 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv._io.arguments import check_function
 from flockenv.errors import ParameterError, short_repr
 from flockenv.recording import Recording
 from flockenv.tracks.assemble import recording_of
-from flockenv.tracks.clock import frames_of
-from flockenv.tracks.dataset import dataset_table
-from flockenv.tracks.headings import bows_of, check_by_motion, direction, unwrapped
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
-from flockenv.tracks.motion import Motion
+from flockenv.tracks.motion import Motion, bows_of, check_by_motion, direction, unwrapped
 from flockenv.tracks.report import TrackReport
 from flockenv.tracks.samples import TWICE, samples_of
-from flockenv.tracks.table import Floats, check_ending, plain_table, read_table
+from flockenv.tracks.table import Floats, check_ending, dataset_table, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,7 +81,7 @@ def _recording(
     samples, is_named = samples_of(rows, layout)
     unsorted = samples[samples["why"] != TWICE].groupby("id")["time"].diff() < 0.0
     samples = samples.sort_values("time", kind="stable")
-    samples["frame"] = frames_of(samples)
+    samples["frame"] = _frames(samples)
     _check_samples(samples, layout, is_named)
     names, time_s, stamps, pose = _poses(samples)
     motion = _turned_into_motion(stamps, pose, layout)
@@ -179,6 +177,31 @@ def _poses(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
     at = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
     pose[at], stamps[at] = used[["x", "y", "heading"]], used["time"]
     return names, time_s - time_s[0], stamps, pose
+
+
+def _frames(rows: "pd.DataFrame") -> NDArray[np.intp]:
+    """Return the frame of each row, of rows in the order of time.
+
+    Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
+    one of its boats is seen again, and is shorter than the time between two rows of a boat.
+    """
+    stamps, frames = np.unique(rows["time"], return_inverse=True)
+    own = rows.groupby("id", sort=False)["time"].diff()
+    own = own[own > 0.0]
+    if len(stamps) < 3 or not len(own):
+        return frames
+    if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
+        return frames
+    names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
+    within, number, start, last_seen = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
+    for index, (name, time) in enumerate(zip(names, times, strict=True)):
+        # Repeated rows are in one frame, and rows without a name belong to no boat.
+        if last_seen.get(name, time) < time or time - start > within:
+            number, start, last_seen = number + 1, time, {}
+        if isinstance(name, str):
+            last_seen[name] = time
+        frames[index] = number
+    return frames
 
 
 def _check_names(used: "pd.DataFrame") -> None:

@@ -1,23 +1,26 @@
-"""Samples of tracks in cm and rad, and why some of them are omitted."""
+"""Samples of tracks in s, cm and rad, and why some of them are omitted."""
 
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flockenv._io.extras import require
-from flockenv.errors import ParameterError
-from flockenv.tracks.clock import times_of
-from flockenv.tracks.formats import NO_NUMBER
-from flockenv.tracks.headings import check_no_component, headings_of
+from flockenv.errors import ParameterError, short_repr
+from flockenv.tracks.formats import NO_NUMBER, PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.motion import in_water
-from flockenv.tracks.table import long_table, numbers, points_of
+from flockenv.tracks.motion import FULL_TURN, HEADING_ZERO, TURN, direction, in_water
+from flockenv.tracks.table import Floats, index_of, listed, long_table, numbers, places_of
 
 if TYPE_CHECKING:
     import pandas as pd
 
 TWICE = "that are repeated"
-_MOST_OUTSIDE = 0.5
+_MOST_OUTSIDE, _MOST_STRANGE = 0.5, 0.01
+_DAY_S = 86_400.0
+_DATES = ("ISO8601", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f")
 
 
 def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, bool]":
@@ -28,31 +31,25 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     name, all rows belong to one boat.
     """
     table, boats = long_table(rows, layout)
-    points, is_lost = points_of(table, layout, layout.columns["x"], layout.columns["y"])
-    position = points.mean(axis=0)
-    if layout.box is not None:
-        (size,), _ = points_of(table, layout, layout.box[:1], layout.box[1:])
-        position += size / 2
+    columns = layout.columns
+    points, is_lost = points_of(table, columns["x"], columns["y"], layout)
+    corner, size = points.mean(axis=0), table[[*columns["box"]]].to_numpy() / 2
+    position = corner + size @ [1, 1j][: size.shape[1]]
     position = (position - complex(*layout.center)) * layout.scale
     position = position.conj() if layout.y_down else position
-    if len(layout.columns["heading"]) == 1:
-        check_no_component(rows, layout.columns["heading"][0].replace("{id}", boats[0]), layout)
-    heading, is_strange = headings_of(table, layout)
+    if len(columns["heading"]) == 1:
+        _check_no_component(rows, columns["heading"][0].replace("{id}", boats[0]), layout)
+    heading, is_strange = _headings(table, layout)
     names, is_named = names_of(table, boats, layout)
     samples = names.to_frame("id").assign(
-        time=times_of(table[layout.frame], layout),
-        x=position.real,
-        y=position.imag,
-        heading=heading,
+        time=_times(table[layout.frame], layout), x=position.real, y=position.imag, heading=heading
     )
-    is_sure = np.ones(len(table), bool)
-    for name in layout.columns["confidence"]:
-        is_sure &= numbers(table[name], layout) >= (layout.least_confidence or 0.0)
+    is_sure = table[[*columns["confidence"]]] >= (layout.least_confidence or 0.0)
     reasons = {
         "without a name": names.isna(),
         "at a point that stands for a lost boat": is_lost,
         "without a position": np.isnan(position),
-        "with too little confidence": ~is_sure,
+        "with too little confidence": ~is_sure.all(axis=1),
         "with a heading beyond a full turn": is_strange,
         "without a heading": np.isnan(heading),
         "outside the water": ~in_water(layout.pool, np.abs(position), 2 * layout.hull[0]),
@@ -61,6 +58,15 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     samples["why"] = np.select(list(reasons.values()), list(reasons), "")
     _check_water(samples)
     return samples, is_named
+
+
+def points_of(
+    table: "pd.DataFrame", x: tuple[str, ...], y: tuple[str, ...], layout: TrackLayout
+) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+    """Return points x + iy, shape (points, rows), and whether any of them marks a lost boat."""
+    points = table[[*x]].to_numpy().T + 1j * table[[*y]].to_numpy().T
+    is_mark = np.isin(points, [complex(*mark) for mark in layout.lost])
+    return points, np.asarray(is_mark.any(axis=0))
 
 
 def names_of(
@@ -90,3 +96,156 @@ def _check_water(samples: "pd.DataFrame") -> None:
             f"{share:.0%} of the centers lie outside the pool, or in the obstacle in its middle: "
             "do cm_per_unit, center and pool fit this table?"
         )
+
+
+def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
+    """Return times in s, from the earliest one on."""
+    first = str(next(iter(column.dropna()), ""))
+    if column.dtype.kind in "mM" or (column.dtype.kind not in "iuf" and ":" in first):
+        if layout.fps is not None:
+            raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
+        times: Floats = _seconds(column) if column.dtype.kind in "mM" else _read(column, first)
+    else:
+        times = numbers(column, layout)
+        _check_kind(times, layout)
+        times = times / (layout.fps or 1.0)
+    if not np.isfinite(times).all():
+        line = column.index[~np.isfinite(times)][0]
+        raise ParameterError(
+            f"column {layout.frame!r} has rows without a number, such as {column.index.name} {line}"
+        )
+    since: Floats = times - times.min(initial=np.inf)
+    return since
+
+
+def _seconds(times: "pd.Series[Any]") -> Floats:
+    """Return dates, from the earliest one on, or durations in s."""
+    durations = times - times.min() if times.dtype.kind == "M" else times
+    seconds: Floats = durations.dt.total_seconds().to_numpy(np.float64)
+    return seconds
+
+
+def _read(column: "pd.Series[Any]", first: str) -> Floats:
+    """Return dates or clock times that are written as text in s."""
+    pandas = require("pandas", "plot")
+    # Loggers write 12:34:56,789, and stopwatches 34:56.7.
+    texts = column.astype(str).str.replace(",", ".")
+    clock = texts.str.replace(r"^\s*(\d+:\d+\.\d*)\s*$", r"00:\1", regex=True)
+    times = pandas.to_timedelta(clock, errors="coerce")
+    if (times.notna() | column.isna()).all():
+        return _past_midnight(_seconds(times))
+    for form in _DATES:
+        times = pandas.to_datetime(texts, errors="coerce", utc=True, format=form)
+        if (times.notna() | column.isna()).all():
+            return _seconds(times)
+    raise ParameterError(
+        f"column {column.name!r} holds {short_repr(first)}, which is not a number, "
+        "a time 12:34:56.7 or a date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
+    )
+
+
+def _past_midnight(seconds: Floats) -> Floats:
+    """Return clock times, with a day added to those past midnight: the ones before a long gap."""
+    stamps = np.unique(seconds[np.isfinite(seconds)])
+    steps = np.diff(stamps)
+    if steps.max(initial=0.0) < _DAY_S / 2 or stamps[-1] > _DAY_S:
+        return seconds
+    return np.where(seconds <= stamps[steps.argmax()], seconds + _DAY_S, seconds)
+
+
+def _check_kind(times: Floats, layout: TrackLayout) -> None:
+    """Refuse frame numbers that would count as seconds, and seconds as frame numbers."""
+    stamps = np.unique(times[np.isfinite(times)])
+    steps = np.diff(stamps)
+    if not len(steps):
+        return
+    is_whole = bool((stamps == np.rint(stamps)).all())
+    unit = unit_of(layout.frame)
+    per_s = PER_S.get(unit)
+    # Steps of 12 may be seconds if the column's name says so; 0, 1, 2 are frames whatever it says.
+    says_s = per_s == 1.0 and steps.min() > 1.0
+    if layout.fps is None and (per_s not in (None, 1.0) or (is_whole and not says_s)):
+        holds = "holds whole numbers (fps = 1 if it counts s)"
+        if per_s not in (None, 1.0):
+            holds = f"counts {unit} (fps = {per_s:.6g})"
+        raise ParameterError(f"fps is missing: column {layout.frame!r} {holds}")
+    if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
+        raise ParameterError(
+            f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
+            f"{np.median(steps):.4g}, which are not frames: leave fps out if it holds times in s"
+        )
+
+
+def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return headings in rad from x (0 without a column), and which exceed a full turn."""
+    columns, strange = layout.columns["heading"], np.zeros(len(table), bool)
+    if len(columns) == 4:
+        (tail, head), is_lost = points_of(table, columns[::2], columns[1::2], layout)
+        heading = direction(head - tail) * layout.y_sign
+        return np.where(is_lost, np.nan, heading), strange
+    if columns:
+        heading = table[columns[0]].to_numpy()
+        strange = (np.abs(heading) > FULL_TURN[layout.heading_unit]) & layout.wrapped
+        _check_largest(heading, strange, layout)
+        heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
+    elif layout.quaternion is not None:
+        heading = _turned(table, layout)
+    else:
+        return np.zeros(len(table)), strange
+    sign = 1.0 if layout.turns == "ccw" else -1.0
+    return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
+
+
+def _turned(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
+    """Return the angle about the vertical of unit quaternions."""
+    columns = layout.columns["quaternion"]
+    x, y, z, w = table[[*columns]].to_numpy().T
+    off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
+    if np.nanmedian(off) > 0.01:
+        raise ParameterError(
+            f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
+            "add up to 1"
+        )
+    # If turns are counted from y to x, the axis belongs to a mirrored system.
+    is_mirrored = layout.turns == ("ccw" if layout.y_down else "cw")
+    across = -x * y if is_mirrored else x * y
+    heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
+    return np.where(off > 0.1, np.nan, heading)
+
+
+def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout) -> None:
+    """Refuse a component of a quaternion, a sine or a cosine as a heading.
+
+    They are recognized without names of columns: the squares of neighboring columns add up to 1.
+    """
+    own = index_of(heading, rows, places_of(rows))
+    squares = dict[int, Floats]()
+    for index in range(max(0, own - 3), min(own + 4, rows.shape[1])):
+        with suppress(ParameterError):  # A column of remarks.
+            values = np.nan_to_num(numbers(rows.iloc[:, index], layout))
+            if len(values) and np.abs(values).max() <= 1.01:
+                squares[index] = values**2
+    square = squares.pop(own, np.zeros(1))
+    for others in (*combinations(squares, 3), *combinations(squares, 1)):
+        total = square + sum(squares[index] for index in others)
+        if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(square):
+            names = [str(rows.columns[index]) for index in sorted((own, *others))]
+            raise ParameterError(
+                f"heading = {layout.heading!r} is a part of a turn: the squares of {listed(names)} "
+                "add up to 1. Name the columns x, y, z and w in quaternion, or make angles of a "
+                "sine and a cosine"
+            )
+
+
+def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLayout) -> None:
+    """Refuse headings if many exceed a full turn; a single such value may mark lost boats."""
+    share = strange.sum() / max(1, np.isfinite(heading).sum())
+    if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
+        return
+    largest, unit_given = np.abs(heading[strange]).max(), layout.heading_unit
+    units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= FULL_TURN[u])
+    unit = next((f"heading_unit = {u!r} if they are in {u}, " for u in units), "")
+    raise ParameterError(
+        f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {unit_given}: "
+        f"{unit}wrapped = false if they count whole turns"
+    )

@@ -4,12 +4,11 @@ import codecs
 import csv
 import gzip
 import io
-import itertools
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from dataclasses import fields, replace
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,11 +18,12 @@ from flockenv._io.array_file import most_content
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, short_repr
-from flockenv.tracks.formats import FORMATS, NO_NUMBER
+from flockenv.tracks.formats import CM, FORMATS, NO_NUMBER, recognized
 from flockenv.tracks.layout import TrackLayout
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
 Floats = NDArray[np.float64]
 
@@ -32,101 +32,11 @@ SUFFIXES = (*_TEXTS, *(f"{text}.gz" for text in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
 
-def long_table(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, list[str]]":
-    """Return the columns that a layout names, and the boats whose rows follow one another.
-
-    A column whose name holds {id} stands for the columns of all boats. In a table with one row per
-    boat there is one, "0".
-    """
-    pandas, find, fields = require("pandas", "plot"), finder(rows), layout.fields
-    boats = _boats([*map(str, rows)], fields) if layout.is_wide else ["0"]
-    own = [layout.id] if layout.id and not layout.is_wide else []
-    columns = {
-        name: pandas.concat([rows.iloc[:, find(name.replace("{id}", boat))] for boat in boats])
-        for name in (*own, *fields, layout.frame)
-    }
-    return pandas.DataFrame(columns), boats
-
-
-def finder(rows: "pd.DataFrame") -> Callable[[str], int]:
-    """Return a function that finds a column by its name, in any case and with any blanks."""
-    names, places = [*map(str, rows)], dict[str, list[int]]()
-    for index, name in enumerate(names):
-        places.setdefault(_key(name), []).append(index)
-
-    def find(name: str) -> int:
-        like = places.get(_key(name), [])
-        found = [index for index in like if names[index] == name] or like
-        if len(found) > 1:
-            raise ParameterError(f"there are several columns {name!r}: give each its own name")
-        if not found:
-            hint = f"there are {listed(names)}{_separator_hint(names)}"
-            raise ParameterError(f"column {name!r} is missing; {hint}")
-        return found[0]
-
-    return find
-
-
-def _boats(names: list[str], fields: list[str]) -> list[str]:
-    """Return what stands in place of {id} in the columns of a table with one row per frame."""
-    first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-    keys = {_key(name) for name in names}
-    boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
-    boats = [b for b in boats if keys.issuperset(_key(f.replace("{id}", b)) for f in fields)]
-    if not boats:
-        looks = " and ".join(map(repr, fields))
-        raise ParameterError(f"no columns look like {looks}; there are {listed(names)}")
-    return boats
-
-
-def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
-    """Return a column as numbers, NaN for missing and infinite ones; refuse other texts."""
-    to_numeric, found = require("pandas", "plot").to_numeric, column
-    if column.dtype.kind not in "iuf":
-        texts = column.astype(object).where(column.notna(), "").astype(str).str.strip()
-        found = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
-        none = NO_NUMBER | {word.strip().lower() for word in layout.missing}
-        strange = texts[found.isna() & ~texts.str.lower().isin(none)]
-        if len(strange):
-            decimal = "," if layout.decimal == "." else "."
-            hint = f"; is decimal = {decimal!r}?" if _has_decimal(strange.iloc[0], decimal) else ""
-            raise ParameterError(
-                f"column {column.name!r} holds other things than numbers: "
-                f"{short_repr(strange.iloc[0])} in {texts.index.name} {strange.index[0]}{hint}"
-            )
-    values: Floats = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-    none = to_numeric(list(layout.missing), errors="coerce")
-    values[np.isinf(values) | np.isin(values, none)] = np.nan
-    return values
-
-
-def points_of(
-    table: "pd.DataFrame", layout: TrackLayout, x: Iterable[str], y: Iterable[str]
-) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
-    """Return points x + iy, shape (points, rows), and whether any of them marks a lost boat."""
-    pairs = [[numbers(table[name], layout) for name in pair] for pair in zip(x, y, strict=True)]
-    points = np.array([across + 1j * up for across, up in pairs])
-    is_mark = np.isin(points, [complex(*mark) for mark in layout.lost])
-    return points, np.asarray(is_mark.any(axis=0))
-
-
-def _has_decimal(cell: str, mark: str) -> bool:
-    """Return whether a cell is a number with a decimal mark."""
-    whole, _, part = cell.lstrip("+-").partition(mark)
-    return whole.isdigit() and part.isdigit()
-
-
-def ending(path: Path) -> str:
-    """Return a file's ending in lower case, such as .csv or .csv.gz."""
-    suffixes = [suffix.lower() for suffix in path.suffixes[-2:]]
-    return "".join(suffixes if suffixes[-1:] == [".gz"] else suffixes[-1:])
-
-
 def check_ending(path: Path) -> None:
     """Refuse a missing file, and a file with another ending."""
     if not path.exists():
         raise ParameterError(f"{path} cannot be read: No such file or directory")
-    if ending(path) not in SUFFIXES:
+    if not path.name.lower().endswith(SUFFIXES):
         raise ParameterError(
             f"{path} is not a table of tracks: its name ends in none of {', '.join(SUFFIXES)} "
             "(recordings end in .npz)"
@@ -138,58 +48,59 @@ def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
     pandas = require("pandas", "plot")
     check_ending(path)
     try:
-        if ending(path) in _PARQUET:
-            return plain_table(_read_parquet(pandas, path))
-        return _read_text(pandas, _text_of(path), layout, layout.separator or _usual(path))
+        data = _content(path)
+        if not _is_parquet(path):
+            return _read_text(_decoded(data), layout, layout.separator or _usual(path))
+        held = require("pyarrow.parquet", "plot").ParquetFile(io.BytesIO(data)).metadata
+        cells = held.num_rows * held.num_columns
+        if 8 * cells > most_content(len(data)):
+            raise ParameterError(f"it holds {cells} cells, too many for its {len(data)} bytes")
+        return plain_table(pandas.read_parquet(io.BytesIO(data)))
     except Exception as error:  # Parsers raise errors of many unrelated classes.
         raise ParameterError(f"it cannot be read as a table: {error}") from error
 
 
+def _is_parquet(path: Path) -> bool:
+    return path.name.lower().endswith(_PARQUET)
+
+
 def _usual(path: Path) -> str:
     """Return the separator that follows from a text file's ending."""
-    return "\t" if ending(path).startswith(".tsv") else ","
+    return "\t" if path.name.lower().endswith((".tsv", ".tsv.gz")) else ","
 
 
-def _read_parquet(pandas: ModuleType, path: Path) -> "pd.DataFrame":
-    with open_plain(path) as file:
-        size = os.fstat(file.fileno()).st_size
-        held = require("pyarrow.parquet", "plot").ParquetFile(file).metadata
-        cells = held.num_rows * held.num_columns
-        if 8 * cells > most_content(size):
-            raise ParameterError(f"it holds {cells} cells, too many for its {size} bytes")
-        rows: pd.DataFrame = pandas.read_parquet(file)
-    return rows
-
-
-def _text_of(path: Path) -> str:
-    """Return a file as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
+def _content(path: Path) -> bytes:
+    """Return the bytes of a file, decompressed, unless they would fill the memory."""
     with open_plain(path) as file:
         most = most_content(os.fstat(file.fileno()).st_size)
         opened = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
         data: bytes = opened.read(most + 1)
     if len(data) > most:
         raise ParameterError(f"it holds more than the {most} bytes that are accepted")
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        text = data.decode("utf-16")
-    else:
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = data.decode("cp1252", "replace")
+    return data
+
+
+def _decoded(data: bytes) -> str:
+    """Return bytes as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
+    is_utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    try:
+        text = data.decode("utf-16" if is_utf16 else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", "replace")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def spelling_of(path: Path) -> dict[str, Any]:
     """Return the unusual ones among the separator, decimal and skip of a text file."""
-    if ending(path) in _PARQUET:
+    if _is_parquet(path):
         return {}
-    lines = _text_of(path).splitlines()[:100] or [""]
+    lines = _decoded(_content(path)).splitlines()[:100] or [""]
     mark = _separator_of(lines)
     rows = [line.split(None if mark == " " else mark) for line in lines]
     widths = [*map(len, rows)]
     # The header is the first line with as many cells as the next ones, or the first of its levels.
-    in_levels = (line for line in range(4) if _levels(rows[line : line + 10])[0])
-    skip = next(in_levels, widths.index(max(widths)))
+    heights = enumerate(_header(rows[line : line + 10])[1] for line in range(min(4, len(rows))))
+    skip = next((line for line, height in heights if height > 1), widths.index(max(widths)))
     form: dict[str, Any] = {"skip": skip} if skip else {}
     if mark != _usual(path):
         form["separator"] = mark
@@ -206,11 +117,15 @@ def _separator_of(lines: list[str]) -> str:
     return max(counts, key=lambda mark: counts[mark])
 
 
-def _read_text(
-    pandas: ModuleType, text: str, layout: TrackLayout, separator: str
-) -> "pd.DataFrame":
-    rows = _cells_of(text, separator, layout.skip, 10)
-    names, height = (list(layout.header), 0) if layout.header else _header(rows)
+def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame":
+    pandas, lines = require("pandas", "plot"), text.split("\n", layout.skip + 10)
+    lines = lines[layout.skip : layout.skip + 10] or [""]
+    cells = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+    rows = [line.split() for line in lines] if separator == " " else [*cells]
+    rows = [[cell.strip() for cell in row] for row in rows]
+    if not layout.header and not any(rows[0]):
+        raise ParameterError("there is no header in its first line")
+    names, height = ([*layout.header], 0) if layout.header else _header(rows)
     first = layout.skip + height + 1
     for line, row in enumerate(rows[height:], first):
         if any(row[len(names) :]):
@@ -232,47 +147,29 @@ def _read_text(
         skipinitialspace=True,
         skip_blank_lines=False,
     )
-    lines = pandas.RangeIndex(first, first + len(table), name="line")
-    table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
+    numbered = pandas.RangeIndex(first, first + len(table), name="line")
+    table = table.set_axis(names, axis=1).set_axis(numbered).dropna(how="all")
     # Some programs write units, or longer names, into the lines under the header.
     head = table.head(0 if layout.header else 4)
     return table.drop(index=[line for line, row in head.iterrows() if not any(map(is_value, row))])
 
 
-def _cells_of(text: str, separator: str, skip: int, count: int) -> list[list[str]]:
-    """Return the cells of the first lines after the skipped ones."""
-    lines = itertools.islice(io.StringIO(text), skip, skip + count)
-    if separator == " ":
-        return [line.split() for line in lines]
-    rows = csv.reader(lines, delimiter=separator, skipinitialspace=True)
-    return [[cell.strip() for cell in row] for row in rows]
-
-
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
-    """Return the names of columns, and the number of lines that they take."""
-    if not rows or not any(rows[0]):
-        raise ParameterError("there is no header in its first line")
-    lines, own = _levels(rows)
-    if not lines:
-        # A separator at the end of the line leaves an empty name.
-        return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
-    levels = zip(*(rows[line][own:] for line in lines), strict=False)
-    return ["frame", *rows[lines[-1]][1:own], *map(_joined, levels)], lines[-1] + 1
+    """Return the names of columns, and the number of lines that they take.
 
-
-def _levels(rows: list[list[str]]) -> tuple[list[int], int]:
-    """Return the lines with the levels of a header, and the number of columns before the boats.
-
-    There are no lines if the header has no levels. The columns before the boats hold times; in a
-    header they hold the names of its levels.
+    The columns before those of the boats hold times; in a header in levels they hold the names of
+    its levels.
     """
-    own = 1 if any(rows[:1] and rows[0][:1]) else 2
-    starts = [next(filter(None, row[:own]), "").lower() for row in rows]
+    starts = [next(filter(None, row[:2]), "").lower() for row in rows]
+    own = 1 if any(rows[0][:1]) else 2
     for levels in (program.levels for program in FORMATS if program.levels):
-        if starts[:1] == [levels[0]] and levels[-1] in starts:
-            under = range(1, starts.index(levels[-1]) + 1)
-            return [line for line in under if starts[line] in levels], own
-    return [], own
+        if starts[0] == levels[0] and levels[-1] in starts:
+            last = starts.index(levels[-1])
+            under = [rows[line][own:] for line in range(1, last + 1) if starts[line] in levels]
+            levels_of_columns = zip(*under, strict=False)
+            return ["frame", *rows[last][1:own], *map(_joined, levels_of_columns)], last + 1
+    # A separator at the end of the line leaves an empty name.
+    return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
 
 
 def _joined(levels: Iterable[object]) -> str:
@@ -295,15 +192,15 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
         )
     columns: Any = table.columns
     index: Any = table.index
-    if columns.nlevels > 1 and "coords" in columns.names:
+    if columns.nlevels > 1:
+        if "coords" not in columns.names:
+            raise ParameterError(
+                f"the columns have {columns.nlevels} levels, such as {columns[0]!r}: give each "
+                "column one name"
+            )
         kept = columns.droplevel("scorer") if "scorer" in columns.names else columns
         table = table.set_axis([_joined(levels) for levels in kept], axis=1)
         index = index.rename(index.name or "frame")
-    elif columns.nlevels > 1:
-        raise ParameterError(
-            f"the columns have {columns.nlevels} levels, such as {columns[0]!r}: give each column "
-            "one name"
-        )
     for level, name in enumerate(index.names):
         values = index.get_level_values(level)
         if name in table and not np.array_equal(values, table[name].to_numpy()):
@@ -312,6 +209,57 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
             )
         table = table if name is None else table.assign(**{str(name): values})
     return table.reset_index(drop=True).rename_axis(index="row")
+
+
+def long_table(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, list[str]]":
+    """Return the columns that a layout names, and the boats whose rows follow one another.
+
+    All but names and times are numbers. A column whose name holds {id} stands for the columns of
+    all boats. In a table with one row per boat there is one, "0".
+    """
+    pandas, places, fields = require("pandas", "plot"), places_of(rows), layout.fields
+    boats = _boats([*map(str, rows)], fields, places) if layout.is_wide else ["0"]
+
+    def found(name: str) -> "pd.Series[Any]":
+        own = [index_of(name.replace("{id}", boat), rows, places) for boat in boats]
+        column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in own])
+        return column.rename(name)
+
+    texts = [layout.id] if layout.id and not layout.is_wide else []
+    table = pandas.DataFrame({name: found(name) for name in (*texts, *fields, layout.frame)})
+    return table.assign(**{name: numbers(table[name], layout) for name in fields}), boats
+
+
+def _boats(names: list[str], fields: list[str], places: dict[str, list[int]]) -> list[str]:
+    """Return what stands in place of {id} in the columns of a table with one row per frame."""
+    first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+    boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
+    boats = [b for b in boats if all(_key(f.replace("{id}", b)) in places for f in fields)]
+    if not boats:
+        looks = " and ".join(map(repr, fields))
+        raise ParameterError(f"no columns look like {looks}; there are {listed(names)}")
+    return boats
+
+
+def places_of(rows: "pd.DataFrame") -> dict[str, list[int]]:
+    """Return the indices of columns by their names, without case, blanks and marks of remarks."""
+    places = dict[str, list[int]]()
+    for index, name in enumerate(rows):
+        places.setdefault(_key(name), []).append(index)
+    return places
+
+
+def index_of(name: str, rows: "pd.DataFrame", places: dict[str, list[int]]) -> int:
+    """Return the index of a column, whose name may differ in case or blanks."""
+    like = places.get(_key(name), [])
+    found = [index for index in like if rows.columns[index] == name] or like
+    if len(found) > 1:
+        raise ParameterError(f"there are several columns {name!r}: give each its own name")
+    if not found:
+        names = [*map(str, rows)]
+        hint = f"there are {listed(names)}{_separator_hint(names)}"
+        raise ParameterError(f"column {name!r} is missing; {hint}")
+    return found[0]
 
 
 def _key(name: object) -> str:
@@ -334,3 +282,117 @@ def _separator_hint(names: list[str]) -> str:
     if len(names) > 1 or mark not in names[0]:
         return ""
     return f": the header looks like one with separator = {mark!r}"
+
+
+def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
+    """Return a column as numbers, NaN for missing and infinite ones; refuse other texts."""
+    to_numeric, found = require("pandas", "plot").to_numeric, column
+    if column.dtype.kind not in "iuf":
+        texts = column.astype(object).where(column.notna(), "").astype(str).str.strip()
+        found = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
+        none = NO_NUMBER | {word.strip().lower() for word in layout.missing}
+        strange = texts[found.isna() & ~texts.str.lower().isin(none)]
+        for line, text in strange.head(1).items():
+            decimal = "," if layout.decimal == "." else "."
+            hint = f"; is decimal = {decimal!r}?" if _has_decimal(text, decimal) else ""
+            raise ParameterError(
+                f"column {column.name!r} holds other things than numbers: {short_repr(text)} "
+                f"in {column.index.name} {line}{hint}"
+            )
+    values: Floats = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
+    none = to_numeric(list(layout.missing), errors="coerce")
+    values[np.isinf(values) | np.isin(values, none)] = np.nan
+    return values
+
+
+def _has_decimal(cell: str, mark: str) -> bool:
+    """Return whether a cell is a number with a decimal mark."""
+    whole, _, part = cell.lstrip("+-").partition(mark)
+    return whole.isdigit() and part.isdigit()
+
+
+def dataset_table(
+    dataset: "xarray.Dataset", layout: TrackLayout
+) -> "tuple[pd.DataFrame, TrackLayout]":
+    """Return a dataset as a table, and the layout, which is completed by the dataset.
+
+    Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
+    such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
+    """
+    if "position" not in dataset.data_vars:
+        raise ParameterError(
+            f"the dataset has no variable 'position'; there are {listed([*dataset.data_vars])}"
+        )
+    position = _standard(dataset["position"], "space")
+    missing = {"x", "y"} - {*map(str, position["space"].values)}
+    if missing:
+        raise ParameterError(f"position has no {' and no '.join(sorted(missing))} in space")
+    values = {axis: position.sel(space=axis).values for axis in "xy"}
+    if "confidence" in dataset.data_vars:
+        values["confidence"] = _standard(dataset["confidence"]).values
+    boats, points = (_named(position, name) for name in ("individuals", "keypoints"))
+    columns: dict[str, Any] = {
+        "time": np.repeat(dataset["time"].values, len(boats)),
+        "individuals": np.tile(boats, len(dataset["time"])),
+    }
+    is_alone = points == ["0"] and "keypoints" not in position.coords
+    for index, point in enumerate(points):
+        stem = "" if is_alone else f"{point}_"
+        columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
+    rows: pd.DataFrame = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
+    return rows, _completed(dataset, layout, [*rows], "one" if is_alone else listed(points))
+
+
+def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
+    """Return a variable with the dimensions time, `own`, individuals and key points."""
+    order = ("time", *own, "individuals", "keypoints")
+    # Later versions of movement have the names in the singular: individual, keypoint.
+    variable = variable.rename({n: f"{n}s" for n in variable.dims if f"{n}s" in order})
+    variable = variable.expand_dims([n for n in order[-2:] if n not in variable.dims])
+    if {*variable.dims} != {*order} or not {"time", *own} <= {*variable.coords}:
+        raise ParameterError(
+            f"{variable.name} has the dimensions {', '.join(map(str, variable.dims))}, and "
+            f"{', '.join(order)} are accepted"
+        )
+    return variable.transpose(*order)
+
+
+def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
+    """Return the names along a dimension, or its numbers if there are none."""
+    names = [str(name) for name in position[dimension].values]
+    if again := next((name for name in names if names.count(name) > 1), None):
+        raise ParameterError(
+            f"{names.count(again)} {dimension} of the dataset are called {again!r}"
+        )
+    return names
+
+
+def _completed(
+    dataset: "xarray.Dataset", layout: TrackLayout, columns: list[str], points: str
+) -> TrackLayout:
+    """Return a layout with missing fields taken from the dataset and its columns."""
+    given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
+    form = {"frame": "time", "id": "individuals"} | recognized(columns)
+    form.pop("confidence", None)
+    if "heading" not in form and not {"heading", "quaternion"} & given:
+        raise ParameterError(
+            f"the dataset has no headings: its key points are {points}; name those of tail and "
+            "head in heading, or heading = None takes the direction of motion"
+        )
+    if not {"x", "y"} <= form.keys() | given:
+        columns = [name for name in columns if name.endswith("_x")]
+        raise ParameterError(
+            f"which of the key points {points} is the center is not known: name its columns in x "
+            f"and y, such as x = {columns}"
+        )
+    unit = str(dataset["position"].attrs.get("space_unit", "pixels"))
+    if unit in CM:
+        form["cm_per_unit"] = CM[unit]
+    elif layout.cm_per_unit is None:
+        raise ParameterError(
+            f"positions of the dataset are in {unit}: cm_per_unit, the length of one, is missing"
+        )
+    time_unit = dataset.attrs.get("time_unit", "seconds")
+    if time_unit != "seconds" and layout.fps is None:
+        raise ParameterError(f"times of the dataset are in {time_unit}: fps is missing")
+    return replace(layout, **{name: value for name, value in form.items() if name not in given})
