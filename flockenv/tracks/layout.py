@@ -212,26 +212,6 @@ class TrackLayout:
         return "{id}" in columns_of(self.x)[0]
 
     @property
-    def scale(self) -> float:
-        """Length in cm of a unit."""
-        return self.cm_per_unit or 1.0
-
-    @property
-    def y_sign(self) -> float:
-        """1 if y of the file points up, -1 if it points down."""
-        return -1.0 if self.y_down else 1.0
-
-    @property
-    def turns(self) -> str:
-        """The direction in which headings grow, "cw" or "ccw"."""
-        return self.heading_turns or ("cw" if self.y_down else "ccw")
-
-    @property
-    def fields(self) -> list[str]:
-        """All columns but those of times and names."""
-        return [name for columns in self.columns.values() for name in columns]
-
-    @property
     def columns(self) -> dict[str, tuple[str, ...]]:
         """The columns of each field, without those of times and names."""
         heading = self.heading if self.quaternion is None else None

@@ -50,11 +50,20 @@ class Motion:
         pose = np.ascontiguousarray(pose)
         rows, broken = _core.track_velocities(stamps, pose, longest_s, fastest_cm_s)
         present = ~np.isnan(pose[..., 0])
-        return cls(stamps, present, rows.reshape(pose.shape), broken, longest_s)
+        motion = cls(stamps, present, rows.reshape(pose.shape), broken, longest_s)
+        if broken > _MOST_BROKEN * motion.steps.sum():
+            raise ParameterError(
+                f"{broken} of {motion.steps.sum()} steps are faster than max_speed_cm_s = "
+                f"{fastest_cm_s:g}: do cm_per_unit, fps and times fit this table, and is it one "
+                "film?"
+            )
+        return motion
 
-    def gaps(self) -> Floats:
-        """Return the length in s of each gap between two successive poses of a boat."""
-        return np.concatenate([self.split(boat)[1] for boat in range(self.present.shape[1])])
+    @property
+    def steps(self) -> NDArray[np.bool_]:
+        """Whether a boat has a pose at a time and at the next one, shape (t - 1, n)."""
+        is_short = np.diff(self.stamps, axis=0) <= self.longest_s
+        return np.asarray(self.present[1:] & self.present[:-1] & is_short)
 
     def split(self, boat: int) -> tuple[list[NDArray[np.intp]], Floats]:
         """Return the frames of a boat's poses, split at its gaps, and the lengths of the gaps."""
@@ -62,12 +71,6 @@ class Motion:
         steps = np.diff(self.stamps[frames, boat])
         is_gap = (np.diff(frames) > 1) | (steps > self.longest_s)
         return np.split(frames, np.flatnonzero(is_gap) + 1), steps[is_gap]
-
-    def empty_frames(self, time_s: Floats) -> int:
-        """Return the number of empty frames on a regular clock."""
-        steps = np.diff(time_s)
-        long = steps[steps > self.longest_s]
-        return int((np.rint(long / np.median(steps)) - 1).sum()) if len(long) else 0
 
     def cosine(self, heading: Floats) -> float:
         """Return the mean cosine between heading and motion, weighted by speed, or NaN."""
@@ -77,22 +80,6 @@ class Motion:
     def ahead(self, heading: Floats) -> Floats:
         """Return the speeds of boats along their headings."""
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
-
-    @property
-    def steps(self) -> NDArray[np.bool_]:
-        """Whether a boat has a pose at a time and at the next one, shape (t - 1, n)."""
-        is_short = np.diff(self.stamps, axis=0) <= self.longest_s
-        return np.asarray(self.present[1:] & self.present[:-1] & is_short)
-
-    def check_speeds(self, fastest_cm_s: float) -> None:
-        """Refuse tracks in which most steps are too fast."""
-        count = self.steps.sum()
-        if self.broken > _MOST_BROKEN * count:
-            raise ParameterError(
-                f"{self.broken} of {count} steps are faster than max_speed_cm_s = "
-                f"{fastest_cm_s:g}: do cm_per_unit, fps and times fit this table, and is it one "
-                "film?"
-            )
 
 
 def in_water(
@@ -112,7 +99,19 @@ def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> Non
     """Refuse a column of headings that fits the motion better in another unit, or as axes."""
     if len(layout.columns["heading"]) != 1:
         return
-    _check_unit(heading, motion, layout)
+    zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
+    turned = heading - zero
+    for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
+        # Headings must stay within a full turn of the smaller unit, and span more than half of one.
+        share = TURN[unit] / TURN[given]
+        is_within = np.nanmax(np.abs(turned)) <= 1.003 * TURN["rad"] * share
+        is_wide = np.ptp(turned[motion.present]) > 0.5 * TURN["rad"] * share
+        fits = motion.cosine(zero + turned / share) > motion.cosine(heading)
+        if is_within and is_wide and fits:
+            raise ParameterError(
+                f"headings never exceed a full turn in {unit}, and fit the motion better than "
+                f"in {given}: is heading_unit = {unit!r}?"
+            )
     jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & motion.steps
     if layout.axis or jumps.sum() < 3 or not _spans_half_turn(heading):
         return
@@ -121,24 +120,6 @@ def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> Non
             "headings lie within half a turn and jump from one end of it to the other: set "
             "axis = true if they are axes without a bow, as of ellipses"
         )
-
-
-def _check_unit(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
-    """Refuse headings that stay within a full turn of a smaller unit, if they fit that unit."""
-    zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
-    turned = heading - zero
-    for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
-        # Headings must stay within a full turn of the smaller unit, and span more than half of one.
-        share = TURN[unit] / TURN[given]
-        least = TURN["rad"] * share
-        is_wide = np.ptp(turned[motion.present]) > 0.5 * least
-        if np.nanmax(np.abs(turned)) > 1.003 * least or not is_wide:
-            continue
-        if motion.cosine(zero + turned / share) > motion.cosine(heading):
-            raise ParameterError(
-                f"headings never exceed a full turn in {unit}, and fit the motion better than "
-                f"in {given}: is heading_unit = {unit!r}?"
-            )
 
 
 def _spans_half_turn(heading: Floats) -> bool:

@@ -103,41 +103,39 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
         pose[..., 2] = bows_of(pose[..., 2], motion)
     pose[..., 2] = unwrapped(pose[..., 2])
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    motion.check_speeds(layout.max_speed_cm_s)
     check_by_motion(pose[..., 2], motion, layout)
     return motion
 
 
 def _report(
-    rows: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
+    samples: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
 ) -> TrackReport:
-    """Return the report of used and omitted rows."""
-    present = ~np.isnan(pose[..., 0])
-    gaps, speed = motion.gaps(), np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
-    counts = rows[rows["why"] != ""].fillna({"id": ""}).groupby(["why", "id"]).size()
-    every = pose.shape[1] * (len(time_s) + motion.empty_frames(time_s))
+    """Return the report of used and omitted samples."""
+    speed = np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
+    used, omitted = samples[samples["why"] == ""], samples[samples["why"] != ""]
+    counts = omitted.fillna({"id": ""}).groupby(["why", "id"]).size()
+    gaps = np.concatenate([motion.split(boat)[1] for boat in range(pose.shape[1])])
+    steps, speeds, count = np.diff(time_s), speed[~np.isnan(speed)], int(motion.present.sum())
+    step_s = float(np.median(steps)) if len(steps) else 0.0
+    # On a regular clock, frames without a boat have no row.
+    empty = int((np.rint(steps[steps > motion.longest_s] / step_s) - 1).sum())
     return TrackReport(
         frames=len(time_s),
         boats=pose.shape[1],
-        samples=int(present.sum()),
-        missing=every - int(present.sum()),
+        samples=count,
+        missing=pose.shape[1] * (len(time_s) + empty) - count,
         duration_s=float(time_s[-1]),
-        step_s=float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0,
-        median_speed_cm_s=_median(speed),
+        step_s=step_s,
+        median_speed_cm_s=float(np.median(speeds)) if len(speeds) else float("nan"),
         left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
         gaps=len(gaps),
         longest_gap_s=float(gaps.max(initial=0.0)),
         broken=motion.broken,
-        lone=int((present & np.isnan(speed)).sum()),
+        lone=int((motion.present & np.isnan(speed)).sum()),
         cosine=motion.cosine(pose[..., 2]),
-        stuck=_stuck(rows, layout),
-        held=_stuck_headings(rows),
+        stuck=_stuck(used, layout),
+        held=_held(used),
     )
-
-
-def _median(values: Floats) -> float:
-    found = values[np.isfinite(values)]
-    return float(np.median(found)) if len(found) else float("nan")
 
 
 def _check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
@@ -217,26 +215,25 @@ def _check_names(used: "pd.DataFrame") -> None:
             )
 
 
-def _stuck(rows: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
+def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
     """Return boats that stay at exactly one point in many samples, in units of the file."""
-    used = rows[rows["why"] == ""]
     counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10
     # Two boats are never at one point.
     shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
     is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
     counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
-    found = counts.drop_duplicates("id").set_index("id").astype(float)
-    x = found["x"] / layout.scale + layout.center[0]
-    y = layout.y_sign * found["y"] / layout.scale + layout.center[1]
-    return {str(n): (x[n], y[n], int(found["count"][n])) for n in found.index}
+    (x, y), scale = layout.center, layout.cm_per_unit or 1.0
+    up = -scale if layout.y_down else scale
+    found = counts.drop_duplicates("id").itertuples(index=False)
+    return {str(n): (at / scale + x, above / up + y, int(count)) for n, at, above, count in found}
 
 
-def _stuck_headings(rows: "pd.DataFrame") -> dict[str, int]:
+def _held(used: "pd.DataFrame") -> dict[str, int]:
     """Return boats that move with one heading in many samples, and every other one in few."""
     # A boat that never moves keeps its heading, too.
-    used = rows[rows["why"] == ""].drop_duplicates(["id", "x", "y"])
-    counts: Any = used.value_counts(["id", "heading"]).groupby("id")
+    moving = used.drop_duplicates(["id", "x", "y"])
+    counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
     most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))
     held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index))]
     return {str(name): int(count) for name, count in held.items()}

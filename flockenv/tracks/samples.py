@@ -35,7 +35,7 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     points, is_lost = points_of(table, columns["x"], columns["y"], layout)
     corner, size = points.mean(axis=0), table[[*columns["box"]]].to_numpy() / 2
     position = corner + size @ [1, 1j][: size.shape[1]]
-    position = (position - complex(*layout.center)) * layout.scale
+    position = (position - complex(*layout.center)) * (layout.cm_per_unit or 1.0)
     position = position.conj() if layout.y_down else position
     if len(columns["heading"]) == 1:
         _check_no_component(rows, columns["heading"][0].replace("{id}", boats[0]), layout)
@@ -100,44 +100,36 @@ def _check_water(samples: "pd.DataFrame") -> None:
 
 def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
     """Return times in s, from the earliest one on."""
-    first = str(next(iter(column.dropna()), ""))
-    if column.dtype.kind in "mM" or (column.dtype.kind not in "iuf" and ":" in first):
+    kind, first = column.dtype.kind, str(next(iter(column.dropna()), ""))
+    is_text = kind not in "iufmM" and ":" in first
+    if is_text or kind in "mM":
         if layout.fps is not None:
             raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
-        times: Floats = _seconds(column) if column.dtype.kind in "mM" else _read(column, first)
+        dates = _read(column, first) if is_text else column
+        dates = dates - dates.min() if dates.dtype.kind == "M" else dates
+        times: Floats = dates.dt.total_seconds().to_numpy(np.float64)
+        times = _past_midnight(times) if is_text else times
     else:
         times = numbers(column, layout)
         _check_kind(times, layout)
         times = times / (layout.fps or 1.0)
-    if not np.isfinite(times).all():
-        line = column.index[~np.isfinite(times)][0]
+    for line in column.index[~np.isfinite(times)][:1]:
         raise ParameterError(
             f"column {layout.frame!r} has rows without a number, such as {column.index.name} {line}"
         )
-    since: Floats = times - times.min(initial=np.inf)
-    return since
+    return np.asarray(times - times.min(initial=np.inf))
 
 
-def _seconds(times: "pd.Series[Any]") -> Floats:
-    """Return dates, from the earliest one on, or durations in s."""
-    durations = times - times.min() if times.dtype.kind == "M" else times
-    seconds: Floats = durations.dt.total_seconds().to_numpy(np.float64)
-    return seconds
-
-
-def _read(column: "pd.Series[Any]", first: str) -> Floats:
-    """Return dates or clock times that are written as text in s."""
+def _read(column: "pd.Series[Any]", first: str) -> "pd.Series[Any]":
+    """Return dates, or durations for clock times, that are written as text."""
     pandas = require("pandas", "plot")
     # Loggers write 12:34:56,789, and stopwatches 34:56.7.
     texts = column.astype(str).str.replace(",", ".")
     clock = texts.str.replace(r"^\s*(\d+:\d+\.\d*)\s*$", r"00:\1", regex=True)
-    times = pandas.to_timedelta(clock, errors="coerce")
-    if (times.notna() | column.isna()).all():
-        return _past_midnight(_seconds(times))
-    for form in _DATES:
-        times = pandas.to_datetime(texts, errors="coerce", utc=True, format=form)
+    readings = (pandas.to_datetime(texts, "coerce", utc=True, format=form) for form in _DATES)
+    for times in (pandas.to_timedelta(clock, errors="coerce"), *readings):
         if (times.notna() | column.isna()).all():
-            return _seconds(times)
+            return times  # type: ignore[no-any-return]
     raise ParameterError(
         f"column {column.name!r} holds {short_repr(first)}, which is not a number, "
         "a time 12:34:56.7 or a date 2026-01-31 12:34:56.7 or 31.01.2026 12:34:56.7"
@@ -145,7 +137,7 @@ def _read(column: "pd.Series[Any]", first: str) -> Floats:
 
 
 def _past_midnight(seconds: Floats) -> Floats:
-    """Return clock times, with a day added to those past midnight: the ones before a long gap."""
+    """Return times of day, with a day added to those past midnight: the ones before a long gap."""
     stamps = np.unique(seconds[np.isfinite(seconds)])
     steps = np.diff(stamps)
     if steps.max(initial=0.0) < _DAY_S / 2 or stamps[-1] > _DAY_S:
@@ -179,37 +171,35 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
 def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArray[np.bool_]]:
     """Return headings in rad from x (0 without a column), and which exceed a full turn."""
     columns, strange = layout.columns["heading"], np.zeros(len(table), bool)
+    turns = layout.heading_turns or ("cw" if layout.y_down else "ccw")
     if len(columns) == 4:
         (tail, head), is_lost = points_of(table, columns[::2], columns[1::2], layout)
-        heading = direction(head - tail) * layout.y_sign
-        return np.where(is_lost, np.nan, heading), strange
+        way = (head - tail).conj() if layout.y_down else head - tail
+        return np.where(is_lost, np.nan, direction(way)), strange
     if columns:
         heading = table[columns[0]].to_numpy()
         strange = (np.abs(heading) > FULL_TURN[layout.heading_unit]) & layout.wrapped
         _check_largest(heading, strange, layout)
         heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
     elif layout.quaternion is not None:
-        heading = _turned(table, layout)
+        # If turns are counted from y to x, the axis belongs to a mirrored system.
+        is_mirrored = (turns == "cw") != layout.y_down
+        heading = _turned(table[[*layout.quaternion]], -1.0 if is_mirrored else 1.0)
     else:
         return np.zeros(len(table)), strange
-    sign = 1.0 if layout.turns == "ccw" else -1.0
-    return HEADING_ZERO[layout.heading_zero] + sign * heading, strange
+    return HEADING_ZERO[layout.heading_zero] + (heading if turns == "ccw" else -heading), strange
 
 
-def _turned(table: "pd.DataFrame", layout: TrackLayout) -> Floats:
-    """Return the angle about the vertical of unit quaternions."""
-    columns = layout.columns["quaternion"]
-    x, y, z, w = table[[*columns]].to_numpy().T
+def _turned(quaternions: "pd.DataFrame", sense: float) -> Floats:
+    """Return the angle about the vertical of unit quaternions x, y, z and w."""
+    x, y, z, w = quaternions.to_numpy().T
     off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
     if np.nanmedian(off) > 0.01:
         raise ParameterError(
-            f"quaternion = {list(columns)} is not accepted: columns x, y, z and w, whose squares "
+            f"quaternion = {[*quaternions]} is not accepted: columns x, y, z and w, whose squares "
             "add up to 1"
         )
-    # If turns are counted from y to x, the axis belongs to a mirrored system.
-    is_mirrored = layout.turns == ("ccw" if layout.y_down else "cw")
-    across = -x * y if is_mirrored else x * y
-    heading = np.arctan2(2 * (w * z + across), 1 - 2 * (y**2 + z**2))
+    heading = np.arctan2(2 * (w * z + sense * x * y), 1 - 2 * (y**2 + z**2))
     return np.where(off > 0.1, np.nan, heading)
 
 

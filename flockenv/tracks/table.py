@@ -217,7 +217,8 @@ def long_table(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     All but names and times are numbers. A column whose name holds {id} stands for the columns of
     all boats. In a table with one row per boat there is one, "0".
     """
-    pandas, places, fields = require("pandas", "plot"), places_of(rows), layout.fields
+    pandas, places = require("pandas", "plot"), places_of(rows)
+    fields = [name for columns in layout.columns.values() for name in columns]
     boats = _boats([*map(str, rows)], fields, places) if layout.is_wide else ["0"]
 
     def found(name: str) -> "pd.Series[Any]":
