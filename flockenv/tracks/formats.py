@@ -25,22 +25,17 @@ class Format(NamedTuple):
 
 
 _MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
-_BOX = {"box": _MOT[4:6], "heading": "", "y_down": True}
-_MOTIVE = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
-_ABOVE = {"quaternion": _MOTIVE, "heading_turns": "ccw", "y_down": True}
-_BODIES_IN_LEVELS = ("type", "name", "", "frame")
-_PARTS_IN_LEVELS = ("scorer", "individuals", "bodyparts", "coords")
-_PLACE = {"x": "{id}.Position_X", "y": "{id}.Position_Z"}
+_BOX = {"y": "bb_top", "box": _MOT[4:6], "heading": "", "y_down": True}
+_TURN = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
+_ABOVE = {"y": "{id}.Position_Z", "quaternion": _TURN, "heading_turns": "ccw", "y_down": True}
+_BODIES = ("type", "name", "", "frame")
+_PARTS = ("scorer", "individuals", "bodyparts", "coords")
 
 FORMATS = (
-    Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left", "y": "bb_top"}, _BOX, (), _MOT),
-    Format("OptiTrack Motive", {"frame": "Time (Seconds)", **_PLACE}, _ABOVE, _BODIES_IN_LEVELS),
-    Format(
-        "DeepLabCut, several animals",
-        {"frame": "frame", "x": "{id}.{part}_x"},
-        levels=_PARTS_IN_LEVELS,
-    ),
-    Format("DeepLabCut", {"frame": "frame", "x": "{part}_x", "confidence": "{part}_likelihood"}),
+    Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left"}, _BOX, header=_MOT),
+    Format("Motive", {"frame": "Time (Seconds)", "x": "{id}.Position_X"}, _ABOVE, levels=_BODIES),
+    Format("DeepLabCut", {"frame": "frame", "x": "{id}.{part}_x"}, levels=_PARTS),
+    Format("DeepLabCut, one animal", {"frame": "frame", "x": "{part}_x"}),
     Format("SLEAP", {"frame": "frame_idx", "id": "track", "x": "{part}.x"}),
     Format("movement", {"frame": "time", "id": "individual*", "x": "{part}_x"}),
     Format("TrackMate", {"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
@@ -68,8 +63,8 @@ NOBODY = (
 LOST = ([0.0, 0.0], [-1.0, -1.0])
 """Points that many programs write for a lost animal."""
 
-_BODIES = ("body", "boat", "robot", "animal", "fish", "individual", "particle", "agent")
-_THINGS = (*_BODIES, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
+_ANIMALS = ("body", "boat", "robot", "animal", "fish", "individual", "particle", "agent")
+_THINGS = (*_ANIMALS, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
 WORDS: Mapping[str, tuple[str, ...]] = {
     "frame": (
         *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp", "position_t"),
@@ -93,7 +88,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 }
 """Frequent names of columns, in lower case without a unit, the better names first."""
 
-_PARTS = (
+_POINTS = (
     ("tail", "tail_base", "tailbase", "stern", "back", "rear", "abdomen"),
     ("head", "nose", "snout", "bow", "front"),
     ("center", "centre", "centroid", "body", "thorax", "mid", "middle", "bodycenter"),
@@ -175,7 +170,7 @@ def _key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
     are several others, the center is ambiguous, and no fields are returned.
     """
     tail, head, middle = (
-        [stem for name, stem in stems.items() if plain(name)[0] in words][:1] for words in _PARTS
+        [stem for name, stem in stems.items() if plain(name)[0] in words][:1] for words in _POINTS
     )
     ends = tail + head if tail and head else []
     center = middle or ends or [*stems.values()]
@@ -196,33 +191,30 @@ def _of_all(boat: re.Match[str], name: str) -> str:
     return f"{name[: boat.start('id')]}{{id}}{name[boat.end('id') :]}"
 
 
-def _fields_of(program: Format, names: Names) -> dict[str, Any] | None:
+def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any] | None:
     """Return the fields of a layout if the table is this program's, otherwise None."""
-    columns = dict(program.columns)
-    y, x = columns.pop("y", ""), columns.pop("x")
-    found = {field: _first([pattern], names) for field, pattern in columns.items()}
-    pairs = [pair for pair in _matches(x, names) if y or _siblings(pair[0], "x", "y", names)]
-    if not pairs or None in found.values():
+    found = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
+    pairs = [x for x in found["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
+    boats = {pair.groupdict().get("id") for pair in pairs}
+    # In a table with names x1, y1, x2 and y2 may be a box around each boat instead of two boats.
+    if not pairs or not all(found.values()) or (has_ids and boats == {"1", "2"}):
         return None
-    first, groups = pairs[0], pairs[0].groupdict()
-    form = {field: match[0] for field, match in found.items() if match} | dict(program.fields)
-    if "part" in groups:
-        form.pop("confidence", None)
-        own = [pair for pair in pairs if pair.groupdict().get("id") == groups.get("id")]
-        known = _key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
+    first = pairs[0]
+    known = {field: [matches[0][0]] for field, matches in found.items()}
+    if "part" in first.groupdict():
+        own = [pair for pair in pairs if pair.groupdict().get("id") == first.groupdict().get("id")]
+        del known["x"]
+        columns = _key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
     else:
-        known = {"x": [first[0]], "y": [y] if y else _siblings(first[0], "x", "y", names)}
-    if "id" in groups:
-        form["id"] = ""
-        known = {
-            field: [name if "{id}" in name else _of_all(first, name) for name in columns]
-            for field, columns in known.items()
-        }
-        if "part" not in groups and (
-            angle := _first([f"*{word}{{n}}*" for word in _ANGLES], names)
-        ):
-            form["heading"] = _of_all(angle, angle[0])
-    return form | {field: each[0] if len(each) == 1 else each for field, each in known.items()}
+        columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}
+    if "id" in first.groupdict():
+        columns = {field: [_of_all(first, name) for name in columns[field]] for field in columns}
+        known["id"] = [""]
+        angle = _first([f"*{word}{{n}}*" for word in _ANGLES], names)
+        if angle and "part" not in first.groupdict():
+            known["heading"] = [_of_all(angle, angle[0])]
+    form = (known | columns).items()
+    return {field: each[0] if len(each) == 1 else each for field, each in form} | {**program.fields}
 
 
 def recognized(columns: Iterable[str]) -> dict[str, Any]:
@@ -237,11 +229,10 @@ def recognized(columns: Iterable[str]) -> dict[str, Any]:
     if y := _siblings(x, "x", "y", names):
         form |= {"x": x, "y": y[0]}
     for program in FORMATS:
-        known = _fields_of(program, names)
-        if known is None or ("id" in form and _may_be_box(known.get("x", ""), names)):
-            continue
+        known = _fields_of(program, names, has_ids="id" in form)
         # Any pair of columns looks like a key point of the general formats.
-        if "y" not in form or "{" not in program.columns["x"] or _TELLING & known.keys():
+        is_plain = "y" not in form or "{" not in program.columns["x"]
+        if known is not None and (is_plain or _TELLING & known.keys()):
             form |= known
             break
     if not {"heading", "quaternion"} & form.keys():
@@ -249,9 +240,3 @@ def recognized(columns: Iterable[str]) -> dict[str, Any]:
         if turn := next(filter(None, turns), []):
             form["quaternion"] = turn
     return form | ({"heading": ""} if "quaternion" in form else {})
-
-
-def _may_be_box(x: str | list[str], names: Names) -> bool:
-    """Return whether x1, y1, x2 and y2 may be a box around a named boat instead of two boats."""
-    numbered = _matches(str(x).replace("{id}", "{n}"), names) if "{id}" in x else []
-    return {match["id"] for match in numbered} == {"1", "2"}

@@ -2,6 +2,7 @@
 
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,6 @@ from flockenv.tracks.layout import TrackLayout, description_of, naming
 from flockenv.tracks.motion import FULL_TURN
 from flockenv.tracks.samples import names_of, points_of
 from flockenv.tracks.table import (
-    Floats,
     check_ending,
     is_value,
     listed,
@@ -45,15 +45,12 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
         raise ParameterError(f"{description} already exists: it may be written by hand")
     with naming(path):
         form, doubts = _guessed(path)
-    lines = [f"{name} = {_toml(value)}" for name, value in form.items() if name not in doubts]
-    checks = [f"{name} = {_toml(value)}  # {words}" for name, (value, words) in doubts.items()]
+    form |= {name: value for name, (value, _) in doubts.items()}
+    lines = {name: f"{name} = {json.dumps(form[name], ensure_ascii=False)}" for name in form}
+    checks = [f"{lines.pop(name)}  # {words}" for name, (_, words) in doubts.items()]
     first = "# Guessed from the table beside this file. Check the lines that say so."
-    write_text(description, "\n".join([first, *lines, *checks]) + "\n")
+    write_text(description, "\n".join([first, *lines.values(), *checks]) + "\n")
     return checks
-
-
-def _toml(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False)
 
 
 def _guessed(path: Path) -> tuple[Form, Doubts]:
@@ -90,9 +87,16 @@ def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None
     if "id" in form and not names_of(table, boats, layout)[1]:
         form["id"] = ""
     _guess_pool(table, layout, form, doubts)
-    _guess_time(table, layout, form, doubts)
+    per_s = PER_S.get(unit_of(layout.frame))
+    with suppress(ParameterError):  # Dates and clock times need no unit.
+        counts = numbers(table[layout.frame], layout)
+        is_whole = bool((counts[np.isfinite(counts)] % 1 == 0).all())
+        if per_s is not None and (per_s != 1.0 or is_whole):
+            form.setdefault("fps", per_s)
+        elif is_whole and "fps" not in form:
+            doubts["fps"] = (25.0, "check: frames, or other units of this column, per second")
     if len(layout.columns["heading"]) == 1:
-        _guess_turn(table[layout.columns["heading"][0]].to_numpy(), form, doubts)
+        _guess_turn(table[layout.columns["heading"][0]].abs().dropna(), form, doubts)
 
 
 def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
@@ -128,24 +132,11 @@ def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: 
         doubts["lost"] = (lost, "check: points that stand for a missing boat")
 
 
-def _guess_time(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
-    try:
-        counts = numbers(table[layout.frame], layout)
-    except ParameterError:  # Dates and clock times.
-        return
-    is_whole = (counts[np.isfinite(counts)] % 1 == 0).all()
-    per_s = PER_S.get(unit_of(layout.frame))
-    if per_s is not None and (per_s != 1.0 or is_whole):
-        form.setdefault("fps", per_s)
-    elif is_whole and "fps" not in form:
-        doubts["fps"] = (25.0, "check: frames, or other units of this column, per second")
-
-
-def _guess_turn(heading: Floats, form: Form, doubts: Doubts) -> None:
+def _guess_turn(turns: "pd.Series[float]", form: Form, doubts: Doubts) -> None:
+    """Guess the unit of headings from their column's name, or from how large they are."""
     name = plain(form["heading"])[1].replace("°", "deg")
     said = next((unit for unit in ("deg", "rad") if name.startswith(unit)), None)
-    # A few may be placeholders.
-    largest = np.quantile(turns, 0.99) if len(turns := np.abs(heading[np.isfinite(heading)])) else 0
+    largest = turns.quantile(0.99)  # A few may be placeholders.
     unit = said or ("deg" if largest > FULL_TURN["rad"] else "rad")
     if said:
         form["heading_unit"] = said

@@ -331,7 +331,12 @@ def dataset_table(
     values = {axis: position.sel(space=axis).values for axis in "xy"}
     if "confidence" in dataset.data_vars:
         values["confidence"] = _standard(dataset["confidence"]).values
-    boats, points = (_named(position, name) for name in ("individuals", "keypoints"))
+    named = {name: position.get_index(name).astype(str) for name in ("individuals", "keypoints")}
+    for name, along in named.items():
+        for again in along[along.duplicated()][:1]:
+            count = (along == again).sum()
+            raise ParameterError(f"{count} {name} of the dataset are called {again!r}")
+    boats, points = map(list, named.values())
     columns: dict[str, Any] = {
         "time": np.repeat(dataset["time"].values, len(boats)),
         "individuals": np.tile(boats, len(dataset["time"])),
@@ -356,16 +361,6 @@ def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
             f"{', '.join(order)} are accepted"
         )
     return variable.transpose(*order)
-
-
-def _named(position: "xarray.DataArray", dimension: str) -> list[str]:
-    """Return the names along a dimension, or its numbers if there are none."""
-    names = [str(name) for name in position[dimension].values]
-    if again := next((name for name in names if names.count(name) > 1), None):
-        raise ParameterError(
-            f"{names.count(again)} {dimension} of the dataset are called {again!r}"
-        )
-    return names
 
 
 def _completed(
