@@ -1,9 +1,8 @@
 """Tracks of real flocks read as recordings, and recordings written as tables and GSD."""
 
-from flockenv.tracks.assemble import recording_of
 from flockenv.tracks.guess import guess_layout
 from flockenv.tracks.layout import TrackLayout, description_of, read_layout
-from flockenv.tracks.reader import read_tracks
+from flockenv.tracks.reader import read_tracks, recording_of
 from flockenv.tracks.report import TrackReport
 from flockenv.tracks.table import SUFFIXES, check_ending
 from flockenv.tracks.writer import EXPORTS, export

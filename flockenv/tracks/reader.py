@@ -1,29 +1,40 @@
-"""Tracks of tables and datasets as recordings, with a report of omitted rows."""
+"""Tracks of tables, datasets and arrays as recordings."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from flockenv._io.arguments import check_function
-from flockenv.errors import ParameterError, short_repr
-from flockenv.recording import Recording
-from flockenv.tracks.assemble import recording_of
+from flockenv import _core
+from flockenv._io.arguments import check_function, items, materialized, series, with_gaps
+from flockenv.errors import ParameterError, refuse_unknown, short_repr
+from flockenv.order import order_series
+from flockenv.parameters import FlockParameters
+from flockenv.recording import PHASES, PRECISIONS, Recording
+from flockenv.recording.checks import check_array
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
-from flockenv.tracks.motion import Motion, bows_of, check_by_motion, direction, unwrapped
-from flockenv.tracks.report import TrackReport
-from flockenv.tracks.samples import TWICE, samples_of
-from flockenv.tracks.table import Floats, check_ending, dataset_table, plain_table, read_table
+from flockenv.tracks.motion import (
+    Floats,
+    Motion,
+    bows_of,
+    check_by_motion,
+    direction,
+    in_water,
+    unwrapped,
+)
+from flockenv.tracks.report import TrackReport, report_of
+from flockenv.tracks.samples import TWICE, check_samples, frames_of, poses_of, samples_of
+from flockenv.tracks.table import check_ending, dataset_table, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
-_STUCK = 20
+_FASTEST_CM_S = 1000.0
 
 
 def read_tracks(
@@ -81,13 +92,13 @@ def _recording(
     samples, is_named = samples_of(rows, layout)
     unsorted = samples[samples["why"] != TWICE].groupby("id")["time"].diff() < 0.0
     samples = samples.sort_values("time", kind="stable")
-    samples["frame"] = _frames(samples)
-    _check_samples(samples, layout, is_named)
-    names, time_s, stamps, pose = _poses(samples)
+    samples["frame"] = frames_of(samples)
+    check_samples(samples, layout, is_named)
+    names, time_s, stamps, pose = poses_of(samples)
     motion = _turned_into_motion(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
-    found = _report(samples, time_s, pose, motion, layout)
+    found = report_of(samples, time_s, pose, motion, layout)
     unnamed = layout.id is not None and not is_named
     report(replace(found, unsorted=int(unsorted.sum()), unnamed=unnamed))
     return recording
@@ -107,133 +118,151 @@ def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Mo
     return motion
 
 
-def _report(
-    samples: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
-) -> TrackReport:
-    """Return the report of used and omitted samples."""
-    speed = np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
-    used, omitted = samples[samples["why"] == ""], samples[samples["why"] != ""]
-    counts = omitted.fillna({"id": ""}).groupby(["why", "id"]).size()
-    gaps = np.concatenate([motion.split(boat)[1] for boat in range(pose.shape[1])])
-    steps, speeds, count = np.diff(time_s), speed[~np.isnan(speed)], int(motion.present.sum())
-    step_s = float(np.median(steps)) if len(steps) else 0.0
-    # On a regular clock, frames without a boat have no row.
-    empty = int((np.rint(steps[steps > motion.longest_s] / step_s) - 1).sum())
-    return TrackReport(
-        frames=len(time_s),
-        boats=pose.shape[1],
-        samples=count,
-        missing=pose.shape[1] * (len(time_s) + empty) - count,
-        duration_s=float(time_s[-1]),
-        step_s=step_s,
-        median_speed_cm_s=float(np.median(speeds)) if len(speeds) else float("nan"),
-        left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
-        gaps=len(gaps),
-        longest_gap_s=float(gaps.max(initial=0.0)),
-        broken=motion.broken,
-        lone=int((motion.present & np.isnan(speed)).sum()),
-        cosine=motion.cosine(pose[..., 2]),
-        stuck=_stuck(used, layout),
-        held=_held(used),
+def recording_of(
+    time_s: ArrayLike,
+    pose: ArrayLike,
+    *,
+    pool: str | tuple[float, float],
+    hull: tuple[float, float] = (5.0, 0.5),
+    velocity: ArrayLike | None = None,
+    phase: ArrayLike | None = None,
+    ids: Sequence[str] | None = None,
+    leaders: Sequence[str] = (),
+    target: str | Sequence[str] = "cw",
+    discs: Iterable[Sequence[float]] = (),
+    walls: Iterable[Sequence[float]] = (),
+) -> Recording:
+    """Return tracks of real boats, or of anything else with a heading, as a recording.
+
+    It is analyzed, replayed and exported like a simulated one. Quantities at a time are those
+    of the normal boats that have a pose and a velocity then.
+
+    Parameters
+    ----------
+    time_s
+        Times in s, increasing, shape (t,).
+    pose
+        Shape (t, n, 3): [x cm, y cm from the pool's center, heading rad counter-clockwise from x].
+        Rows of NaN if a boat is missing.
+    pool
+        "narrow", "wide", or the outer and the inner radius in cm; (inf, 0) for none.
+    hull
+        Radius in cm, and half the length of the straight part over the radius; (r, 0) is a disc.
+    velocity
+        Shape (t, n, 3) in cm/s, cm/s and rad/s. None: differences of the poses, central if there is
+        a pose before and after, weighted by the steps in time. No difference is taken across a gap;
+        a boat with a single pose has no velocity.
+    phase
+        "fw", "nop1", "bw" or "nop2" at each time, shape (t,). None: the phases are unknown, and all
+        samples are analyzed.
+    ids
+        A name for each boat, shape (n,); "0", "1", … by default.
+    leaders
+        Names of the leaders. They come first in the recording.
+    target
+        The direction in which they lead, "cw" or "ccw", and in which signed order is positive.
+    discs, walls
+        Obstacles in the pool, as in `FlockParameters`; replay pages show them.
+
+    Raises
+    ------
+    ParameterError
+        For shapes that do not match, rows with only some NaN, no pose at all, median speeds of a
+        boat above 10 m/s, centers more than a hull's width outside the water, and unknown or
+        repeated names.
+    """
+    times, poses = _checked_poses(time_s, pose)
+    names = [str(name) for name in items(range(poses.shape[1]) if ids is None else ids, "ids")]
+    leaders = [str(name) for name in items(leaders, "leaders")]
+    order = _leaders_first(names, leaders, poses.shape[1])
+    poses[..., 2] = unwrapped(poses[..., 2])
+    motion = _velocity(velocity, times, poses)[:, order]
+    poses = poses[:, order]
+    fields = _hull(hull)
+    fields |= {"target": materialized(target), "discs": discs, "walls": walls}
+    parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
+    _check_units(poses, motion, parameters)
+    phases, analyzed = _phases(phase, times)
+    is_leader = np.arange(len(names)) < len(leaders)
+    return Recording(
+        time_s=times,
+        phase=phases,
+        in_analysis_window=analyzed,
+        pose=poses,
+        velocity=motion,
+        order=order_series(poses, np.where(is_leader[:, None], np.nan, motion)),
+        parameters=parameters,
+        seed=0,
+        version=_core.__version__,
+        ids=np.array(names)[order],
     )
 
 
-def _check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
-    """Refuse samples of which none counts, or two of one boat at one time."""
-    used = samples[samples["why"] == ""]
-    if used.empty:
-        counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
-        found = ", ".join(counts) or "there are no rows"
-        raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
-    again = used[used.duplicated(["id", "time"])]
-    if len(again) and not is_named:
-        raise ParameterError("id is missing: several rows have one time, so boats have names")
-    for line, name, time in again[["id", "time"]].head(1).itertuples():
-        count = ((used["id"] == name) & (used["time"] == time)).sum()
+def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
+    """Return times and poses after checking them."""
+    times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
+    shape = (times.size, np.atleast_2d(poses).shape[1], 3)
+    check_array("time_s", times, shape[:1], PRECISIONS)
+    check_array("pose", poses, shape, PRECISIONS, gaps=True)
+    if not (np.diff(times) > 0.0).all():
+        raise ParameterError("time_s must increase")
+    if np.isnan(poses).all():
+        raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever present")
+    return times, poses
+
+
+def _velocity(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
+    """Return the checked velocity, or that of the poses if none is given."""
+    own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
+    motion = with_gaps(own, "velocity")
+    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
+    return motion
+
+
+def _hull(hull: tuple[float, float]) -> dict[str, Any]:
+    """Return the fields of a hull by name."""
+    lengths = series(hull, "hull")
+    if lengths.shape != (2,):
+        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
+    return {"boat_radius_cm": float(lengths[0]), "boat_shape": float(lengths[1])}
+
+
+def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
+    """Return each sample's phase, and whether it is analyzed; without phases all samples are."""
+    phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
+    if phase is not None:
+        phases = np.array([*map(str, items(phase, "phase"))])
+        analyzed = _core.sampled_analysis_window(times, phases.tolist())
+    return phases.astype(PHASES.dtype), analyzed
+
+
+def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int]:
+    """Return the indices of the leaders, in their order, followed by those of the other boats."""
+    if len(names) != boats:
+        raise ParameterError(f"ids holds {len(names)} names for {boats} boats")
+    refuse_unknown(leaders, names, "leader among the ids")
+    if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
+        raise ParameterError("ids or leaders holds a name more than once")
+    ranks = {name: rank for rank, name in enumerate(leaders)}
+    return sorted(range(len(names)), key=lambda i: ranks.get(names[i], len(ranks)))
+
+
+def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
+    speed = np.hypot(velocity[..., 0], velocity[..., 1])
+    moves = ~np.isnan(speed).all(axis=0)
+    fastest = np.nanmedian(speed[:, moves], axis=0).max(initial=0.0)
+    if fastest > _FASTEST_CM_S:
         raise ParameterError(
-            f"{name!r} appears {count} times in frame {time * (layout.fps or 1):g}, at different "
-            f"positions, the second time in {used.index.name} {line}: were there two films, or "
-            "was the clock set back? Give each film a table of its own"
+            f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
+            f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
-    _check_names(used)
-
-
-def _poses(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
-    """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
-    used = samples[samples["why"] == ""]
-    # Sorted by length, then alphabetically, so that 2 comes before 10.
-    names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
-    time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()
-    # Arrays hold a pose for each frame and name; in large ones at least a sixteenth must exist.
-    if len(time_s) * len(names) > max(1 << 22, 16 * len(samples)):
+    present = ~np.isnan(pose[..., 0])
+    outside = present & ~in_water(
+        parameters.pool, np.hypot(pose[..., 0], pose[..., 1]), 2 * parameters.boat_radius_cm
+    )
+    if outside.any():
         raise ParameterError(
-            f"{len(names)} names in {len(time_s)} frames are too many for {len(samples)} rows: "
-            "join fragments of tracks"
+            f"{outside.sum() / present.sum():.0%} of the centers ({outside.sum()}) lie outside the "
+            "pool, or in the obstacle in its middle: are positions in cm, from the center of the "
+            "pool, and rows of missing boats NaN?"
         )
-    pose = np.full((len(time_s), len(names), 3), np.nan)
-    stamps = np.tile(time_s[:, None], len(names))
-    at = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
-    pose[at], stamps[at] = used[["x", "y", "heading"]], used["time"]
-    return names, time_s - time_s[0], stamps, pose
-
-
-def _frames(rows: "pd.DataFrame") -> NDArray[np.intp]:
-    """Return the frame of each row, of rows in the order of time.
-
-    Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
-    one of its boats is seen again, and is shorter than the time between two rows of a boat.
-    """
-    stamps, frames = np.unique(rows["time"], return_inverse=True)
-    own = rows.groupby("id", sort=False)["time"].diff()
-    own = own[own > 0.0]
-    if len(stamps) < 3 or not len(own):
-        return frames
-    if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
-        return frames
-    names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
-    within, number, start, last_seen = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
-    for index, (name, time) in enumerate(zip(names, times, strict=True)):
-        # Repeated rows are in one frame, and rows without a name belong to no boat.
-        if last_seen.get(name, time) < time or time - start > within:
-            number, start, last_seen = number + 1, time, {}
-        if isinstance(name, str):
-            last_seen[name] = time
-        frames[index] = number
-    return frames
-
-
-def _check_names(used: "pd.DataFrame") -> None:
-    """Refuse two spellings of a name that never appear in one frame: they would be two boats."""
-    names = used["id"].drop_duplicates()
-    plain = names.str.normalize("NFKC").str.casefold()
-    plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
-    for _, like in names.groupby(plain):
-        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
-            raise ParameterError(
-                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
-                "case or leading zeros only: give each boat one spelling of its name"
-            )
-
-
-def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
-    """Return boats that stay at exactly one point in many samples, in units of the file."""
-    counts = used.value_counts(["id", "x", "y"]).reset_index()
-    share = counts["id"].map(used["id"].value_counts()) / 10
-    # Two boats are never at one point.
-    shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
-    is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
-    counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
-    (x, y), scale = layout.center, layout.cm_per_unit or 1.0
-    up = -scale if layout.y_down else scale
-    found = counts.drop_duplicates("id").itertuples(index=False)
-    return {str(n): (at / scale + x, above / up + y, int(count)) for n, at, above, count in found}
-
-
-def _held(used: "pd.DataFrame") -> dict[str, int]:
-    """Return boats that move with one heading in many samples, and every other one in few."""
-    # A boat that never moves keeps its heading, too.
-    moving = used.drop_duplicates(["id", "x", "y"])
-    counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
-    most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))
-    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index))]
-    return {str(name): int(count) for name, count in held.items()}

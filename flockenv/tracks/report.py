@@ -2,9 +2,17 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-_WEAK = 0.3
+import numpy as np
+
+from flockenv.tracks.layout import TrackLayout
+from flockenv.tracks.motion import Floats, Motion
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_WEAK, _STUCK = 0.3, 20
 _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 
@@ -117,3 +125,58 @@ def _by_boat(boats: Mapping[str, int]) -> str:
 def _first_five(words: list[str]) -> str:
     more = [f"{len(words) - 5} more boats"] if len(words) > 5 else []
     return ", ".join(words[:5] + more)
+
+
+def report_of(
+    samples: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
+) -> TrackReport:
+    """Return the report of used and omitted samples."""
+    speed = np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
+    used, omitted = samples[samples["why"] == ""], samples[samples["why"] != ""]
+    counts = omitted.fillna({"id": ""}).groupby(["why", "id"]).size()
+    gaps = np.concatenate([motion.split(boat)[1] for boat in range(pose.shape[1])])
+    steps, speeds, count = np.diff(time_s), speed[~np.isnan(speed)], int(motion.present.sum())
+    step_s = float(np.median(steps)) if len(steps) else 0.0
+    # On a regular clock, frames without a boat have no row.
+    empty = int((np.rint(steps[steps > motion.longest_s] / step_s) - 1).sum())
+    return TrackReport(
+        frames=len(time_s),
+        boats=pose.shape[1],
+        samples=count,
+        missing=pose.shape[1] * (len(time_s) + empty) - count,
+        duration_s=float(time_s[-1]),
+        step_s=step_s,
+        median_speed_cm_s=float(np.median(speeds)) if len(speeds) else float("nan"),
+        left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
+        gaps=len(gaps),
+        longest_gap_s=float(gaps.max(initial=0.0)),
+        broken=motion.broken,
+        lone=int((motion.present & np.isnan(speed)).sum()),
+        cosine=motion.cosine(pose[..., 2]),
+        stuck=_stuck(used, layout),
+        held=_held(used),
+    )
+
+
+def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
+    """Return boats that stay at exactly one point in many samples, in units of the file."""
+    counts = used.value_counts(["id", "x", "y"]).reset_index()
+    share = counts["id"].map(used["id"].value_counts()) / 10
+    # Two boats are never at one point.
+    shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
+    is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
+    counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
+    (x, y), scale = layout.center, layout.cm_per_unit or 1.0
+    up = -scale if layout.y_down else scale
+    found = counts.drop_duplicates("id").itertuples(index=False)
+    return {str(n): (at / scale + x, above / up + y, int(count)) for n, at, above, count in found}
+
+
+def _held(used: "pd.DataFrame") -> dict[str, int]:
+    """Return boats that move with one heading in many samples, and every other one in few."""
+    # A boat that never moves keeps its heading, too.
+    moving = used.drop_duplicates(["id", "x", "y"])
+    counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
+    most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))
+    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index))]
+    return {str(name): int(count) for name, count in held.items()}

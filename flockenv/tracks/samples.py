@@ -239,3 +239,80 @@ def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLay
         f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {unit_given}: "
         f"{unit}wrapped = false if they count whole turns"
     )
+
+
+def check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
+    """Refuse samples of which none counts, or two of one boat at one time."""
+    used = samples[samples["why"] == ""]
+    if used.empty:
+        counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
+        found = ", ".join(counts) or "there are no rows"
+        raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
+    again = used[used.duplicated(["id", "time"])]
+    if len(again) and not is_named:
+        raise ParameterError("id is missing: several rows have one time, so boats have names")
+    for line, name, time in again[["id", "time"]].head(1).itertuples():
+        count = ((used["id"] == name) & (used["time"] == time)).sum()
+        raise ParameterError(
+            f"{name!r} appears {count} times in frame {time * (layout.fps or 1):g}, at different "
+            f"positions, the second time in {used.index.name} {line}: were there two films, or "
+            "was the clock set back? Give each film a table of its own"
+        )
+    _check_names(used)
+
+
+def poses_of(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
+    """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
+    used = samples[samples["why"] == ""]
+    # Sorted by length, then alphabetically, so that 2 comes before 10.
+    names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
+    time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()
+    # Arrays hold a pose for each frame and name; in large ones at least a sixteenth must exist.
+    if len(time_s) * len(names) > max(1 << 22, 16 * len(samples)):
+        raise ParameterError(
+            f"{len(names)} names in {len(time_s)} frames are too many for {len(samples)} rows: "
+            "join fragments of tracks"
+        )
+    pose = np.full((len(time_s), len(names), 3), np.nan)
+    stamps = np.tile(time_s[:, None], len(names))
+    at = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
+    pose[at], stamps[at] = used[["x", "y", "heading"]], used["time"]
+    return names, time_s - time_s[0], stamps, pose
+
+
+def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
+    """Return the frame of each row, of rows in the order of time.
+
+    Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
+    one of its boats is seen again, and is shorter than the time between two rows of a boat.
+    """
+    stamps, frames = np.unique(rows["time"], return_inverse=True)
+    own = rows.groupby("id", sort=False)["time"].diff()
+    own = own[own > 0.0]
+    if len(stamps) < 3 or not len(own):
+        return frames
+    if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
+        return frames
+    names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
+    within, number, start, last_seen = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
+    for index, (name, time) in enumerate(zip(names, times, strict=True)):
+        # Repeated rows are in one frame, and rows without a name belong to no boat.
+        if last_seen.get(name, time) < time or time - start > within:
+            number, start, last_seen = number + 1, time, {}
+        if isinstance(name, str):
+            last_seen[name] = time
+        frames[index] = number
+    return frames
+
+
+def _check_names(used: "pd.DataFrame") -> None:
+    """Refuse two spellings of a name that never appear in one frame: they would be two boats."""
+    names = used["id"].drop_duplicates()
+    plain = names.str.normalize("NFKC").str.casefold()
+    plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
+    for _, like in names.groupby(plain):
+        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
+            raise ParameterError(
+                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
+                "case or leading zeros only: give each boat one spelling of its name"
+            )
