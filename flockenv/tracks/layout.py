@@ -79,105 +79,63 @@ def _plain(name: str, value: object) -> object:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackLayout:
-    r"""The layout of tracks in a table with one row per frame and animal, robot or boat.
+    """The layout of tracks in a table with one row per frame and animal, robot or boat.
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
     columns such as ``nose_x``, and missing fields are found by their names. A list becomes a tuple,
     and "" becomes None. Raises ParameterError for a value out of range or of another kind.
-
-    Attributes
-    ----------
-    pool, hull, target
-        As for `recording_of`.
-    leaders : tuple of str
-        Names of the leaders.
-    frame : str
-        Column of frame numbers, or of times in s if `fps` is None. Dates, clock times and
-        durations are converted. Rows may be in any order.
-    fps : float or None
-        Units of that column per second: frames per second, 1000 if it counts ms, 1/60 if it counts
-        minutes. Whole numbers need it, for example 1 if they count seconds.
-    id : str or None
-        Column of names; None if the table has one boat, or has the boats' names in those of its
-        columns. If no row has a name, all rows belong to one boat.
-    x, y : str or tuple of str
-        Column of the center, or several whose mean it is.
-    box : tuple of two str, or None
-        Columns of width and height, if x and y are the least corner of a box around the boat.
-    heading : str, or tuple of four str, or None
-        Column of headings; or the columns x, y of the tail and x, y of the head, two key points; or
-        None for the direction of motion, which is wrong for robots that are pushed sideways.
-    quaternion : tuple of four str, or None
-        Columns x, y, z and w of a rotation, in place of `heading`, where z is the vertical. In a
-        system in which y is up these are the columns x, z, y and w.
-    heading_unit : str
-        "rad", "deg" or "turn", a full turn.
-    heading_zero : str
-        Where heading 0 points in the picture: "right", "up" (a compass's north), "left", "down".
-    heading_turns : str or None
-        "cw" or "ccw", the direction in which headings grow in the picture. None: from x to y of the
-        file, clockwise if y points down.
-    axis : bool
-        Whether headings are axes without a bow, such as of ellipses. The bow is then the end
-        towards which a boat mostly moves, so a boat must not move backward for longer than forward.
-    wrapped : bool
-        Whether headings are within a full turn.
-    cm_per_unit : float or None
-        Length in cm of a unit in the file, such as a pixel. None: 1, or what a dataset says.
-    center : tuple of float
-        Center of the pool in units of the file.
-    y_down : bool
-        Whether y points down, as in pictures.
-    max_speed_cm_s : float
-        Highest speed: no velocity is taken across a faster step.
-    confidence : str or tuple of str, and least_confidence : float
-        Columns, and the least value with which a row counts.
-    unassigned : tuple of str
-        Names of detections that are not boats, in any case.
-    lost : tuple of points
-        Points, in units of the file, that stand for a missing boat.
-    missing : tuple of str
-        Further texts and numbers that stand for a missing value.
-    separator, decimal : str
-        Of a text file: ",", ";", "\\t", " " or "|", and "." or ",". None: a tab in a file that ends
-        in .tsv, a comma otherwise.
-    skip : int
-        Lines before the header of a text file.
-    header : tuple of str
-        Names of the columns of a text file without a header.
     """
 
-    pool: Any
-    hull: tuple[float, float] = (5.0, 0.5)
-    leaders: tuple[str, ...] = ()
-    target: Any = "cw"
+    pool: Any  #: As for `recording_of`.
+    hull: tuple[float, float] = (5.0, 0.5)  #: As for `recording_of`.
+    leaders: tuple[str, ...] = ()  #: Names of the leaders.
+    target: Any = "cw"  #: As for `recording_of`.
+    #: Column of frame numbers, or of times in s if `fps` is None. Dates, clock times and durations
+    #: are converted. Rows may be in any order.
     frame: str = "frame"
+    #: Units of that column per second: frames per second, 1000 if it counts ms, 1/60 if it counts
+    #: minutes. Whole numbers need it, for example 1 if they count seconds.
     fps: float | None = None
+    #: Column of names; None if the table has one boat, or has the boats' names in those of its
+    #: columns. If no row has a name, all rows belong to one boat.
     id: str | None = "id"
-    x: _Columns = "x"
-    y: _Columns = "y"
+    x: _Columns = "x"  #: Column of the center's x, or several whose mean it is.
+    y: _Columns = "y"  #: As many columns of y.
+    #: Columns of width and height, if x and y are the least corner of a box around the boat.
     box: tuple[str, str] | None = None
+    #: Column of headings; or the columns x, y of the tail and x, y of the head, two key points; or
+    #: None for the direction of motion, which is wrong for robots that are pushed sideways.
     heading: str | _Four | None = "heading"
+    #: Columns x, y, z and w of a rotation, in place of `heading`, where z is the vertical. In a
+    #: system in which y is up these are the columns x, z, y and w.
     quaternion: _Four | None = None
-    heading_unit: Literal["rad", "deg", "turn"] = "rad"
+    heading_unit: Literal["rad", "deg", "turn"] = "rad"  #: "turn" is a full turn.
+    #: Where heading 0 points in the picture: "right", "up" (a compass's north), "left", "down".
     heading_zero: Literal["right", "up", "left", "down"] = "right"
+    #: The direction in which headings grow in the picture. None: from x to y of the file, clockwise
+    #: if y points down.
     heading_turns: Literal["cw", "ccw", None] = None
+    #: Whether headings are axes without a bow, such as of ellipses. The bow is then the end towards
+    #: which a boat mostly moves, so a boat must not move backward for longer than forward.
     axis: bool = False
-    wrapped: bool = True
+    wrapped: bool = True  #: Whether headings are within a full turn.
+    #: Length in cm of a unit in the file, such as a pixel. None: 1, or what a dataset says.
     cm_per_unit: float | None = None
-    center: tuple[float, float] = (0.0, 0.0)
-    y_down: bool = False
-    max_speed_cm_s: float = 200.0
-    confidence: _Columns | None = None
-    least_confidence: float | None = None
-    unassigned: tuple[str, ...] = NOBODY
+    center: tuple[float, float] = (0.0, 0.0)  #: Center of the pool in units of the file.
+    y_down: bool = False  #: Whether y points down, as in pictures.
+    max_speed_cm_s: float = 200.0  #: Highest speed: no velocity is taken across a faster step.
+    confidence: _Columns | None = None  #: Columns of the confidence in a row.
+    least_confidence: float | None = None  #: The least value with which a row counts.
+    unassigned: tuple[str, ...] = NOBODY  #: Names of detections that are not boats, in any case.
+    #: Points, in units of the file, that stand for a missing boat.
     lost: tuple[tuple[float, float], ...] = ()
-    missing: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()  #: Further texts and numbers that stand for a missing value.
+    #: What separates the cells of a text file. None: tabs in a file that ends in .tsv, else commas.
     separator: Literal[",", ";", "\t", " ", "|", None] = None
-    decimal: Literal[".", ","] = "."
-    skip: int = 0
-    header: tuple[str, ...] = ()
+    decimal: Literal[".", ","] = "."  #: The decimal mark of a text file.
+    skip: int = 0  #: Lines before the header of a text file.
+    header: tuple[str, ...] = ()  #: Names of the columns of a text file without a header.
 
     def __post_init__(self) -> None:
         for one in fields(self):
@@ -190,16 +148,13 @@ class TrackLayout:
             raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
         if (self.confidence is None) != (self.least_confidence is None):
             raise ParameterError("confidence and least_confidence need each other")
-        count, (radius, shape) = len(self.leaders), self.hull
+        count, size = (
+            len(self.leaders),
+            {"boat_radius_cm": self.hull[0], "boat_shape": self.hull[1]},
+        )
+        known: dict[str, Any] = {"pool": self.pool, "target": self.target, **size}
         try:
-            flock = FlockParameters(
-                n_boats=count + 1,
-                n_leaders=count,
-                pool=self.pool,
-                target=self.target,
-                boat_radius_cm=radius,
-                boat_shape=shape,
-            )
+            flock = FlockParameters(n_boats=count + 1, n_leaders=count, **known)
         except TypeError as error:
             raise ParameterError(str(error)) from error
         # An iterator can be read only once.
