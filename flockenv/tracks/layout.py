@@ -167,6 +167,11 @@ class TrackLayout:
         return "{id}" in columns_of(self.x)[0]
 
     @property
+    def has_headings(self) -> bool:
+        """Whether the table has headings; otherwise they are directions of motion."""
+        return self.heading is not None or self.quaternion is not None
+
+    @property
     def columns(self) -> dict[str, tuple[str, ...]]:
         """The columns of each field, without those of times and names."""
         heading = self.heading if self.quaternion is None else None

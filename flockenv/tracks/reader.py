@@ -107,7 +107,7 @@ def _recording(
 def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
     """Return the motion of poses, after turning their headings into continuous ones of the bows."""
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    if layout.heading is None and layout.quaternion is None:
+    if not layout.has_headings:
         pose[..., 2] = direction(motion.velocity[..., 0] + 1j * motion.velocity[..., 1])
         pose[np.isnan(pose[..., 2])] = np.nan
     elif layout.axis:

@@ -154,7 +154,7 @@ def report_of(
         lone=int((motion.present & np.isnan(speed)).sum()),
         cosine=motion.cosine(pose[..., 2]),
         stuck=_stuck(used, layout),
-        held=_held(used),
+        held=_held(used) if layout.has_headings else {},
     )
 
 
@@ -177,6 +177,6 @@ def _held(used: "pd.DataFrame") -> dict[str, int]:
     # A boat that never moves keeps its heading, too.
     moving = used.drop_duplicates(["id", "x", "y"])
     counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
-    most, second = (counts.nth(rank).droplevel("heading").sort_index() for rank in (0, 1))
-    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index))]
+    most, second = counts.max(), counts.nth(1).droplevel("heading")
+    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index, fill_value=0))]
     return {str(name): int(count) for name, count in held.items()}

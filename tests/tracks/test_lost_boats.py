@@ -103,6 +103,19 @@ def test_a_heading_is_held_from_twenty_samples_on(count):
     assert report.held == ({"a": 20} if count == 20 else {})
 
 
+def test_a_heading_that_never_changes_is_held_and_a_direction_of_motion_is_not():
+    k = np.arange(30)
+    parts = [
+        pd.DataFrame({"frame": k, "id": n, "x": 50 + 0.5 * k, "y": 9.0 * int(n)}) for n in "12"
+    ]
+    table = pd.concat(parts, ignore_index=True).assign(heading=-2.0)
+    layout = TrackLayout(pool=(100.0, 0.0), fps=10.0)
+    assert read_and_counted(table, layout)[1].held == {"1": 30, "2": 30}
+    still = table.assign(x=table["x"].where(table["id"] == "1", 50.0))
+    assert read_and_counted(still, layout)[1].held == {"1": 30}
+    assert read_and_counted(table, but(layout, heading=None))[1].held == {}
+
+
 def test_a_boat_missing_for_a_short_step_has_a_gap():
     """On a clock of long and short steps, two of which are no longer than a step may be."""
     time = np.cumsum(np.tile([0.1, 0.02], 20))
