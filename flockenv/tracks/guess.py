@@ -13,7 +13,7 @@ from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, LOST, PER_S, header_of, plain, recognized, unit_of
 from flockenv.tracks.layout import TrackLayout, description_of, naming
 from flockenv.tracks.motion import FULL_TURN
-from flockenv.tracks.samples import names_of, points_of
+from flockenv.tracks.samples import points_of
 from flockenv.tracks.table import (
     check_ending,
     is_value,
@@ -83,8 +83,8 @@ def _guessed(path: Path) -> tuple[Form, Doubts]:
 def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None:
     """Add fields that follow from the table's values to those from its columns' names."""
     layout = TrackLayout(pool="wide", **{"heading": "", "id": "", **form, "confidence": ""})
-    table, boats = long_table(rows, layout)
-    if "id" in form and not names_of(table, boats, layout)[1]:
+    table, names = long_table(rows, layout)
+    if "id" in form and names is None:
         form["id"] = ""
     _guess_pool(table, layout, form, doubts)
     per_s = PER_S.get(unit_of(layout.frame))

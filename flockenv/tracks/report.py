@@ -1,6 +1,6 @@
 """Report of tracks: the used and the omitted parts."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -77,44 +77,30 @@ class TrackReport:
         ]
         return "\n  ".join([*lines, *self._doubts(counts.get("outside the water", 0))])
 
-    def _doubts(self, outside: int) -> Iterator[str]:
-        """Yield a line about each unusual value, which may be correct."""
-        if self.lone == self.samples and self.frames > 1:
-            yield "no boat appears in two successive frames: are the names right?"
-        if self.cosine < _WEAK:
-            yield (
-                "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero "
-                "and the order of x and y right, and are the headings not axes?"
-            )
-        if self.unsorted:
-            yield (
-                f"rows are not in the order of time ({self.unsorted} steps back), and were "
-                "sorted: is it one film?"
-            )
-        if self.unnamed:
-            yield "the column of names is empty: all rows are of one boat"
-        if self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S:
-            yield "that is slow for boats: are times in s? `fps` says how many units one second has"
+    def _doubts(self, outside: int) -> list[str]:
+        """Return a line about each unusual value, which may be correct."""
         share = outside / max(1, outside + self.samples)
-        if share > _MANY_OUTSIDE:
-            yield (
-                f"{share:.0%} of the detections lie beside the pool: do cm_per_unit, center and "
-                "pool fit?"
-            )
-        points = [
-            f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
-            for name, (x, y, count) in self.stuck.items()
-        ]
-        if points:
-            yield (
-                f"the same point in many frames: {_first_five(points)}; if one stands for a lost "
-                "boat, name it in `lost`"
-            )
-        if self.held:
-            yield (
-                f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
-                "heading, name it in `missing`"
-            )
+        points = [f"{n} at ({x:.6g}, {y:.6g}) in {c} frames" for n, (x, y, c) in self.stuck.items()]
+        is_alone = self.lone == self.samples and self.frames > 1
+        is_slow = self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S
+        doubts = {
+            "no boat appears in two successive frames: are the names right?": is_alone,
+            "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero and "
+            "the order of x and y right, and are the headings not axes?": self.cosine < _WEAK,
+            f"rows are not in the order of time ({self.unsorted} steps back), and were sorted: is "
+            "it one film?": self.unsorted > 0,
+            "the column of names is empty: all rows are of one boat": self.unnamed,
+            "that is slow for boats: are times in s? `fps` says how many units one second has": (
+                is_slow
+            ),
+            f"{share:.0%} of the detections lie beside the pool: do cm_per_unit, center and pool "
+            "fit?": share > _MANY_OUTSIDE,
+            f"the same point in many frames: {_first_five(points)}; if one stands for a lost boat, "
+            "name it in `lost`": len(points) > 0,
+            f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
+            "heading, name it in `missing`": len(self.held) > 0,
+        }
+        return [words for words, is_doubtful in doubts.items() if is_doubtful]
 
 
 def _by_boat(boats: Mapping[str, int]) -> str:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
-from flockenv.tracks.formats import NO_NUMBER, PER_S, unit_of
+from flockenv.tracks.formats import PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import FULL_TURN, HEADING_ZERO, TURN, direction, in_water
-from flockenv.tracks.table import Floats, index_of, listed, long_table, numbers, places_of
+from flockenv.tracks.table import Floats, boats_of, index_of, listed, long_table, numbers, places_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +30,7 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     in rad. `why` says why a sample is omitted; it is "" for samples that count. If no row has a
     name, all rows belong to one boat.
     """
-    table, boats = long_table(rows, layout)
+    table, names = long_table(rows, layout)
     columns = layout.columns
     points, is_lost = points_of(table, columns["x"], columns["y"], layout)
     corner, size = points.mean(axis=0), table[[*columns["box"]]].to_numpy() / 2
@@ -38,15 +38,21 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     position = (position - complex(*layout.center)) * (layout.cm_per_unit or 1.0)
     position = position.conj() if layout.y_down else position
     if len(columns["heading"]) == 1:
-        _check_no_component(rows, columns["heading"][0].replace("{id}", boats[0]), layout)
+        _check_no_component(rows, columns["heading"][0], layout)
     heading, is_strange = _headings(table, layout)
-    names, is_named = names_of(table, boats, layout)
-    samples = names.to_frame("id").assign(
-        time=_times(table[layout.frame], layout), x=position.real, y=position.imag, heading=heading
+    samples: pd.DataFrame = require("pandas", "plot").DataFrame(
+        {
+            "id": "0" if names is None else names,
+            "time": _times(table[layout.frame], layout),
+            "x": position.real,
+            "y": position.imag,
+            "heading": heading,
+        },
+        table.index,
     )
     is_sure = table[[*columns["confidence"]]] >= (layout.least_confidence or 0.0)
     reasons = {
-        "without a name": names.isna(),
+        "without a name": samples["id"].isna(),
         "at a point that stands for a lost boat": is_lost,
         "without a position": np.isnan(position),
         "with too little confidence": ~is_sure.all(axis=1),
@@ -57,7 +63,7 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     }
     samples["why"] = np.select(list(reasons.values()), list(reasons), "")
     _check_water(samples)
-    return samples, is_named
+    return samples, names is not None
 
 
 def points_of(
@@ -67,23 +73,6 @@ def points_of(
     points = table[[*x]].to_numpy().T + 1j * table[[*y]].to_numpy().T
     is_mark = np.isin(points, [complex(*mark) for mark in layout.lost])
     return points, np.asarray(is_mark.any(axis=0))
-
-
-def names_of(
-    table: "pd.DataFrame", boats: list[str], layout: TrackLayout
-) -> "tuple[pd.Series[str], bool]":
-    """Return the names as text, 1.0 as "1", None for rows without a boat; and if there are any."""
-    rows = len(table) // len(boats)
-    names = require("pandas", "plot").Series(np.repeat(boats, rows), table.index, dtype=object)
-    is_named = layout.is_wide
-    if layout.id is not None and not is_named:
-        found = table[layout.id].astype(object).where(table[layout.id].notna(), "")
-        found = found.astype(str).str.strip()
-        is_named = not found.str.lower().isin(NO_NUMBER).all()
-        names = found if is_named else names
-    names = names.str.replace(r"^(-?\d+)\.0+$", r"\1", regex=True)
-    nobody = {name.strip().casefold() for name in layout.unassigned} | {""}
-    return names.mask(names.str.casefold().isin(nobody), None), is_named
 
 
 def _check_water(samples: "pd.DataFrame") -> None:
@@ -208,7 +197,8 @@ def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout)
 
     They are recognized without names of columns: the squares of neighboring columns add up to 1.
     """
-    own = index_of(heading, rows, places_of(rows))
+    name = heading.replace("{id}", boats_of(rows, layout)[0])
+    own = index_of(name, rows, places_of(rows))
     squares = dict[int, Floats]()
     for index in range(max(0, own - 3), min(own + 4, rows.shape[1])):
         with suppress(ParameterError):  # A column of remarks.

@@ -31,6 +31,8 @@ _TEXTS, _PARQUET = (".csv", ".tsv", ".txt"), (".parquet", ".pq")
 SUFFIXES = (*_TEXTS, *(f"{text}.gz" for text in _TEXTS), *_PARQUET)
 """Endings of files that `read_tracks` takes."""
 
+_DIMENSIONS = ("time", "space", "individuals", "keypoints")
+
 
 def check_ending(path: Path) -> None:
     """Refuse a missing file, and a file with another ending."""
@@ -211,28 +213,43 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
     return table.reset_index(drop=True).rename_axis(index="row")
 
 
-def long_table(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, list[str]]":
-    """Return the columns that a layout names, and the boats whose rows follow one another.
+def long_table(
+    rows: "pd.DataFrame", layout: TrackLayout
+) -> "tuple[pd.DataFrame, pd.Series[str] | None]":
+    """Return the columns that a layout names, as numbers but for times, and the names of boats.
 
-    All but names and times are numbers. A column whose name holds {id} stands for the columns of
-    all boats. In a table with one row per boat there is one, "0".
+    A column whose name holds {id} stands for the columns of all boats, one after the other. A row
+    without a boat has the name None. If no row has a name, all rows belong to one boat, and None is
+    returned.
     """
-    pandas, places = require("pandas", "plot"), places_of(rows)
-    fields = [name for columns in layout.columns.values() for name in columns]
-    boats = _boats([*map(str, rows)], fields, places) if layout.is_wide else ["0"]
+    pandas, places, boats = require("pandas", "plot"), places_of(rows), boats_of(rows, layout)
 
     def found(name: str) -> "pd.Series[Any]":
         own = [index_of(name.replace("{id}", boat), rows, places) for boat in boats]
         column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in own])
         return column.rename(name)
 
-    texts = [layout.id] if layout.id and not layout.is_wide else []
-    table = pandas.DataFrame({name: found(name) for name in (*texts, *fields, layout.frame)})
-    return table.assign(**{name: numbers(table[name], layout) for name in fields}), boats
+    ids = found(layout.id) if layout.id and not layout.is_wide else None
+    times = found(layout.frame)
+    columns = {name: numbers(found(name), layout) for name in sum(layout.columns.values(), ())}
+    table: pd.DataFrame = pandas.DataFrame({layout.frame: times, **columns})
+    if ids is None and not layout.is_wide:
+        return table, None
+    texts = pandas.Series(np.repeat(boats, len(rows)), times.index) if ids is None else ids
+    names = texts.astype(object).where(texts.notna(), "").astype(str).str.strip()
+    if names.str.lower().isin(NO_NUMBER).all():
+        return table, None
+    names = names.str.replace(r"^(-?\d+)\.0+$", r"\1", regex=True)
+    nobody = {name.strip().casefold() for name in layout.unassigned} | {""}
+    return table, names.mask(names.str.casefold().isin(nobody), None)
 
 
-def _boats(names: list[str], fields: list[str], places: dict[str, list[int]]) -> list[str]:
-    """Return what stands in place of {id} in the columns of a table with one row per frame."""
+def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
+    """Return what stands in place of {id} in the names of columns; "0" if they have none."""
+    if not layout.is_wide:
+        return ["0"]
+    names, places = [*map(str, rows)], places_of(rows)
+    fields = [name for columns in layout.columns.values() for name in columns]
     first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
     boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
     boats = [b for b in boats if all(_key(f.replace("{id}", b)) in places for f in fields)]
@@ -324,24 +341,28 @@ def dataset_table(
         raise ParameterError(
             f"the dataset has no variable 'position'; there are {listed([*dataset.data_vars])}"
         )
-    position = _standard(dataset["position"], "space")
-    missing = {"x", "y"} - {*map(str, position["space"].values)}
-    if missing:
+    data = dataset[[name for name in ("position", "confidence") if name in dataset.data_vars]]
+    # Later versions of movement have the names in the singular: individual, keypoint.
+    data = data.rename({name: f"{name}s" for name in data.dims if f"{name}s" in _DIMENSIONS})
+    data = data.expand_dims([name for name in _DIMENSIONS[2:] if name not in data.dims])
+    for name, variable in data.items():
+        wanted = {*_DIMENSIONS} - ({"space"} if name == "confidence" else set())
+        if {*variable.dims} != wanted or not wanted & {"time", "space"} <= {*variable.coords}:
+            raise ParameterError(
+                f"{name} has the dimensions {', '.join(map(str, variable.dims))}, and "
+                f"{', '.join(_DIMENSIONS)} are accepted"
+            )
+    if missing := {"x", "y"} - {*map(str, data["space"].values)}:
         raise ParameterError(f"position has no {' and no '.join(sorted(missing))} in space")
-    values = {axis: position.sel(space=axis).values for axis in "xy"}
-    if "confidence" in dataset.data_vars:
-        values["confidence"] = _standard(dataset["confidence"]).values
-    named = {name: position.get_index(name).astype(str) for name in ("individuals", "keypoints")}
-    for name, along in named.items():
-        for again in along[along.duplicated()][:1]:
-            count = (along == again).sum()
-            raise ParameterError(f"{count} {name} of the dataset are called {again!r}")
-    boats, points = map(list, named.values())
+    boats, points = (_names_along(data, name) for name in _DIMENSIONS[2:])
+    is_alone = points == ["0"] and "keypoints" not in data.coords
     columns: dict[str, Any] = {
-        "time": np.repeat(dataset["time"].values, len(boats)),
-        "individuals": np.tile(boats, len(dataset["time"])),
+        "time": np.repeat(data["time"].values, len(boats)),
+        "individuals": np.tile(boats, len(data["time"])),
     }
-    is_alone = points == ["0"] and "keypoints" not in position.coords
+    data = data.transpose("time", "individuals", "keypoints", "space")
+    values = {axis: data["position"].sel(space=axis).values for axis in "xy"}
+    values |= {"confidence": data["confidence"].values} if "confidence" in data else {}
     for index, point in enumerate(points):
         stem = "" if is_alone else f"{point}_"
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
@@ -349,18 +370,13 @@ def dataset_table(
     return rows, _completed(dataset, layout, [*rows], "one" if is_alone else listed(points))
 
 
-def _standard(variable: "xarray.DataArray", *own: str) -> "xarray.DataArray":
-    """Return a variable with the dimensions time, `own`, individuals and key points."""
-    order = ("time", *own, "individuals", "keypoints")
-    # Later versions of movement have the names in the singular: individual, keypoint.
-    variable = variable.rename({n: f"{n}s" for n in variable.dims if f"{n}s" in order})
-    variable = variable.expand_dims([n for n in order[-2:] if n not in variable.dims])
-    if {*variable.dims} != {*order} or not {"time", *own} <= {*variable.coords}:
-        raise ParameterError(
-            f"{variable.name} has the dimensions {', '.join(map(str, variable.dims))}, and "
-            f"{', '.join(order)} are accepted"
-        )
-    return variable.transpose(*order)
+def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
+    """Return the names along a dimension, or its numbers if there are none."""
+    names = data.get_index(dimension).astype(str)
+    for again in names[names.duplicated()][:1]:
+        count = (names == again).sum()
+        raise ParameterError(f"{count} {dimension} of the dataset are called {again!r}")
+    return [*names]
 
 
 def _completed(
