@@ -12,7 +12,7 @@ from flockenv._io.atomic_write import write_text
 from flockenv.errors import ParameterError
 from flockenv.tracks.formats import CM, LOST, PER_S, header_of, plain, recognized, unit_of
 from flockenv.tracks.layout import TrackLayout, description_of, naming
-from flockenv.tracks.motion import FULL_TURN
+from flockenv.tracks.motion import TINY, TURN
 from flockenv.tracks.samples import points_of
 from flockenv.tracks.table import (
     check_ending,
@@ -137,11 +137,11 @@ def _guess_turn(turns: "pd.Series[float]", form: Form, doubts: Doubts) -> None:
     name = plain(form["heading"])[1].replace("°", "deg")
     said = next((unit for unit in ("deg", "rad") if name.startswith(unit)), None)
     largest = turns.quantile(0.99)  # A few may be placeholders.
-    unit = said or ("deg" if largest > FULL_TURN["rad"] else "rad")
+    unit = said or ("deg" if largest > TURN["rad"] + TINY else "rad")
     if said:
         form["heading_unit"] = said
     elif unit == "deg":
         words = "check: headings exceed a full turn in rad; wrapped = false if they are in rad"
         doubts["heading_unit"] = ("deg", words)
-    if largest > FULL_TURN[unit]:
+    if largest > TURN[unit] + TINY:
         doubts["wrapped"] = (False, "check: headings exceed a full turn")

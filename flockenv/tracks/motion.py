@@ -18,8 +18,8 @@ HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2
 TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
 """A full turn in the units of headings."""
 
-FULL_TURN = {unit: turn + 1e-6 for unit, turn in TURN.items()}
-"""The greatest heading within a full turn, rounded up."""
+TINY = 1e-6
+"""How much rounding may add to a full turn."""
 
 _MOST_BROKEN, _AXIS_JUMP = 0.5, 0.8
 
@@ -95,7 +95,21 @@ def direction(way: NDArray[np.complex128]) -> Floats:
     return np.where(way == 0.0, np.nan, np.angle(way))
 
 
-def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
+def turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
+    """Return the motion of poses, after turning their headings into continuous ones of the bows."""
+    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
+    if not layout.has_headings:
+        pose[..., 2] = direction(motion.velocity[..., 0] + 1j * motion.velocity[..., 1])
+        pose[np.isnan(pose[..., 2])] = np.nan
+    elif layout.axis:
+        pose[..., 2] = _bows_of(pose[..., 2], motion)
+    pose[..., 2] = unwrapped(pose[..., 2])
+    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
+    _check_by_motion(pose[..., 2], motion, layout)
+    return motion
+
+
+def _check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> None:
     """Refuse a column of headings that fits the motion better in another unit, or as axes."""
     if len(layout.columns["heading"]) != 1:
         return
@@ -115,7 +129,7 @@ def check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> Non
     jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & motion.steps
     if layout.axis or jumps.sum() < 3 or not _spans_half_turn(heading):
         return
-    if motion.cosine(bows_of(heading, motion)) > motion.cosine(heading):
+    if motion.cosine(_bows_of(heading, motion)) > motion.cosine(heading):
         raise ParameterError(
             "headings lie within half a turn and jump from one end of it to the other: set "
             "axis = true if they are axes without a bow, as of ellipses"
@@ -129,7 +143,7 @@ def _spans_half_turn(heading: Floats) -> bool:
     return bool((turned <= np.pi + 1e-6).all(axis=1).any())
 
 
-def bows_of(axis: Floats, motion: Motion) -> Floats:
+def _bows_of(axis: Floats, motion: Motion) -> Floats:
     """Return axes as headings: continuous, and mostly along the boat's motion."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):

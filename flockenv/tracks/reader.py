@@ -17,15 +17,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
-from flockenv.tracks.motion import (
-    Floats,
-    Motion,
-    bows_of,
-    check_by_motion,
-    direction,
-    in_water,
-    unwrapped,
-)
+from flockenv.tracks.motion import Floats, Motion, in_water, turned_into_motion, unwrapped
 from flockenv.tracks.report import TrackReport, report_of
 from flockenv.tracks.samples import TWICE, check_samples, frames_of, poses_of, samples_of
 from flockenv.tracks.table import check_ending, dataset_table, plain_table, read_table
@@ -95,27 +87,13 @@ def _recording(
     samples["frame"] = frames_of(samples)
     check_samples(samples, layout, is_named)
     names, time_s, stamps, pose = poses_of(samples)
-    motion = _turned_into_motion(stamps, pose, layout)
+    motion = turned_into_motion(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
     found = report_of(samples, time_s, pose, motion, layout)
     unnamed = layout.id is not None and not is_named
     report(replace(found, unsorted=int(unsorted.sum()), unnamed=unnamed))
     return recording
-
-
-def _turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
-    """Return the motion of poses, after turning their headings into continuous ones of the bows."""
-    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    if not layout.has_headings:
-        pose[..., 2] = direction(motion.velocity[..., 0] + 1j * motion.velocity[..., 1])
-        pose[np.isnan(pose[..., 2])] = np.nan
-    elif layout.axis:
-        pose[..., 2] = bows_of(pose[..., 2], motion)
-    pose[..., 2] = unwrapped(pose[..., 2])
-    motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
-    check_by_motion(pose[..., 2], motion, layout)
-    return motion
 
 
 def recording_of(

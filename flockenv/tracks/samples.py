@@ -11,7 +11,7 @@ from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
 from flockenv.tracks.formats import PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
-from flockenv.tracks.motion import FULL_TURN, HEADING_ZERO, TURN, direction, in_water
+from flockenv.tracks.motion import HEADING_ZERO, TINY, TURN, direction, in_water
 from flockenv.tracks.table import Floats, boats_of, index_of, listed, long_table, numbers, places_of
 
 if TYPE_CHECKING:
@@ -40,16 +40,9 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     if len(columns["heading"]) == 1:
         _check_no_component(rows, columns["heading"][0], layout)
     heading, is_strange = _headings(table, layout)
-    samples: pd.DataFrame = require("pandas", "plot").DataFrame(
-        {
-            "id": "0" if names is None else names,
-            "time": _times(table[layout.frame], layout),
-            "x": position.real,
-            "y": position.imag,
-            "heading": heading,
-        },
-        table.index,
-    )
+    ids, time = "0" if names is None else names, _times(table[layout.frame], layout)
+    found = {"id": ids, "time": time, "x": position.real, "y": position.imag, "heading": heading}
+    samples: pd.DataFrame = require("pandas", "plot").DataFrame(found, table.index)
     is_sure = table[[*columns["confidence"]]] >= (layout.least_confidence or 0.0)
     reasons = {
         "without a name": samples["id"].isna(),
@@ -167,7 +160,7 @@ def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArr
         return np.where(is_lost, np.nan, direction(way)), strange
     if columns:
         heading = table[columns[0]].to_numpy()
-        strange = (np.abs(heading) > FULL_TURN[layout.heading_unit]) & layout.wrapped
+        strange = (np.abs(heading) > TURN[layout.heading_unit] + TINY) & layout.wrapped
         _check_largest(heading, strange, layout)
         heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
     elif layout.quaternion is not None:
@@ -223,7 +216,7 @@ def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLay
     if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
         return
     largest, unit_given = np.abs(heading[strange]).max(), layout.heading_unit
-    units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= FULL_TURN[u])
+    units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= TURN[u] + TINY)
     unit = next((f"heading_unit = {u!r} if they are in {u}, " for u in units), "")
     raise ParameterError(
         f"headings reach {largest:.4g}, and {share:.0%} exceed a full turn in {unit_given}: "

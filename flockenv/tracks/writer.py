@@ -13,7 +13,6 @@ from flockenv._io.arguments import as_bool
 from flockenv._io.atomic_write import atomic_write, write_csv, write_text
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
-from flockenv.parameters import FlockParameters
 from flockenv.recording import Recording
 
 EXPORTS = (".csv", ".parquet", ".gsd")
@@ -82,8 +81,7 @@ def _layout(recording: Recording) -> dict[str, Any]:
     parameters, ids = recording.parameters, recording.ids
     names = range(parameters.n_boats) if ids is None else ids
     columns = {"frame": "time_s", "x": "x_cm", "y": "y_cm", "heading": "heading_rad"}
-    return {
-        **columns,
+    return columns | {
         "id": "boat" if ids is None else "id",
         "wrapped": False,
         "pool": parameters.pool,
@@ -113,26 +111,22 @@ def _write_gsd(recording: Recording, path: Path) -> None:
 
 
 def _put_boats(frame: Any, recording: Recording, sample: int) -> None:
+    """Put the boats that are present into a frame, each as a line swept by a disc."""
     parameters, particles = recording.parameters, frame.particles
+    radius, half = parameters.boat_radius_cm, parameters.boat_shape * parameters.boat_radius_cm
+    ends = {"rounding_radius": radius, "vertices": [[-half, 0.0], [half, 0.0]]}
+    hull = {"type": "Polygon", **ends} if half else {"type": "Sphere", "diameter": 2 * radius}
     pose = recording.pose[sample].astype(np.float64)
     boats = np.flatnonzero(np.isfinite(pose[:, 0]))
     pose, velocity = pose[boats], np.nan_to_num(recording.velocity[sample, boats])
-    half, zero = pose[:, 2] / 2, np.zeros(len(boats))
+    turn, zero = pose[:, 2] / 2, np.zeros(len(boats))
     particles.N = len(boats)
     particles.types = ["boat", "leader"]
-    particles.type_shapes = [_shape(parameters)] * 2
+    particles.type_shapes = [hull] * 2
     particles.typeid = boats < parameters.n_leaders
-    particles.diameter = np.full(len(boats), 2 * parameters.boat_radius_cm)
+    particles.diameter = np.full(len(boats), 2 * radius)
     particles.position = np.column_stack([pose[:, :2], zero])
     particles.velocity = np.column_stack([velocity[:, :2], zero])
     # A turn about z by the heading, from a hull along x.
-    particles.orientation = np.column_stack([np.cos(half), zero, zero, np.sin(half)])
+    particles.orientation = np.column_stack([np.cos(turn), zero, zero, np.sin(turn)])
     frame.log["particles/boat"] = boats.astype(np.uint32)
-
-
-def _shape(parameters: FlockParameters) -> dict[str, Any]:
-    """Return the hull in GSD's schema, where it is a line swept by a disc."""
-    radius, half = parameters.boat_radius_cm, parameters.boat_shape * parameters.boat_radius_cm
-    if half == 0.0:
-        return {"type": "Sphere", "diameter": 2 * radius}
-    return {"type": "Polygon", "rounding_radius": radius, "vertices": [[-half, 0.0], [half, 0.0]]}
