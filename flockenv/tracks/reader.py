@@ -149,15 +149,12 @@ def recording_of(
         boat above 10 m/s, centers more than a hull's width outside the water, and unknown or
         repeated names.
     """
-    times, poses = _checked_poses(time_s, pose)
+    times, poses, motion = _checked(time_s, pose, velocity)
     names = [str(name) for name in items(range(poses.shape[1]) if ids is None else ids, "ids")]
     leaders = [str(name) for name in items(leaders, "leaders")]
     order = _leaders_first(names, leaders, poses.shape[1])
-    poses[..., 2] = unwrapped(poses[..., 2])
-    motion = _velocity(velocity, times, poses)[:, order]
-    poses = poses[:, order]
-    fields = _hull(hull)
-    fields |= {"target": materialized(target), "discs": discs, "walls": walls}
+    poses, motion = poses[:, order], motion[:, order]
+    fields = _hull(hull) | {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)
@@ -176,8 +173,10 @@ def recording_of(
     )
 
 
-def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
-    """Return times and poses after checking them."""
+def _checked(
+    time_s: ArrayLike, pose: ArrayLike, velocity: ArrayLike | None
+) -> tuple[Floats, Floats, Floats]:
+    """Return times, poses with continuous headings, and their velocities after checking them."""
     times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)
     check_array("time_s", times, shape[:1], PRECISIONS)
@@ -186,15 +185,11 @@ def _checked_poses(time_s: ArrayLike, pose: ArrayLike) -> tuple[Floats, Floats]:
         raise ParameterError("time_s must increase")
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever present")
-    return times, poses
-
-
-def _velocity(velocity: ArrayLike | None, times: Floats, poses: Floats) -> Floats:
-    """Return the checked velocity, or that of the poses if none is given."""
+    poses[..., 2] = unwrapped(poses[..., 2])
     own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
     motion = with_gaps(own, "velocity")
-    check_array("velocity", motion, poses.shape, PRECISIONS, gaps=True)
-    return motion
+    check_array("velocity", motion, shape, PRECISIONS, gaps=True)
+    return times, poses, motion
 
 
 def _hull(hull: tuple[float, float]) -> dict[str, Any]:
@@ -221,8 +216,8 @@ def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int
     refuse_unknown(leaders, names, "leader among the ids")
     if len(set(leaders)) < len(leaders) or len(set(names)) < len(names):
         raise ParameterError("ids or leaders holds a name more than once")
-    ranks = {name: rank for rank, name in enumerate(leaders)}
-    return sorted(range(len(names)), key=lambda i: ranks.get(names[i], len(ranks)))
+    others = [name for name in names if name not in leaders]
+    return [names.index(name) for name in (*leaders, *others)]
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:

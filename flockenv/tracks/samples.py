@@ -225,7 +225,7 @@ def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLay
 
 
 def check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
-    """Refuse samples of which none counts, or two of one boat at one time."""
+    """Refuse samples of which none counts, two of one boat at one time, and names in two forms."""
     used = samples[samples["why"] == ""]
     if used.empty:
         counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
@@ -241,7 +241,16 @@ def check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) 
             f"positions, the second time in {used.index.name} {line}: were there two films, or "
             "was the clock set back? Give each film a table of its own"
         )
-    _check_names(used)
+    # Two spellings of a name that never appear in one frame would be two boats.
+    names = used["id"].drop_duplicates()
+    plain = names.str.normalize("NFKC").str.casefold()
+    plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
+    for _, like in names.groupby(plain):
+        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
+            raise ParameterError(
+                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
+                "case or leading zeros only: give each boat one spelling of its name"
+            )
 
 
 def poses_of(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
@@ -286,16 +295,3 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
             last_seen[name] = time
         frames[index] = number
     return frames
-
-
-def _check_names(used: "pd.DataFrame") -> None:
-    """Refuse two spellings of a name that never appear in one frame: they would be two boats."""
-    names = used["id"].drop_duplicates()
-    plain = names.str.normalize("NFKC").str.casefold()
-    plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
-    for _, like in names.groupby(plain):
-        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
-            raise ParameterError(
-                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
-                "case or leading zeros only: give each boat one spelling of its name"
-            )
