@@ -230,9 +230,9 @@ def long_table(
         return column.rename(name)
 
     ids = found(layout.id) if layout.id and not layout.is_wide else None
-    times = found(layout.frame)
     columns = {name: numbers(found(name), layout) for name in sum(layout.columns.values(), ())}
-    table: pd.DataFrame = pandas.DataFrame({layout.frame: times, **columns})
+    times = found(layout.frame)
+    table: pd.DataFrame = pandas.DataFrame({layout.frame: times, **columns}, times.index)
     if ids is None and not layout.is_wide:
         return table, None
     texts = pandas.Series(np.repeat(boats, len(rows)), times.index) if ids is None else ids
