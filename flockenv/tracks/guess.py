@@ -111,14 +111,10 @@ def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: 
     low, high = (complex(f(points.real), f(points.imag)) for f in (np.min, np.max))
     center, unit = (low + high) / 2, plain(x[0])[1]
     radius = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
-    middle = [round(center.real, 2), round(center.imag, 2)]
-    doubts |= {
-        "pool": (
-            [round(radius, 1), 0.0],
-            "check: outer and inner radius in cm, here about all positions",
-        ),
-        "center": (middle, "check: the pool's, in units of the file, here of all positions"),
-    }
+    words = "check: outer and inner radius in cm, here about all positions"
+    doubts["pool"] = ([round(radius, 1), 0.0], words)
+    words = "check: the pool's, in units of the file, here of all positions"
+    doubts["center"] = ([round(center.real, 2), round(center.imag, 2)], words)
     if unit in CM:
         form["cm_per_unit"] = CM[unit]
     else:

@@ -64,10 +64,9 @@ def read_tracks(
     check_function(report, "report")
     if isinstance(source, str | os.PathLike):
         path = Path(source)
-        if layout is None:
-            description = description_of(path)
-            check_ending(path)
-            layout = read_layout(description)
+        description = description_of(path)
+        check_ending(path)
+        layout = read_layout(description) if layout is None else layout
         with naming(path):
             return _recording(read_table(path, layout), layout, report)
     if layout is None:
@@ -85,8 +84,9 @@ def _recording(
     unsorted = samples[samples["why"] != TWICE].groupby("id")["time"].diff() < 0.0
     samples = samples.sort_values("time", kind="stable")
     samples["frame"] = frames_of(samples)
-    check_samples(samples, layout, is_named)
-    names, time_s, stamps, pose = poses_of(samples)
+    used = samples[samples["why"] == ""]
+    check_samples(samples, used, layout, is_named)
+    names, time_s, stamps, pose = poses_of(samples, used)
     motion = turned_into_motion(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)

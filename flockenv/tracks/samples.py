@@ -225,9 +225,10 @@ def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLay
     )
 
 
-def check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) -> None:
+def check_samples(
+    samples: "pd.DataFrame", used: "pd.DataFrame", layout: TrackLayout, is_named: bool
+) -> None:
     """Refuse samples of which none counts, two of one boat at one time, and names in two forms."""
-    used = samples[samples["why"] == ""]
     if used.empty:
         counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
         found = ", ".join(counts) or "there are no rows"
@@ -254,9 +255,10 @@ def check_samples(samples: "pd.DataFrame", layout: TrackLayout, is_named: bool) 
             )
 
 
-def poses_of(samples: "pd.DataFrame") -> tuple[list[str], Floats, Floats, Floats]:
+def poses_of(
+    samples: "pd.DataFrame", used: "pd.DataFrame"
+) -> tuple[list[str], Floats, Floats, Floats]:
     """Return the names (n,), times (t,), each boat's own times (t, n), and poses (t, n, 3)."""
-    used = samples[samples["why"] == ""]
     # Sorted by length, then alphabetically, so that 2 comes before 10.
     names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
     time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()

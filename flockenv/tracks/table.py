@@ -48,7 +48,6 @@ def check_ending(path: Path) -> None:
 def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
     """Return the rows of a text or Parquet file; those of a text are numbered by their line."""
     pandas = require("pandas", "plot")
-    check_ending(path)
     try:
         data = _content(path)
         if not _is_parquet(path):
