@@ -163,7 +163,7 @@ def _siblings(name: str, letter: str, others: str, names: Names) -> list[str]:
     return []
 
 
-def _key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
+def key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
     """Return the columns of x, y, heading and confidence that follow from key points.
 
     The center is a point in the middle, or the middle of head and tail, or the only point. If there
@@ -195,16 +195,16 @@ def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any
     """Return the fields of a layout if the table is this program's, otherwise None."""
     found = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
     pairs = [x for x in found["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
-    boats = {pair.groupdict().get("id") for pair in pairs}
     # In a table with names x1, y1, x2 and y2 may be a box around each boat instead of two boats.
-    if not pairs or not all(found.values()) or (has_ids and boats == {"1", "2"}):
+    is_box = has_ids and [x.groupdict().get("id") for x in found["x"]] == ["1", "2"]
+    if not pairs or not all(found.values()) or is_box:
         return None
     first = pairs[0]
     known = {field: [matches[0][0]] for field, matches in found.items()}
     if "part" in first.groupdict():
         own = [pair for pair in pairs if pair.groupdict().get("id") == first.groupdict().get("id")]
         del known["x"]
-        columns = _key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
+        columns = key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
     else:
         columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}
     if "id" in first.groupdict():

@@ -18,7 +18,7 @@ from flockenv._io.array_file import most_content
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError, short_repr
-from flockenv.tracks.formats import CM, FORMATS, NO_NUMBER, recognized
+from flockenv.tracks.formats import CM, FORMATS, NO_NUMBER, key_points
 from flockenv.tracks.layout import TrackLayout
 
 if TYPE_CHECKING:
@@ -248,7 +248,7 @@ def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
     if not layout.is_wide:
         return ["0"]
     names, places = [*map(str, rows)], places_of(rows)
-    fields = [name for columns in layout.columns.values() for name in columns]
+    fields = sum(layout.columns.values(), ())
     first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
     boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
     boats = [b for b in boats if all(_key(f.replace("{id}", b)) in places for f in fields)]
@@ -354,7 +354,9 @@ def dataset_table(
     if missing := {"x", "y"} - {*map(str, data["space"].values)}:
         raise ParameterError(f"position has no {' and no '.join(sorted(missing))} in space")
     boats, points = (_names_along(data, name) for name in _DIMENSIONS[2:])
-    is_alone = points == ["0"] and "keypoints" not in data.coords
+    stems = {point: f"{point}_" for point in points}
+    if points == ["0"] and "keypoints" not in data.coords:
+        stems = {"": ""}
     columns: dict[str, Any] = {
         "time": np.repeat(data["time"].values, len(boats)),
         "individuals": np.tile(boats, len(data["time"])),
@@ -362,11 +364,10 @@ def dataset_table(
     data = data.transpose("time", "individuals", "keypoints", "space")
     values = {axis: data["position"].sel(space=axis).values for axis in "xy"}
     values |= {"confidence": data["confidence"].values} if "confidence" in data else {}
-    for index, point in enumerate(points):
-        stem = "" if is_alone else f"{point}_"
+    for index, stem in enumerate(stems.values()):
         columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
     rows: pd.DataFrame = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return rows, _completed(dataset, layout, [*rows], "one" if is_alone else listed(points))
+    return rows, _completed(dataset, layout, stems)
 
 
 def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
@@ -379,22 +380,21 @@ def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
 
 
 def _completed(
-    dataset: "xarray.Dataset", layout: TrackLayout, columns: list[str], points: str
+    dataset: "xarray.Dataset", layout: TrackLayout, stems: dict[str, str]
 ) -> TrackLayout:
-    """Return a layout with missing fields taken from the dataset and its columns."""
+    """Return a layout with missing fields taken from the dataset."""
     given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
-    form = {"frame": "time", "id": "individuals"} | recognized(columns)
-    form.pop("confidence", None)
-    if "heading" not in form and not {"heading", "quaternion"} & given:
+    known, points = key_points(stems, {}), listed([*stems])
+    form: dict[str, Any] = {"frame": "time", "id": "individuals", **known}
+    if "heading" not in known and not {"heading", "quaternion"} & given:
         raise ParameterError(
-            f"the dataset has no headings: its key points are {points}; name those of tail and "
-            "head in heading, or heading = None takes the direction of motion"
+            f"the dataset has no headings: its key points are {points or 'one'}; name those of "
+            "tail and head in heading, or heading = None takes the direction of motion"
         )
-    if not {"x", "y"} <= form.keys() | given:
-        columns = [name for name in columns if name.endswith("_x")]
+    if not known and "x" not in given:
         raise ParameterError(
             f"which of the key points {points} is the center is not known: name its columns in x "
-            f"and y, such as x = {columns}"
+            f"and y, such as x = {[f'{stem}x' for stem in stems.values()]}"
         )
     unit = str(dataset["position"].attrs.get("space_unit", "pixels"))
     if unit in CM:

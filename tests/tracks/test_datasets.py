@@ -110,6 +110,13 @@ def test_what_the_layout_says_counts_more_than_what_is_found():
     assert ahead == pytest.approx(20 * PLACE["cm_per_unit"], abs=1e-9)
 
 
+def test_a_key_point_that_is_called_like_a_boat_names_none():
+    dataset = renamed(movement(), "keypoints", ["center", "body"]).drop_vars("confidence")
+    found = read_tracks(dataset, but(LAYOUT, heading=None))
+    assert found.ids.tolist() == movement()["individuals"].values.tolist()
+    assert found == read_tracks(movement(), but(LAYOUT, heading=None, x="nose_x", y="nose_y"))
+
+
 def test_three_dimensions_are_seen_from_above():
     dataset = movement()
     place = dataset["position"]
