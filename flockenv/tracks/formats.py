@@ -196,7 +196,7 @@ def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any
     found = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
     pairs = [x for x in found["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
     # In a table with names x1, y1, x2 and y2 may be a box around each boat instead of two boats.
-    is_box = has_ids and [x.groupdict().get("id") for x in found["x"]] == ["1", "2"]
+    is_box = has_ids and sorted(str(x.groupdict().get("id")) for x in pairs) == ["1", "2"]
     if not pairs or not all(found.values()) or is_box:
         return None
     first = pairs[0]
@@ -209,6 +209,8 @@ def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any
         columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}
     if "id" in first.groupdict():
         columns = {field: [_of_all(first, name) for name in columns[field]] for field in columns}
+        if columns and columns["x"] == columns["y"]:  # The boat of a key point x is no boat.
+            return None
         known["id"] = [""]
         angle = _first([f"*{word}{{n}}*" for word in _ANGLES], names)
         if angle and "part" not in first.groupdict():
