@@ -154,7 +154,10 @@ def recording_of(
     leaders = [str(name) for name in items(leaders, "leaders")]
     order = _leaders_first(names, leaders, poses.shape[1])
     poses, motion = poses[:, order], motion[:, order]
-    fields = _hull(hull) | {"target": materialized(target), "discs": discs, "walls": walls}
+    if (lengths := series(hull, "hull")).shape != (2,):
+        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
+    fields = dict(zip(("boat_radius_cm", "boat_shape"), lengths.tolist(), strict=True))
+    fields |= {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
     _check_units(poses, motion, parameters)
     phases, analyzed = _phases(phase, times)
@@ -190,14 +193,6 @@ def _checked(
     motion = with_gaps(own, "velocity")
     check_array("velocity", motion, shape, PRECISIONS, gaps=True)
     return times, poses, motion
-
-
-def _hull(hull: tuple[float, float]) -> dict[str, Any]:
-    """Return the fields of a hull by name."""
-    lengths = series(hull, "hull")
-    if lengths.shape != (2,):
-        raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
-    return {"boat_radius_cm": float(lengths[0]), "boat_shape": float(lengths[1])}
 
 
 def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
