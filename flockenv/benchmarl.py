@@ -101,7 +101,7 @@ class LeadersTaskClass(TaskClass):
         return False
 
     def group_map(self, env: EnvBase) -> dict[str, list[str]]:
-        """Return the group that all leaders of a flock form."""
+        """Return the agents' names by group; all leaders of a flock are one group."""
         groups: dict[str, list[str]] = env.group_map
         return groups
 

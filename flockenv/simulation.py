@@ -199,7 +199,7 @@ def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, A
 def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     """Return a run's steering and its rate in the form that the core takes."""
     if leaders.law is not None:
-        # A law steers within the core, which also holds its leans.
+        # The core runs the law, and keeps each lean until the next decision.
         own = leaders.seats[0].policy.control_hz
         if own is None and control_hz is not None:
             raise ParameterError(

@@ -140,7 +140,7 @@ export class GrowingRun extends Run {
     }
   }
 
-  /** Contacts of the latest sample, up to this one, that has them. */
+  /** Contacts of the last sample that has them, if it is less than 0.5 s before this one; otherwise none. */
   contacts(sample) {
     const known = this.latestContacts.findLast(({ time }) => time <= this.time[sample] + 1e-9);
     const numbers = known && this.time[sample] - known.time < 0.5 ? known.numbers : [];

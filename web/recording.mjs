@@ -150,8 +150,8 @@ function checkRudder(rudder, shape) {
 }
 
 /**
- * Returns the result of `read` for the recording's parameters as TOML, if the arrays are those of a recording. `format` is the
- * format that it must have; `phases`, `quantities` and `statistics` are the known names.
+ * Checks that the arrays form a recording of this `format`, and throws an error if not. Returns what `read` makes of the
+ * recording's parameters (TOML). `phases`, `quantities` and `statistics` are the known ones.
  */
 export async function checkedArrays(arrays, { format, phases, quantities, statistics }, read) {
   const hasContacts = checkStored(arrays, format);

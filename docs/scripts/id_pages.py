@@ -135,7 +135,12 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
         "action_space": str(env.action_space),
         "actions": markdown(["index", "meaning", "low", "high"], body),
         "observation_shape": str(env.observation_space.shape),
-        "times": f"The observations of the {leaders} leaders in turn. " if leaders > 1 else "",
+        "times": (
+            f"It holds the observations of the {leaders} leaders one after the other; the table "
+            "lists those of leader 0. "
+            if leaders > 1
+            else ""
+        ),
         "entries": markdown(["index", "name", "unit", "range", "meaning"], rows_of),
     }
 

@@ -28,7 +28,7 @@ def option(
     endings: Endings | None = None,
     **settings: Any,
 ) -> Value:
-    """Return a dataclass field that is an option, with the arguments of `typer.Option`.
+    """Return a dataclass field for an option of a command; `settings` go to `typer.Option`.
 
     `endings` returns the accepted endings of the name of a file that the option names.
     """

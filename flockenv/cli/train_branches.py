@@ -126,7 +126,7 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
 
 
 def _command(given: Mapping[str, Any]) -> str:
-    """Return the command line that trains again."""
+    """Return the command line that repeats this training."""
     words = ["flockenv", "train", "--algorithm", "branches"]
     for name, value in given.items():
         if isinstance(value, dict):

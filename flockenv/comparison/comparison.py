@@ -79,7 +79,7 @@ class Comparison:
                     continue
                 flock, own = parameters.replace(n_leaders=k), policy
                 if isinstance(own, Mapping) and k < max(counts):
-                    # Fewer leaders take the policies of the first ones.
+                    # With k leaders, the policies of the first k steer.
                     own = dict(itertools.islice(own.items(), k))
                 found = Episodes.parse(flock, own, seeds, duration_s, options)
                 entries.append(Entry(name, k, found))

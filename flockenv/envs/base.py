@@ -77,9 +77,9 @@ class ManyFlocks(Resumable):
         return [self._batch.flock(flock).snapshot() for flock in range(self._batch.num_flocks)]
 
     def order_parameters(self) -> NDArray[np.float64]:
-        """Return order parameters of the normal boats now.
+        """Return the present order parameters of the normal boats.
 
-        Shape (flocks, quantities): the fields of `OrderParameters`, in its order; NaN if a flock
+        Shape (flocks, quantities), with the fields of `OrderParameters` as columns; NaN if a flock
         has no normal boat.
         """
         return self._batch.core.order_parameters()

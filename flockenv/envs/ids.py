@@ -18,8 +18,8 @@ class Environment(NamedTuple):
 def _suite(
     purpose: str, n_leaders: int, episode_s: float = 480.0, **options: object
 ) -> Environment:
-    """Return a task of suite v2, which never changes: another number is another version."""
-    # All options are written out, so that a new default changes no task.
+    """Return a task of suite v2. Never change one: make a new version of the suite instead."""
+    # The flock's parameters are written out, so that a new default changes no task.
     flock = {"preset": "simulation", "n_boats": 27, "pool": "wide", "bw_s": 0.31, "dt_s": 0.02}
     flock |= {"n_leaders": n_leaders, "target": "cw"}
     return Environment(purpose, {"params": flock, "episode_s": episode_s, **options})
@@ -33,11 +33,11 @@ _TEN_BOATS: Mapping[str, Any] = {
 }
 
 
-def _from_nothing(purpose: str, bw_s: float, episode_s: float, **options: object) -> Environment:
-    """Return a level of suite v3, which never changes: leaders learn rudders from nothing."""
+def _level(purpose: str, bw_s: float, episode_s: float, **options: object) -> Environment:
+    """Return a level of suite v3: leaders learn to steer from scratch. Never change one."""
     flock = {"preset": "simulation", "bw_s": bw_s, "target": "random", "mirror_to_target": True}
-    usual = {"control_hz": 2.5, "reward": {"signed_order": 1.0}, "physics": "training"}
-    return Environment(purpose, {**flock, **options, "episode_s": episode_s, **usual})
+    fixed = {"control_hz": 2.5, "reward": {"signed_order": 1.0}, "physics": "training"}
+    return Environment(purpose, {**flock, **options, "episode_s": episode_s, **fixed})
 
 
 ENVIRONMENTS: Mapping[str, Environment] = {
@@ -47,20 +47,20 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         {},
     ),
     # With few boats, many leaders and small observations, a sample says more about the order.
-    "flockenv/Order-easy-v0": _from_nothing(
+    "flockenv/Order-easy-v0": _level(
         "The environment to start with: four of ten boats lead and see few numbers. The order "
         "answers within seconds, so that plain PPO learns to lead in two minutes of one core.",
         0.3,
         120.0,
         **_TEN_BOATS,
     ),
-    "flockenv/Order-noisy-v0": _from_nothing(
+    "flockenv/Order-noisy-v0": _level(
         "Order-easy with one and a half times its noise: the effect of a rudder is lost sooner.",
         0.45,
         120.0,
         **_TEN_BOATS,
     ),
-    "flockenv/Order-narrow-v0": _from_nothing(
+    "flockenv/Order-narrow-v0": _level(
         "Can three leaders of 27 boats learn to steer in `narrow`, where boats stand close? They "
         "choose rudders from the default observation.",
         0.45,
@@ -69,7 +69,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         n_leaders=3,
         pool="narrow",
     ),
-    "flockenv/Order-wide-v0": _from_nothing(
+    "flockenv/Order-wide-v0": _level(
         "Can three leaders of 27 boats learn to steer in `wide`, where the order answers within "
         "minutes? They choose rudders from the default observation.",
         0.31,

@@ -21,9 +21,9 @@ _NOTEBOOK_PIXELS = 400
 class Flock(HintsAtNames):
     """A flock of boats in a pool.
 
-    Boats are placed at random without overlap, at rest; leaders are boats 0 to k - 1. The same
-    parameters and seed give the same bits on one machine, through snapshots, pickles and copies
-    too. The interpreter lock is released while the flock moves.
+    Boats start at rest, placed at random without overlap. Leaders are boats 0 to
+    ``n_leaders - 1``. The same parameters and seed give the same bits on one machine, through
+    snapshots, pickles and copies too. The interpreter lock is released while the flock moves.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ class SteeringLaw(LawPolicy):
 
 
 class NamedLaw(LawPolicy):
-    """A law of the core that has only a name, and no Python class.
+    """A law of the core without a Python class of its own, made by name.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ class WrappedPolicy(ModelPolicy):
         if made.action_space != self._actions:
             raise ParameterError(
                 f"a wrapper that makes the action space {made.action_space} is not accepted: it "
-                f"may change what leaders observe, and not their actions, {self._actions}"
+                f"may change what leaders observe, but not their actions, {self._actions}"
             )
         self._check_normalizing(made)
         takes = getattr(getattr(model, "observation_space", None), "shape", None)

@@ -50,7 +50,7 @@ def checked_functions(functions: Mapping[str, object]) -> dict[str, Callable[[An
 def own_series(
     functions: Mapping[str, Callable[[Any], object]], recording: object
 ) -> dict[str, NDArray[np.float64]]:
-    """Return the values of a user's functions of a recording, a number for each sample."""
+    """Evaluate a user's own quantities of a recording; each is an array, a number per sample."""
     checked = checked_functions(functions)
     return {name: _series(name, function, recording) for name, function in checked.items()}
 

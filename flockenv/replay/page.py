@@ -98,8 +98,8 @@ def write_replay(
     Raises
     ------
     ParameterError
-        For two recordings without names, for none or more than two, for a recording without samples
-        or poses, and for one too large to be shown at all.
+        If the path does not end in .html or .htm; if `recordings` is neither a recording nor a
+        dictionary of one or two; if a recording has no samples or no poses, or is too large.
     OSError
         If the file cannot be written; an existing file is then unchanged.
     """

@@ -37,7 +37,7 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
         values = [series_of(recording, key) for recording in recordings]
         limits = quantity.range or [np.abs(own).max() for own in values if np.isfinite(own).all()]
         largest = max(map(abs, limits), default=1.0)
-        # Three significant digits of the largest number, but at most 6 after the point.
+        # Two or three significant digits of the largest number, at most 6 decimals.
         decimals = 2 - math.floor(math.log10(largest) + 0.3) if largest > 0 else 2
         name, _, index = quantity.symbol.partition("_")
         symbol = f" {name}{index.translate(_SMALL)}" if index else ""
@@ -52,7 +52,8 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     For one recording it is the minute in which signed order changes most: the mean over the
     minute's second half minus that over its first, in absolute value. For two it is the minute in
     which their mean difference in signed order is largest. If the recordings have no whole minute
-    in common, or no normal boats, the result is the time of the first sample and an empty text.
+    in common, or a sample has no signed order, the result is the time of the first sample and an
+    empty text.
     """
     first = max(float(recording.time_s[0]) for recording in recordings)
     end = min(float(recording.time_s[-1]) for recording in recordings)

@@ -65,7 +65,7 @@ class RunStore:
         return self.folder / version / spec.key[:2] / f"{spec.key}.npz"
 
     def save(self, spec: RunSpec, run: Recording) -> None:
-        """Keep the finished run of a spec.
+        """Store the finished run of a spec.
 
         Raises StorageError if the run cannot be written, for example to a full disk.
         """

@@ -29,7 +29,7 @@ class FlockEvalCallback(EvalCallback):
     model is the one with the highest mean signed order, or, if episodes end before the analysis
     window, with the highest mean return. The file ``evaluations.npz`` has the signed orders as
     ``signed_order``, beside the returns. A continued training (``reset_num_timesteps=False``)
-    continues the file, and keeps its best.
+    appends to the file, and replaces the best model only by a better one.
 
     Parameters
     ----------

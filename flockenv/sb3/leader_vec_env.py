@@ -54,7 +54,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     slot's target.
 
     ## Rewards
-    Each slot gets the weighted sum of its terms; terms of a leader alone are its own.
+    Each slot gets the weighted sum of its terms. Terms of a single leader go to its slot only.
     `reward_terms()` returns the terms of the last step.
 
     `reward` may also be a function of this environment, called once the flocks have moved, before

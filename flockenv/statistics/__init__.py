@@ -1,4 +1,4 @@
-"""Statistics of finished runs: each rule stands here once.
+"""Statistics of finished runs.
 
 Intervals of means, of differences and of any statistic of independent runs; a straight line with
 its test; times of events that some runs never reach; the noise at which order is lost. The

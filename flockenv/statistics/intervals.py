@@ -207,14 +207,14 @@ def _means_of_draws(
 
 
 def _width_ratio(count: int) -> float:
-    """Return the width of Student's interval over that of a normal bootstrap's percentiles."""
-    stats, level = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
-    quantiles = stats.t.ppf(level, count - 1) / stats.norm.ppf(level)
-    return float(quantiles * math.sqrt(count / (count - 1)))
+    """Return how much wider Student's interval is than a bootstrap's, for normal values."""
+    stats, upper = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
+    ratio = stats.t.ppf(upper, count - 1) / stats.norm.ppf(upper)
+    return float(ratio * math.sqrt(count / (count - 1)))
 
 
 def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]) -> "pd.DataFrame":
-    """Means and intervals of quantities in groups of runs.
+    """Return means and intervals of quantities by group of runs.
 
     Parameters
     ----------

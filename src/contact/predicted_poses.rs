@@ -70,7 +70,8 @@ impl PredictedPoses {
         self.is_current = false;
     }
 
-    /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date.
+    /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date, and marks it
+    /// outdated. Returns whether it did.
     pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         if self.is_current {
             std::mem::swap(poses, &mut self.poses);

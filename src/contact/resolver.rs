@@ -151,7 +151,7 @@ impl ContactResolver {
         self.warm_start_cache.replace(impulses.iter().copied());
     }
 
-    /// Forgets contacts and impulses, after poses were set from outside.
+    /// Clears contacts, impulses and the neighbor list, after poses were set from outside.
     pub(crate) fn forget(&mut self) {
         self.contacts.clear();
         self.solver.impulses.clear();

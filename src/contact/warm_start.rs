@@ -50,8 +50,9 @@ pub(super) struct WarmStartCache {
     /// Entries in the order of detection, with the contacts of a pair one after the other. Contacts without an impulse
     /// may be missing.
     entries: Vec<CachedImpulse>,
-    /// The last entry of each boat, and for each entry the one before it of the same boat.
+    /// Index of each boat's last entry.
     of_boat: Vec<u32>,
+    /// For each entry, the index of the previous entry of the same boat.
     before: Vec<u32>,
 }
 
@@ -135,7 +136,7 @@ impl WarmStartCache {
         }
     }
 
-    /// The entries with the same two bodies as a contact, from a search of all entries.
+    /// The entries with the same two bodies as a contact, found among those of its boat.
     #[inline(never)]
     fn search(&self, contact: &Contact) -> &[CachedImpulse] {
         let mut index = self

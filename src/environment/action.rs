@@ -36,7 +36,7 @@ impl ActionMode {
         }
     }
 
-    /// Angle in rad, outward of the target's tangent, for an action in [−1, 1].
+    /// Heading that an action in [−1, 1] asks for: its angle in rad outward of the target's tangent; 0 for a rudder.
     pub fn angle(self, action: f64) -> f64 {
         match self {
             Self::Rudder => 0.0,

@@ -39,7 +39,7 @@ pub(super) struct ContactCredit {
 }
 
 impl ContactCredit {
-    /// Credit without a memory yet.
+    /// No credit yet, before the first contact.
     pub(super) fn new(leaders: usize, boats: usize) -> Self {
         Self {
             leaders,
@@ -68,7 +68,7 @@ impl ContactCredit {
             let Some(boat) = contact.second().filter(|_| impulse > 0.0) else {
                 continue;
             };
-            // Leaders have the lower indices, and a contact's partner is above its boat.
+            // Leaders come first, and a contact's boat has a lower index than its partner.
             let leader = contact.boat as usize;
             if leader >= self.leaders || boat < self.leaders {
                 continue;

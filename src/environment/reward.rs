@@ -226,7 +226,7 @@ impl Weights {
             .try_for_each(|weights| weights.check(parameters))
     }
 
-    /// Checks that a list has as many weights as the flock with the most leaders in a batch needs.
+    /// Checks that a list has one entry for each leader of the flock that has the most leaders in a batch.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].

@@ -82,7 +82,8 @@ impl Obstacle {
         Some([-1.0, 1.0].map(|side| (pose.end(side, *half_length), -pose.axis * side)))
     }
 
-    /// Whether the boat, which is pushed along `normal`, lies beyond an end at which another wall continues towards it.
+    /// Whether the boat, which is pushed along `normal`, lies past an end of this wall where another wall leads on toward
+    /// the boat.
     /// Such an end has no contact, since that would brake a boat that slides past.
     fn is_continued(&self, normal: Vec2) -> bool {
         let Self::Wall { pose, joints, .. } = self else {
@@ -121,7 +122,7 @@ impl Obstacle {
         (point - core).norm() - radius
     }
 
-    /// The contacts of a boat's hull with a gap below `margin`: none, one or, along a wall, two.
+    /// Calls `found` with each contact of a boat's hull whose gap is below `margin`: at most one at a disc, two at a wall.
     pub fn gaps(
         &self,
         boat: &HullPose,

@@ -199,7 +199,7 @@ pub(super) fn track_velocities<'py>(
     Ok((rows_of(py, numbers.collect(), 3)?, broken))
 }
 
-/// Poses, or velocities, of an array of shape (t, n, 3).
+/// Poses, or velocities, from an array of shape (t, n, 3).
 fn samples(array: &PyReadonlyArray3<'_, f64>, name: &str) -> PyResult<Samples> {
     let array = array.as_array();
     let (times, boats, numbers) = array.dim();

@@ -89,7 +89,7 @@ impl PyEnvBatch {
         Ok(Self::wrap(EnvBatch::new(settings, parameters)?))
     }
 
-    /// Numbers in an observation, control steps in an episode and from one decision to the next.
+    /// Numbers per observation, control steps per episode, and control steps per decision.
     #[getter]
     fn sizes(&self) -> Result<(usize, u32, u32)> {
         let batch = self.0.read()?;
@@ -242,8 +242,8 @@ impl PyEnvBatch {
         self.gathered(py, TERMS, |_, episode| episode.terms().concat())
     }
 
-    /// The recorded quantities of the normal boats: a row per flock in the order of the table, NaN for a flock without
-    /// normal boats.
+    /// The recorded quantities of the normal boats: a row per flock, a column per quantity; NaN for a flock without normal
+    /// boats.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
         self.gathered(py, RECORDED, |_, episode| {
             let recorded = episode.flock().recorded(false);

@@ -275,8 +275,7 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
     Ok(state)
 }
 
-/// Contacts by column: i, j, gap_cm, normal, force, point_cm and along_cm, in the precision that a flock or a recording
-/// has.
+/// Contacts by column: i, j, gap_cm, normal, force, point_cm and along_cm. `rounded` sets their precision.
 pub(super) fn contact_columns<'py, I: Element + From<i32>, T: Element>(
     py: Python<'py>,
     contacts: &[ContactForce],

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 /// A stream's generator.
 pub(crate) type StreamRng = ChaCha8Rng;
 
-/// A stream of a flock, by its name.
+/// A random stream, identified by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Stream(&'static str);
 

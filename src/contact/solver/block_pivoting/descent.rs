@@ -77,7 +77,7 @@ impl IslandSolver {
         current.iter().any(|&impulse| impulse > 0.0)
     }
 
-    /// Keeps the strongest impulses if there are more than can be independent of each other.
+    /// Sets all but the strongest impulses to zero if more are positive than the island has degrees of freedom.
     fn keep_strongest(&self, pushes: &mut [f64]) {
         let most = self.most_active();
         if pushes.len() <= most || pushes.iter().filter(|&&push| push > 0.0).count() <= most {

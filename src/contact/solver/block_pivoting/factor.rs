@@ -7,8 +7,8 @@
 
 use super::rows::{NONE, Row, Rows, WALLS};
 
-/// Entries come in groups of this many, padded with zeros. Rows have two or three entries, and a loop of unpredictable
-/// length costs more than the extra arithmetic.
+/// Entries come in groups of this many, padded with zeros. Most rows have two or three entries; for these a loop of
+/// unpredictable length costs more than the extra arithmetic.
 const GROUP: usize = 2;
 
 /// Rows of fewer entries cost too little to be counted.

@@ -159,8 +159,8 @@ impl IslandSolver {
         computed
     }
 
-    /// Solves again for the slack that rounding leaves at the active contacts; returns whether it did. A regularized
-    /// problem keeps its slack, since its contacts are meant to yield.
+    /// One step of iterative refinement: removes the slack that rounding left at the active contacts. Returns whether a step
+    /// was needed. A regularized problem keeps its slack, since its contacts are meant to yield.
     pub(super) fn refine(&mut self, regularization: f64) -> bool {
         if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
             return false;

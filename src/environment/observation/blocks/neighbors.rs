@@ -8,7 +8,7 @@ use crate::geometry::cross;
 /// One neighbor; zeros for neighbors that the flock lacks.
 #[rustfmt::skip]
 pub(super) const NEIGHBOR: [Entry; 8] = [
-    Entry::new("present", "", Scale::Plain, FLAG, "1 where there is such a neighbor"),
+    Entry::new("present", "", Scale::Plain, FLAG, "1 if there is such a neighbor"),
     Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its center, seen from the leader along the leader's outward axis"),
     Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
     Entry::new("cos_relative_heading", "", Scale::Plain, UNIT, "cosine of the angle between the headings"),

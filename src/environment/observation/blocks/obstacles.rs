@@ -9,7 +9,7 @@ use crate::parameters::FlockParameters;
 /// One obstacle; zeros for obstacles that the pool lacks.
 #[rustfmt::skip]
 pub(super) const OBSTACLE: [Entry; 4] = [
-    Entry::new("there", "", Scale::Plain, FLAG, "1 where there is such an obstacle"),
+    Entry::new("present", "", Scale::Plain, FLAG, "1 if there is such an obstacle"),
     Entry::new("outward_distance", "cm", Scale::Length, (-4.0, 4.0), "its nearest point, seen from the leader's center along the leader's outward axis"),
     Entry::new("clockwise_distance", "cm", Scale::Length, (-4.0, 4.0), "the same along the leader's clockwise axis").odd(),
     Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
