@@ -210,6 +210,34 @@ impl ContactDetector {
         self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
+    /// Whether a boat moves farther than its reach: then contacts may matter that were not found.
+    pub(super) fn is_outrun(&self, displacements: &[f64]) -> bool {
+        let mut pairs = displacements.iter().zip(&self.reaches);
+        pairs.any(|(displacement, reach)| displacement > reach)
+    }
+
+    /// Whether bodies overlap by more than `allowed` at poses to which boats move by these displacements, found or not.
+    /// Also true if a boat moves so far that the neighbor list may lack what it meets.
+    #[cold]
+    pub(super) fn may_overlap_unseen(
+        &mut self,
+        boats: &[HullPose],
+        displacements: &[f64],
+        allowed: f64,
+    ) -> bool {
+        let listed = 1.5 * self.farthest;
+        if displacements
+            .iter()
+            .any(|&displacement| displacement > listed)
+        {
+            return true;
+        }
+        let mut contacts = Vec::new();
+        self.reaches.fill(0.0);
+        self.detect_listed(boats, 0.0, &mut contacts);
+        contacts.iter().any(|contact| contact.gap.gap < -allowed)
+    }
+
     /// Squared distances from the pool's center at which no wall is nearer than `margin`; an empty range if the margins
     /// of the two walls meet.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {

@@ -65,6 +65,16 @@ impl PredictedPoses {
         self.is_current = true;
     }
 
+    /// Largest motion of each boat's hull, in cm.
+    pub(super) fn all_displacements(&self) -> &[f64] {
+        &self.displacements
+    }
+
+    /// The predicted hulls.
+    pub(super) fn hulls(&self) -> &[HullPose] {
+        &self.hulls
+    }
+
     /// Marks the prediction as outdated: velocities have changed.
     pub(super) fn set_outdated(&mut self) {
         self.is_current = false;

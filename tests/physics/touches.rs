@@ -11,7 +11,7 @@ use crate::support::{
 use approx::assert_abs_diff_eq;
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Velocity};
-use flockenv::parameters::{Pool, Preset};
+use flockenv::parameters::{Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
 use std::f64::consts::FRAC_PI_2;
 
@@ -191,6 +191,23 @@ fn no_minute_of_a_crowded_cycle_overlaps_by_more_than_the_tolerance() {
             assert_eq!(statistics.unsolved, 0, "{dt_s} {seed}");
         }
     }
+}
+
+#[test]
+fn a_boat_that_others_push_far_meets_nothing_unseen() {
+    // At 344.5 s contacts push a boat farther than any were looked for: it would overlap another by 0.03 cm.
+    let p = FlockParameters {
+        n_boats: 27,
+        pool: Pool::NARROW,
+        bw_s: 0.45,
+        dt_s: 0.1,
+        scheme: Scheme::Moreau,
+        ..FlockParameters::preset(Preset::Simulation)
+    };
+    let mut flock = Flock::new(p, 12035).expect("room");
+    flock.advance(345.0, None).expect("finite motion");
+    assert!(flock.statistics().worst_overlap_cm <= 1e-4);
+    assert_eq!(flock.statistics().unsolved, 0);
 }
 
 #[test]

@@ -64,7 +64,8 @@ fn absurd_noise_leaves_boats_in_the_water_or_fails() {
     for tolerance_cm in [1e-4, f64::INFINITY] {
         let p = absurd(|p| (p.c4, p.tolerance_cm) = (1000.0, tolerance_cm));
         let failed = failures(&p, 300);
-        assert!(failed > 0, "nothing was refused: {tolerance_cm}");
+        // With a tolerance, substeps are halved until no contact is missed.
+        assert_eq!(failed > 0, tolerance_cm == f64::INFINITY, "{failed}");
     }
 }
 
