@@ -50,17 +50,48 @@ def entries() -> list[Number]:
         Number(page, "design. {} of them have", pairs, few, small, "d"),
         Number("studies/README.md", "score; {} of # pairs", pairs, few, told_apart, "d"),
         Number("studies/README.md", "score; # of {} pairs", pairs, few, len, "d"),
-        Number(page, "has {} (# to #), the highest", table, few, lambda rows: rows["score"].max()),
+        *interval(page, "has {}, the highest", table, {**few, "entry": "TRPO"}, ends_of("score")),
         *interval(page, "branches have {}: one", table, longer, ends_of("score")),
+        *interval(
+            page,
+            "evolution has {}, and",
+            table,
+            {"budget": 100, "entry": "linear evolution"},
+            ends_of("score"),
+        ),
         *(
-            Number(page, words, table, {"level": level, "budget": 30, "entry": entry}, column)
-            for words, level, entry, column in (
-                ("branches in `order-wide`, {} (# to", "order-wide", "paired branches", "score"),
-                ("score in `order-noisy`, {} (# to", "order-noisy", "TRPO", "score"),
-                ("TRPO has {} (# to #) in `order-wide`", "order-wide", "TRPO", "score"),
-                ("law gains: MAPPO has {} (", "order-narrow", "MAPPO", "score"),
-                ("to #), and TRPO {} (# to", "order-narrow", "TRPO", "score"),
+            number
+            for words, level, entry in (
+                ("branches in `order-wide`, {}.", "order-wide", "paired branches"),
+                ("score in `order-noisy`, {}, and", "order-noisy", "TRPO"),
+                ("TRPO has {} in `order-wide`", "order-wide", "TRPO"),
+                ("law gains: IPPO has {}, MAPPO", "order-narrow", "IPPO"),
+                ("to #), MAPPO {}, and TRPO", "order-narrow", "MAPPO"),
+                ("to #), and TRPO {}. These", "order-narrow", "TRPO"),
             )
+            for number in interval(
+                page,
+                words,
+                table,
+                {"level": level, "budget": 30, "entry": entry},
+                ends_of("score"),
+            )
+        ),
+        *interval(
+            page,
+            "512 flocks is {}, and that",
+            f"{folder}laws.csv",
+            {"level": "order-narrow", "policy": "straight ahead"},
+            ("signed_order", "low", "high"),
+            ".3f",
+        ),
+        Number(
+            page,
+            "correction {} differ in `order-noisy`",
+            pairs,
+            {"level": "order-noisy"},
+            small,
+            "d",
         ),
         *ranks_of_levels(
             page,

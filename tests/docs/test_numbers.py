@@ -189,11 +189,11 @@ def levels() -> list[Number]:
         for policy, shown in columns.items():
             row = {"level": level, "policy": policy}
             laws.append(Number(page, f"{words} {shown} |", file, row, "signed_order"))
-    best = {"level": "order-narrow", "budget": 30, "entry": "MAPPO"}
+    best = {"level": "order-narrow", "budget": 30, "entry": "IPPO"}
     learned = {"level": "order-wide", "policy": "learned"}
     return [
         *laws,
-        *interval(page, "of MAPPO, gain {} of", ENTRIES, best, ends_of("score")),
+        *interval(page, "of IPPO, gain {} of", ENTRIES, best, ends_of("score")),
         *interval(page, "learned leaders gain {} on it", file, learned, ends_of("gain"), ".3f"),
         *ranks_of_levels(
             page, "correlation of {}; in", "in `order-wide` it is {}, and", "`order-narrow` {}. In"
@@ -467,7 +467,7 @@ def solving(boats: int) -> float:
                 {"scene": "jam of 27"},
             ),
         ),
-        ("takes three fifths of the time of 27 boats in a jam", 3 / 5, solving(27)),
+        ("takes two thirds of the time of 27 boats in a jam", 2 / 3, solving(27)),
         ("in a jam, and half of that of 1000", 1 / 2, solving(1000)),
     ],
 )
@@ -482,20 +482,21 @@ def test_the_error_in_the_jam_does_not_come_from_the_tolerance():
     rows = rows[(rows[list(ours)] == pd.Series(ours)).all(axis=1)]
     errors = rows.pivot_table("horizon_median_cm", "dt_s", "tolerance_cm")
     assert len(errors) == 5
-    assert (errors[1e-6] / errors[1e-4]).between(0.99, 1.01).all()
-    assert (errors[1e-9] / errors[1e-4]).between(0.75, 1.01).all()
+    for smaller in (1e-6, 1e-9):
+        assert (errors[smaller] / errors[1e-4]).between(0.895, 1.105).all()
 
 
-def test_none_of_eleven_settings_changes_the_order():
-    """And the setting of trainings lies within three standard errors."""
+def test_one_of_eleven_settings_shows_a_change_of_the_order():
+    """It is that of trainings, which lies within three standard errors."""
     page = (REPOSITORY / quoted_speed.PAGE).read_text("utf-8")
-    assert "Of eleven settings of `leapfrog` and `moreau` none shows a change" in page
+    assert "Of eleven settings of `leapfrog` and `moreau` one shows a change" in page
     rows = pd.read_csv(REPOSITORY / SPEED / "order.csv")
     kept = rows["scheme"].isin(["leapfrog", "moreau"]) & (rows["psi_o_half_width"] > 0)
     ours = rows[kept & (rows["first_seed"] == 1)]
     assert len(ours) == 11
-    assert (ours["psi_o_error"].abs() > ours["psi_o_half_width"]).sum() == 0
     training = ours[(ours["dt_s"] == 0.1) & (ours["tolerance_cm"] == 1e-4)].iloc[0]
+    changed = ours[ours["psi_o_error"].abs() > ours["psi_o_half_width"]]
+    assert list(changed.index) == [training.name]
     for name in ("psi_o_{}", "c_v_{}_cm2_s2"):
         error, half = (training[name.format(each)] for each in ("error", "half_width"))
         # Half a 95 % interval is two standard errors or more.
