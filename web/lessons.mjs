@@ -4,7 +4,7 @@
 import { element } from "../flockenv/replay/shared/words.mjs";
 
 /** The flock of a page that is opened without a link: it circles. */
-export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=0&start=180&speed=4";
+export const OPENING = "#preset=experiment&n_boats=27&bw_s=0.8&seed=5&start=180&speed=4";
 const OPENING_WORDS = {
   before: "These boats only bump into each other, and yet they circle together. How long they back up in each cycle decides it: try the slider.",
   after: "Blue boats head clockwise, orange ones counter-clockwise, gray ones neither.",

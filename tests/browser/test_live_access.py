@@ -104,7 +104,7 @@ def tree_of(live) -> list[tuple[str, str, str]]:
 
 
 def test_a_screen_reader_hears_names_values_and_what_the_flock_does(open_live):
-    live = open_live().go("#preset=experiment&n_boats=27&bw_s=0.8&seed=0&start=180")
+    live = open_live().go("#preset=experiment&n_boats=27&bw_s=0.8&seed=5&start=180")
     slider = live.script("return document.getElementById('bw_s').ariaValueText")
     assert slider == "0.8 seconds"
     tree = tree_of(live)
