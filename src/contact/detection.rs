@@ -106,7 +106,7 @@ impl ContactDetector {
         self.reaches
             .iter_mut()
             .for_each(|reach| *reach = *reach * dt + added);
-        let margin = 3.0 * fastest * dt + 1e-3 * self.hull.radius;
+        let margin = self.margin();
         let may_crowd = boats.len() > 2 * MOST_PAIRS_A_BOAT && dt > self.shortest_s;
         self.is_crowded =
             may_crowd && fastest * dt > self.hull.reach() && self.crowds(boats, margin);
@@ -225,17 +225,19 @@ impl ContactDetector {
         displacements: &[f64],
         allowed: f64,
     ) -> bool {
-        let listed = 1.5 * self.farthest;
-        if displacements
-            .iter()
-            .any(|&displacement| displacement > listed)
-        {
-            return true;
-        }
+        let listed = 0.5 * self.margin();
         let mut contacts = Vec::new();
         self.reaches.fill(0.0);
         self.detect_listed(boats, 0.0, &mut contacts);
         contacts.iter().any(|contact| contact.gap.gap < -allowed)
+            || displacements
+                .iter()
+                .any(|&displacement| displacement > listed)
+    }
+
+    /// Distance in cm up to which bodies are listed as neighbors: more than boats reach, even if contacts speed them up.
+    fn margin(&self) -> f64 {
+        3.0 * self.farthest + 1e-3 * self.hull.radius
     }
 
     /// Squared distances from the pool's center at which no wall is nearer than `margin`; an empty range if the margins

@@ -1,5 +1,6 @@
 //! Poses to which a solve would move the boats, and the gaps at those poses.
 
+use super::depenetration::smallest_gap;
 use super::touches::{are_swapped, first_of_two};
 use super::{Contact, ContactDetector};
 use crate::geometry::{Hull, HullPose, Pose, Velocity};
@@ -65,14 +66,19 @@ impl PredictedPoses {
         self.is_current = true;
     }
 
-    /// Largest motion of each boat's hull, in cm.
-    pub(super) fn all_displacements(&self) -> &[f64] {
-        &self.displacements
-    }
-
-    /// The predicted hulls.
-    pub(super) fn hulls(&self) -> &[HullPose] {
-        &self.hulls
+    /// Whether a boat is pushed farther than contacts were looked for, and overlaps another body by more than the tolerance,
+    /// and by more than `contacts` do before.
+    pub(super) fn overlaps_unseen(
+        &self,
+        detector: &mut ContactDetector,
+        contacts: &[Contact],
+        tolerance: f64,
+    ) -> bool {
+        debug_assert!(self.is_current);
+        detector.is_outrun(&self.displacements) && {
+            let allowed = tolerance.max(-smallest_gap(contacts));
+            detector.may_overlap_unseen(&self.hulls, &self.displacements, allowed)
+        }
     }
 
     /// Marks the prediction as outdated: velocities have changed.
@@ -97,26 +103,21 @@ impl PredictedPoses {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        let mut pairs = contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b));
-        pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
+        touches(contacts).any(|touches| detector.overlaps_at(&touches[0], &self.hulls, allowed))
     }
 
-    /// Whether a contact that its boats move far enough to close overlaps by more than `allowed` at the predicted poses.
-    pub(super) fn closing_overlap(
+    /// As [`Self::overlaps`], for the contacts that their boats move far enough to close.
+    pub(super) fn closing_overlaps(
         &self,
         detector: &ContactDetector,
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        let mut looked_at: Option<&Contact> = None;
-        contacts.iter().any(|contact| {
-            if contact.gap.gap > self.displacements(contact) {
-                return false;
-            }
-            let is_known =
-                looked_at.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
-            looked_at = Some(contact);
-            !is_known && detector.overlaps_at(contact, &self.hulls, allowed)
+        touches(contacts).any(|touches| {
+            let mut gaps = touches.iter().map(|contact| contact.gap.gap);
+            let displacements = self.displacements(&touches[0]);
+            gaps.any(|gap| gap <= displacements)
+                && detector.overlaps_at(&touches[0], &self.hulls, allowed)
         })
     }
 
@@ -180,4 +181,9 @@ impl PredictedPoses {
         *pair = Some((first, gaps));
         gaps[k - first]
     }
+}
+
+/// Contacts by the touches that one look at two bodies covers.
+fn touches(contacts: &[Contact]) -> impl Iterator<Item = &[Contact]> {
+    contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b))
 }

@@ -260,11 +260,14 @@ impl ContactResolver {
         }
         let mut is_unsolved = self.settle(motion, divisibility, statistics)? || self.is_deep;
         let is_promised = self.relinearization.is_on() && motion.before.is_some();
-        if is_promised && !is_unsolved && self.overlaps_unseen(motion) {
-            if divisibility.if_overlapping {
+        if is_promised && !is_unsolved {
+            let tolerance = self.relinearization.tolerance;
+            is_unsolved =
+                self.predicted
+                    .overlaps_unseen(&mut self.detector, &self.contacts, tolerance);
+            if is_unsolved && divisibility.if_overlapping {
                 return Err(NotTaken::TooLong);
             }
-            is_unsolved = true;
         }
         let velocities = &self.solver.velocities;
         if self.detector.moves_too_far(velocities, motion.dt) {
@@ -276,24 +279,6 @@ impl ContactResolver {
         self.warm_start_cache
             .replace(entries.map(|(contact, &impulse)| CachedImpulse::new(contact, impulse)));
         Ok(())
-    }
-
-    /// Whether a boat was pushed farther than contacts were looked for, and overlaps another body at the substep's end by
-    /// more than the tolerance, and more than at its start.
-    fn overlaps_unseen(&mut self, motion: &Motion) -> bool {
-        if !self.predicted.is_current() {
-            let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
-            self.predicted
-                .predict(motion.poses, velocities, motion.dt, hull);
-        }
-        let displacements = self.predicted.all_displacements();
-        if !self.detector.is_outrun(displacements) {
-            return false;
-        }
-        let allowed = (self.relinearization.tolerance).max(-smallest_gap(&self.contacts));
-        let hulls = self.predicted.hulls();
-        self.detector
-            .may_overlap_unseen(hulls, displacements, allowed)
     }
 
     /// Solves until a solution passes the checks; returns whether it leaves overlaps. If a check fails, skipped

@@ -20,9 +20,10 @@ pub struct Statistics {
     pub factored_rows: u64,
     /// Most numbers that the Cholesky factors of one solve held.
     pub most_factor_entries: u64,
-    /// Substeps that left overlaps deeper than the tolerance. Either moving poses could not undo deep overlaps, or
-    /// constraints contradicted each other or relinearization did not converge, and the substep could not be halved.
-    /// Velocities are then those of the nearest problem that can be solved.
+    /// Substeps that left overlaps deeper than the tolerance. Either moving poses could not undo deep overlaps, or the
+    /// substep could not be halved any more although constraints contradicted each other, relinearization did not converge,
+    /// or a boat was pushed into one that was not looked for. Velocities are then those of the nearest problem that can be
+    /// solved.
     pub unsolved: u64,
     /// Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have driven boats, or a boat
     /// moved too far.

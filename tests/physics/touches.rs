@@ -5,15 +5,15 @@
 //! with one end throughout. Two inert boats pressed end to flank carry the same impulse on either side of the right angle.
 
 use crate::support::{
-    OPEN_WATER, VELOCITY_SCHEMES, deepest_overlap, driven, flock_of, inert, table_3, take_substeps,
-    wall,
+    OPEN_WATER, R, VELOCITY_SCHEMES, deepest_overlap, disc_at, driven, flock_of, inert, table_3,
+    take_substeps, wall,
 };
 use approx::assert_abs_diff_eq;
 use flockenv::flock::State;
 use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Preset, Scheme};
 use flockenv::{Flock, FlockParameters};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
 /// The tolerances that promise something, the default among them.
 const PROMISED: [f64; 3] = [1e-4, 1e-6, 1e-9];
@@ -195,7 +195,34 @@ fn no_minute_of_a_crowded_cycle_overlaps_by_more_than_the_tolerance() {
 
 #[test]
 fn a_boat_that_others_push_far_meets_nothing_unseen() {
-    // At 344.5 s contacts push a boat farther than any were looked for: it would overlap another by 0.03 cm.
+    // Discs: two that meet at 60 cm/s squeeze a third out between them, at 0.577 of their speed. In 0.1 s it moves by
+    // 3.46 cm; contacts were looked for within half of the fastest one's 6 cm. A post stands 3.2 cm away.
+    let (sin, cos) = FRAC_PI_3.sin_cos();
+    let across = 2.0 * R * sin;
+    for scheme in VELOCITY_SCHEMES {
+        let p = FlockParameters {
+            boat_shape: 0.0,
+            dt_s: 0.1,
+            tolerance_cm: 1e-4,
+            discs: vec![disc_at(2.0 * R * cos + 2.0 * R + 3.2, 0.0, R)],
+            ..inert(scheme)
+        };
+        let states = [
+            ([0.0, across, 0.0], [0.0, -60.0, 0.0]),
+            ([0.0, -across, 0.0], [0.0, 60.0, 0.0]),
+            ([2.0 * R * cos, 0.0, 0.0], [0.0; 3]),
+        ];
+        let mut flock = flock_of(&p, &states);
+        take_substeps(&mut flock, 1);
+        assert!(flock.statistics().halved_substeps > 0, "{scheme:?}");
+        assert!(deepest_overlap(&flock) <= 1e-4, "{scheme:?}");
+        assert_eq!(flock.statistics().unsolved, 0);
+    }
+}
+
+#[test]
+fn no_run_of_a_crowd_overlaps_what_was_not_looked_for() {
+    // At 344.5 s others push a boat that far. It would overlap another one by 0.03 cm.
     let p = FlockParameters {
         n_boats: 27,
         pool: Pool::NARROW,

@@ -34,15 +34,15 @@ impl ContactResolver {
         self.biases.extend(looking_ahead);
     }
 
-    /// Computes the biases of all contacts from the start, and looks ahead also along curves that open a gap. A closed ring
-    /// of boats under way has no other solution: its gaps at the wall close, and those between boats open. Returns whether
-    /// any bias looks ahead.
+    /// Computes the biases of all contacts again, and looks ahead also along curves that open a gap. A closed ring of boats
+    /// under way has no other solution: its gaps at the wall close, and those between boats open. Returns whether gaps may
+    /// count as curved; if not, the biases stay as they are.
     #[cold]
     pub(super) fn look_ahead_along_all(&mut self, motion: &Motion) -> bool {
-        self.fill_biases(motion);
         let Some(before) = self.velocities_before(motion) else {
             return false;
         };
+        self.fill_biases(motion);
         let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
         for (k, contact) in contacts.iter().enumerate() {
             if have_pushed(&self.persistent, contacts, k)

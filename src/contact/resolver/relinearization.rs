@@ -89,7 +89,7 @@ impl ContactResolver {
             || self.relinearization.had_overlaps
             || self
                 .predicted
-                .closing_overlap(&self.detector, &self.contacts, allowed)
+                .closing_overlaps(&self.detector, &self.contacts, allowed)
     }
 
     /// Computes biases for which the gaps of some islands at the substep's end open to zero. The biases of the others stay
