@@ -103,7 +103,8 @@ impl PredictedPoses {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        touches(contacts).any(|touches| detector.overlaps_at(&touches[0], &self.hulls, allowed))
+        let mut pairs = contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b));
+        pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
     /// As [`Self::overlaps`], for the contacts that their boats move far enough to close.
@@ -113,11 +114,15 @@ impl PredictedPoses {
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        touches(contacts).any(|touches| {
-            let mut gaps = touches.iter().map(|contact| contact.gap.gap);
-            let displacements = self.displacements(&touches[0]);
-            gaps.any(|gap| gap <= displacements)
-                && detector.overlaps_at(&touches[0], &self.hulls, allowed)
+        // Most contacts are too far to close, so twins are looked for last.
+        let mut last: Option<&Contact> = None;
+        contacts.iter().any(|contact| {
+            if contact.gap.gap > self.displacements(contact) {
+                return false;
+            }
+            let is_known = last.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
+            last = Some(contact);
+            !is_known && detector.overlaps_at(contact, &self.hulls, allowed)
         })
     }
 
@@ -181,9 +186,4 @@ impl PredictedPoses {
         *pair = Some((first, gaps));
         gaps[k - first]
     }
-}
-
-/// Contacts by the touches that one look at two bodies covers.
-fn touches(contacts: &[Contact]) -> impl Iterator<Item = &[Contact]> {
-    contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b))
 }
