@@ -135,12 +135,8 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
         "action_space": str(env.action_space),
         "actions": markdown(["index", "meaning", "low", "high"], body),
         "observation_shape": str(env.observation_space.shape),
-        "times": (
-            f"It holds the observations of the {leaders} leaders one after the other; the table "
-            "lists those of leader 0. "
-            if leaders > 1
-            else ""
-        ),
+        "times": "The table has leader 0's entries; each further leader adds the same. "
+        * (leaders > 1),
         "entries": markdown(["index", "name", "unit", "range", "meaning"], rows_of),
     }
 

@@ -16,11 +16,12 @@ from flockenv.order import order_series
 from flockenv.parameters import FlockParameters
 from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
+from flockenv.tracks.dataset import dataset_table
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
 from flockenv.tracks.motion import Floats, Motion, in_water, turned_into_motion, unwrapped
 from flockenv.tracks.report import TrackReport, report_of
 from flockenv.tracks.samples import TWICE, check_samples, frames_of, poses_of, samples_of
-from flockenv.tracks.table import check_ending, dataset_table, plain_table, read_table
+from flockenv.tracks.table import check_ending, plain_table, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
