@@ -270,3 +270,14 @@ def test_the_page_names_what_the_tables_say(script) -> None:
     assert ", ".join(listed).replace("-", "−") in text
     trained = (f"{row.entry} {row.trainings}" for row in entries.itertuples())
     assert f"{', '.join(trained)} trainings" in text
+
+
+def test_the_page_says_by_how_much_chance_raises_the_scores_of_a_level(script) -> None:
+    """The order without steering is 0 in the mean of all flocks, but not in the common ones."""
+    laws, entries = (pd.read_csv(script.RESULTS / f"{name}.csv") for name in ("laws", "entries"))
+    orders = laws[laws["level"] == "order-narrow"].set_index("policy")["signed_order"]
+    low, high = orders["straight ahead"], orders["damped law"]
+    scores = entries.loc[entries["level"] == "order-narrow", "score"]
+    raised = scores - (low + scores * (high - low)) / high
+    text = (script.HERE / "README.md").read_text("utf-8")
+    assert f"lower by {raised.min():.2f} to {raised.max():.2f}." in text

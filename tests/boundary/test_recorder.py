@@ -28,6 +28,12 @@ def near(run: flockenv.Recording, place: int, flock: Flock) -> bool:
     )
 
 
+def changed(flock: Flock, pose, fields) -> Flock:
+    moved = Flock(flock.parameters.replace(**fields), 4)
+    moved.set_state(pose, flock.velocity, flock.time_s, allow_overlap=True)
+    return moved
+
+
 def advance_to(flock: Flock, time_s: float, rudder=None) -> None:
     flock.advance(max(time_s - flock.time_s, 0.0), rudder)
 
@@ -44,24 +50,32 @@ def test_targets_change_after_the_sample_at_their_time():
     assert run.order[-1] != simulate(PARAMETERS, 3, 8.0, 5.0).order[-1]
 
 
+def test_parameters_change_after_the_sample_at_their_time():
+    changes = {16: {"bw_s": 0.2}, 32: {"c4": 0.05}}
+    run = simulate(PARAMETERS, 4, 8.0, 5.0, schedule=[(6.4, changes[32]), (3.2, changes[16])])
+    flock = Flock(PARAMETERS, 4)
+    for place in range(41):
+        advance_to(flock, place / 5)
+        assert same(run, place, flock)
+        if place in changes:
+            flock = changed(flock, flock.pose, changes[place])
+    assert run.parameters == PARAMETERS
+
+
 def test_boats_keep_their_share_of_the_way_between_the_walls():
-    pool, noise = {"pool": (120.0, 40.0), "bw_s": 0.2}, {"c4": 0.05}
-    run = simulate(PARAMETERS, 4, 8.0, 5.0, schedule=[(6.4, noise), (3.2, pool)])
+    pool = {"pool": (120.0, 40.0)}
+    run = simulate(PARAMETERS, 4, 8.0, 5.0, schedule=[(3.2, pool)])
     flock = Flock(PARAMETERS, 4)
     for place in range(41):
         advance_to(flock, place / 5)
         # NumPy and the core round the new positions alike, but for the last bit.
         assert same(run, place, flock) if place <= 16 else near(run, place, flock)
-        if place in (16, 32):
+        if place == 16:
             pose = flock.pose
-            if place == 16:
-                distance = np.hypot(pose[:, 0], pose[:, 1])
-                share = (distance - 48.5) / (90.0 - 48.5)
-                pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
-            moved = Flock(flock.parameters.replace(**{16: pool, 32: noise}[place]), 4)
-            moved.set_state(pose, flock.velocity, flock.time_s, allow_overlap=True)
-            flock = moved
-    assert run.parameters == PARAMETERS
+            distance = np.hypot(pose[:, 0], pose[:, 1])
+            share = (distance - 48.5) / (90.0 - 48.5)
+            pose[:, :2] *= ((40.0 + share * (120.0 - 40.0)) / distance)[:, None]
+            flock = changed(flock, pose, pool)
 
 
 class Watching:
