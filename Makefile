@@ -12,8 +12,9 @@ BIN := .venv/bin
 STAMPS := .venv/.stamps
 # The versions of `requirements.lock`, which `make lock` renews.
 UV := VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/uv pip install --constraint requirements.lock
-# One thread for each worker's linear algebra, or the workers fight over the cores.
-PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+# One thread for each worker's linear algebra, or the workers fight over the cores. Compiled modules are kept, even where
+# Python may not keep them elsewhere: imports take half the time then.
+PYTEST := OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= PYTHONPYCACHEPREFIX="$(CURDIR)/.venv/pycache" $(BIN)/python -m pytest
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
 # This machine's own build may use AVX2, which alters no bit.
 CODEGEN := $(if $(findstring avx2,$(shell rustc --print cfg -C target-cpu=native 2> /dev/null)),-- -C target-feature=+avx2)
@@ -204,9 +205,8 @@ $(STAMPS)/venv:
 	$(UV) --quiet "maturin>=1.16,<2"
 	@mkdir -p $(@D) && touch $@
 
-# Tests run many processes, and Python may not be allowed to keep compiled modules: imports take half the time then.
 $(STAMPS)/compare $(STAMPS)/test $(STAMPS)/browser $(STAMPS)/docs: pyproject.toml requirements.lock | $(STAMPS)/venv
-	$(if $(filter test,$(@F)),UV_COMPILE_BYTECODE=1) $(UV) -r pyproject.toml $(NEEDS_$(@F))
+	$(UV) -r pyproject.toml $(NEEDS_$(@F))
 	@touch $@ $(if $(filter test,$(@F)),$(STAMPS)/compare)
 
 $(STAMPS)/studies: studies/pyproject.toml requirements.lock | $(STAMPS)/venv
@@ -224,9 +224,8 @@ ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -l
 .PHONY: $(CORE)
 endif
 
-# This crate compiles in four parts here, on all cores: two thirds of the time, 3 % more instructions, the same bits. Wheels,
-# pinned counts and the comparison with engines have one part.
+# In the profile of a checkout: half the time to compile, the same bits. Wheels, pinned counts and the comparison with
+# engines are compiled as a release.
 $(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/venv
-	VIRTUAL_ENV="$(CURDIR)/.venv" PATH="$(CURDIR)/$(BIN):$$PATH" CARGO_PROFILE_RELEASE_CODEGEN_UNITS=4 \
-		maturin develop --release --locked --uv $(CODEGEN)
+	VIRTUAL_ENV="$(CURDIR)/.venv" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --locked --uv $(CODEGEN)
 	@touch $@

@@ -36,5 +36,5 @@ esac
 uv pip install -r pyproject.toml "${needs[@]}"
 uv pip install hypothesis pytest pytest-timeout
 # shellcheck disable=SC2086 # two words or none
-maturin develop --release --locked --uv ${CODEGEN:-}
+maturin develop --locked --uv ${CODEGEN:-}
 [[ $what == env-* ]] || OMP_NUM_THREADS=1 "$VIRTUAL_ENV/bin/python" -m pytest "${tests[@]}" "$@"

@@ -133,7 +133,7 @@ def test_a_policy_for_each_leader(cli, tmp_path: Path) -> None:
 def test_overlaps_beyond_the_tolerance_are_said_in_one_line(cli, tmp_path: Path, form) -> None:
     """Boats as fast as bullets are more than a substep and its halves can take apart."""
     bullets = ["--set", "speed_cm_s=50000", "--set", "dt_s=0.1", "--bw-s", "0.3"]
-    words = ["compare", *BRIEF, "--n-leaders", "0", *bullets, *form, "--out", str(tmp_path)]
+    words = ["compare", *SHORT, "--n-leaders", "0", *bullets, *form, "--out", str(tmp_path)]
     said = cli.succeeds(*words).stderr.replace("\n", " ")
     runs = pd.read_csv(tmp_path / "runs.csv")
     deep = runs[runs["unsolved"] > 0]
