@@ -81,7 +81,8 @@ format: $(STAMPS)/test ## format the Rust and Python sources
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 
-test-rust: ## the physics alone, no Python
+# Beside the core, after it: the tests wait for its dependencies anyway, and share them.
+test-rust: $(if $(PARALLEL),| $(CORE)) ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
 
 # Tests of one file share what it prepares. pytest-xdist would wait forever for what a dead worker had left.
