@@ -64,17 +64,20 @@ lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
 		--output-file requirements.lock
 build: $(STAMPS)/compare $(CORE) ## build the simulator and install the package, editable, into .venv
 
-lint: $(STAMPS)/test $(CORE) ## formatting, ruff, Rust module cycles, import layers, mypy, stubs, spelling, clippy
+lint: lint-sources $(CORE) ## formatting, ruff, Rust module cycles, import layers, mypy, stubs, spelling, clippy
+	$(BIN)/stubtest flockenv._core --mypy-config-file tests/modules/stubtest.ini --allowlist tests/modules/stubtest_allowlist.txt
+# Last: cargo lets it wait for the compiler of `test-rust` beside it.
+	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
+
+# What needs no core, and runs while that is compiled.
+lint-sources: $(STAMPS)/test
 	cargo fmt --check && cargo fmt --check --manifest-path web/Cargo.toml
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/python tests/modules/cycles.py src
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/mypy
-	$(BIN)/stubtest flockenv._core --mypy-config-file tests/modules/stubtest.ini --allowlist tests/modules/stubtest_allowlist.txt
 	git ls-files -z | xargs -0 $(BIN)/codespell
-# Last: cargo lets it wait for the compiler of `test-rust` beside it.
-	PYO3_PYTHON="$(CURDIR)/$(BIN)/python" cargo clippy --locked --all-targets --features python -- -D warnings
 
 format: $(STAMPS)/test ## format the Rust and Python sources
 	cargo fmt && cargo fmt --manifest-path web/Cargo.toml
