@@ -68,27 +68,27 @@ _LONGEST_NAME = 200
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Policy:
-    """A policy as one checked type, for everything that `flockenv.policies.policy` accepts.
+    """A checked policy; `flockenv.policies.policy` makes one from all that it accepts.
 
     Attributes
     ----------
     source
         The object that acts, which has ``predict``.
     name
-        The name in recordings: ``repr(source)``, or the class's name if it defines no
-        ``__repr__`` or the text is empty, too long or not printable; followed by the source's
-        ``digest`` if it has one.
+        The name in recordings: ``repr(source)``, and then the source's ``digest`` if it has one.
+        The class's name replaces a repr that is Python's default, empty, longer than 200 characters
+        or not printable.
     control_hz
-        Control steps per second that it is made for; None: it steers at every substep, by the
-        paper's law.
+        Control steps per second that it is made for. None: the paper's law at every substep.
     pool
         The pool that it was made for; None: any.
     observation, mirror_to_target, action_mode, decision_period_s
         The values of these environment options that it is made for.
     leaders
-        How many leaders it steers at once; 1: any number.
+        Number of leaders that the source steers at once. 1: it steers each leader by itself, and so
+        any number of them.
     law
-        The core's law if the policy is exactly that law: the core then steers without Python.
+        The core's law, if the policy is exactly that law: the core then steers without Python.
     """
 
     source: LeaderPolicy
@@ -106,25 +106,24 @@ class Policy:
     def from_source(
         cls, source: LeaderPolicy, *, leaders: int = 1, law: _core.Law | None = None
     ) -> Self:
-        """Return the policy of an object with ``predict``, by its attributes.
+        """Return a policy that acts by an object's ``predict``, with the options in its attributes.
 
         Raises TypeError or ParameterError for an attribute whose value its option does not accept.
         """
-        mode = getattr(source, "action_mode", None) or "rudder"
-        refuse_unknown((mode,), _core.ACTION_MODES, "action_mode of a policy")
-        mirrors = getattr(source, "mirror_to_target", False)
-        rate = _positive(source, "control_hz")
+        action_mode = getattr(source, "action_mode", None) or "rudder"
+        refuse_unknown((action_mode,), _core.ACTION_MODES, "action_mode of a policy")
+        observation = getattr(source, "observation", None) or {}
+        mirror_to_target = getattr(source, "mirror_to_target", False)
+        control_hz = _positive_attribute(source, "control_hz")
         return cls(
             source=source,
-            name=_name_of(source),
-            control_hz=CONTROL_HZ if rate is None else rate,
+            name=_recorded_name(source),
+            control_hz=CONTROL_HZ if control_hz is None else control_hz,
             pool=getattr(source, "pool", None),
-            observation=by_name(
-                getattr(source, "observation", None) or {}, "a policy's observation"
-            ),
-            mirror_to_target=as_bool(mirrors, "a policy's mirror_to_target"),
-            action_mode=mode,
-            decision_period_s=_positive(source, "decision_period_s"),
+            observation=by_name(observation, "a policy's observation"),
+            mirror_to_target=as_bool(mirror_to_target, "a policy's mirror_to_target"),
+            action_mode=action_mode,
+            decision_period_s=_positive_attribute(source, "decision_period_s"),
             leaders=leaders,
             law=law,
         )
@@ -137,9 +136,9 @@ class Policy:
         return CONTROL_HZ if self.control_hz is None else self.control_hz
 
     def started(self) -> Self:
-        """Return the policy for the start of a run; this one stays unchanged.
+        """Return a copy for one run, so that its random draws do not depend on earlier runs.
 
-        A model or a user's own object is not copied.
+        A model and a user's own object are not copied.
         """
         if not isinstance(self.source, RowPolicy):
             return self
@@ -180,7 +179,11 @@ class Policy:
     def decide(
         self, observation: NDArray[np.float32], state: object, leaders: int
     ) -> tuple[NDArray[np.float64], object]:
-        """Return checked actions for the observations of a number of leaders, one after another."""
+        """Return the actions of a number of leaders, shape (leaders,), and the policy's next state.
+
+        Raises ParameterError if the source returns anything but one real number per leader, and a
+        state.
+        """
         returned = self.source.predict(observation, state)
         if not isinstance(returned, tuple) or len(returned) != 2:
             raise ParameterError(
@@ -201,7 +204,7 @@ class Policy:
         return self.name if self.control_hz is None else repr(self.source)
 
 
-def _positive(source: LeaderPolicy, name: str) -> float | None:
+def _positive_attribute(source: LeaderPolicy, name: str) -> float | None:
     """Return an object's attribute, which must be a number above 0; None if it is missing."""
     value = getattr(source, name, None)
     if value is not None and not 0.0 < number(value, name) < math.inf:
@@ -209,16 +212,16 @@ def _positive(source: LeaderPolicy, name: str) -> float | None:
     return None if value is None else float(value)
 
 
-def _name_of(source: LeaderPolicy) -> str:
-    kind = type(source)
-    text = repr(source) if kind.__repr__ is not object.__repr__ else ""
-    name = text if 0 < len(text) <= _LONGEST_NAME and text.isprintable() else kind.__qualname__
+def _recorded_name(source: LeaderPolicy) -> str:
+    cls = type(source)
+    text = repr(source) if cls.__repr__ is not object.__repr__ else ""
+    name = text if 0 < len(text) <= _LONGEST_NAME and text.isprintable() else cls.__qualname__
     return f"{name} {getattr(source, 'digest', '')}".strip()
 
 
-def observed(observation: ArrayLike) -> NDArray[np.float32]:
-    """Return an observation as an array; masked values are refused."""
-    # An environment's own array needs no check, which would take longer than a law's step.
+def observation_array(observation: ArrayLike) -> NDArray[np.float32]:
+    """Return an observation as a contiguous float32 array; refuse anything but real numbers."""
+    # Arrays of environments are not checked: that would take longer than a step of a law.
     if type(observation) is not np.ndarray or observation.dtype != np.float32:
         if np.ma.is_masked(observation):
             raise ParameterError("observation is masked: give plain numbers")
@@ -226,8 +229,8 @@ def observed(observation: ArrayLike) -> NDArray[np.float32]:
     return np.ascontiguousarray(observation, np.float32)
 
 
-def leaders_observed(observation: NDArray[Any], size: int) -> int:
-    """Return the number of leaders along the last axis, from the size of an observation."""
+def leaders_in_last_axis(observation: NDArray[Any], size: int) -> int:
+    """Return how many leaders' observations, of this size each, the last axis holds."""
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(
@@ -248,7 +251,7 @@ class RowPolicy(ABC):
     Attributes
     ----------
     action_mode, decision_period_s
-        The values of these environment options that its actions are for.
+        The values of these environment options that the policy's actions are made for.
     """
 
     action_mode: str = "rudder"
@@ -267,7 +270,7 @@ class RowPolicy(ABC):
             )
         self.observation = dict(observation or {})
         self.mirror_to_target = bool(mirror_to_target)
-        self._size = len(observation_entries(self.observation))
+        self._observation_size = len(observation_entries(self.observation))
 
     @abstractmethod
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.floating[Any]]:
@@ -280,15 +283,15 @@ class RowPolicy(ABC):
         episode_start: object = None,
         deterministic: bool = True,
     ) -> tuple[object, object]:
-        """Return rudders for observations, as `LeaderPolicy`; it never acts at random."""
+        """Return rudders for observations, as `LeaderPolicy`; `deterministic` has no effect."""
         if isinstance(observation, Mapping):
             return {agent: self._rudders(rows) for agent, rows in observation.items()}, state
         return self._rudders(observation), state
 
     def _rudders(self, observation: ArrayLike) -> NDArray[np.float32]:
-        array = observed(observation)
-        leaders = leaders_observed(array, self._size)
-        rudders = np.asarray(self._steer(array.reshape(-1, self._size)), np.float32)
+        array = observation_array(observation)
+        leaders = leaders_in_last_axis(array, self._observation_size)
+        rudders = np.asarray(self._steer(array.reshape(-1, self._observation_size)), np.float32)
         return rudders.reshape(*array.shape[:-1], leaders)
 
     def __repr__(self) -> str:

@@ -29,7 +29,7 @@ LARGEST_LEAN: float = _core.LARGEST_LEAN
 """Angle in rad of an action of 1 with ``action_mode="lean"``."""
 
 
-_MADE_OF = ("law", "gains", "observation", "mirror_to_target")
+_FIXED_ATTRIBUTES = ("law", "gains", "observation", "mirror_to_target")
 
 
 class LawPolicy(RowPolicy):
@@ -38,7 +38,7 @@ class LawPolicy(RowPolicy):
     Parameters
     ----------
     law
-        The core's law. If no other policy steers, it runs without Python.
+        The core's law. If no other policy steers, the core evaluates it without Python.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names.
 
@@ -57,12 +57,12 @@ class LawPolicy(RowPolicy):
 
     @property
     def gains(self) -> dict[str, float]:
-        """The gains by name; none in the paper's law."""
+        """The gains by name; empty for the paper's law."""
         return dict(self.law.gains)
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; raise AttributeError for those that the core's law depends on."""
-        if hasattr(self, "_observed") and name in {*_MADE_OF, *self.gains}:
+        if hasattr(self, "_observed") and name in {*_FIXED_ATTRIBUTES, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)
 
@@ -70,9 +70,9 @@ class LawPolicy(RowPolicy):
         return self._observed.actions(rows)
 
     def __reduce__(self) -> tuple[object, ...]:
-        kind: Callable[..., object] = type(self)
+        constructor: Callable[..., object] = type(self)
         layout = {"observation": self.observation, "mirror_to_target": self.mirror_to_target}
-        return partial(kind, *self.gains.values(), **layout), ()
+        return partial(constructor, *self.gains.values(), **layout), ()
 
     def __repr__(self) -> str:
         gains = ", ".join(f"{name}={value:g}" for name, value in self.gains.items())
@@ -168,8 +168,8 @@ class DampedLaw(LawPolicy):
         observation: Mapping[str, object] | None = None,
         mirror_to_target: bool = False,
     ) -> None:
-        given = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
-        law = _core.Law.damped(*(number(value, name) for name, value in given.items()))
+        gains = {"gain": gain, "backward_gain": backward_gain, "damping": damping}
+        law = _core.Law.damped(*(number(value, name) for name, value in gains.items()))
         super().__init__(law, observation, mirror_to_target)
 
     @classmethod
@@ -178,7 +178,8 @@ class DampedLaw(LawPolicy):
 
         Raises ParameterError for other pools.
         """
-        return cls(*dict(_core.Law.named(TUNED_LAW, pool).gains).values(), **layout)
+        tuned_gains = dict(_core.Law.named(TUNED_LAW, pool).gains)
+        return cls(*tuned_gains.values(), **layout)
 
 
 class LeaningLaw(LawPolicy):
@@ -191,22 +192,22 @@ class LeaningLaw(LawPolicy):
     Parameters
     ----------
     pool
-        Name of the pool that it is for; its features are standardized by that pool's usual values.
+        Name of the pool that it is for; its features are standardized by their usual values there.
     bias
         Lean in rad if every feature has its usual value.
     weights
         Rad per standard deviation of a feature, by its name in `LEAN_FEATURES`; missing features
         have 0.
     gains
-        The gains of the damped law, by name; None: those tuned in the pool.
+        The gains of the damped law, by name. None: those tuned in the pool.
     bound
         How a lean is kept within ±1.2 rad: ``"tanh"`` or ``"clip"``.
     decision_period_s
-        Time in s for which a lean is held, a whole number of control steps; None: one control step.
+        Time in s for which a lean is held, a whole number of control steps. None: one control step.
         If it is given, the gains have to be the tuned ones, and the policy's actions are leans, for
         environments with ``action_mode="lean"`` and this ``decision_period_s``.
     judged
-        How well the law leads: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
+        Scores of the law: ``signed_order``, its 95 % ``interval``, ``n_boats``, ``n_leaders``,
         ``bw_s``, ``episode_s``, and the first and the last of the ``seeds``.
     provenance
         The law's origin: short texts by name.
@@ -214,8 +215,8 @@ class LeaningLaw(LawPolicy):
     Raises
     ------
     ParameterError
-        For pools that have no lean features, unknown names, numbers that are not finite, and leans
-        that are held with other gains.
+        For pools that have no lean features, unknown names, numbers that are not finite, and a
+        `decision_period_s` with gains other than the tuned ones.
     """
 
     def __init__(
@@ -243,7 +244,7 @@ class LeaningLaw(LawPolicy):
             "weights": dict.fromkeys(LEAN_FEATURES, 0.0) | dict(weights),
             "provenance": dict(provenance or {}),
         }
-        self._read(_json(values))
+        self._set_from_json(_json_text(values))
 
     @classmethod
     def from_model(
@@ -270,26 +271,11 @@ class LeaningLaw(LawPolicy):
         Raises
         ------
         ParameterError
-            For models that observe, decide or act in another way, that were trained in
-            ``VecNormalize``, and whose weights are not finite.
+            For models that observe, decide or act in another way, for models that were trained in
+            ``VecNormalize``, and for weights that are not finite.
         """
-        policy, seen = getattr(model, "policy", model), ModelPolicy(model)
-        entries = [entry.name for entry in observation_entries(seen.observation)]
-        hidden = len(getattr(getattr(policy, "mlp_extractor", None), "policy_net", ()))
-        for refused, words in (
-            (seen.action_mode != "lean", f"actions of action_mode {seen.action_mode!r}"),
-            (entries != [*LEAN_FEATURES], f"{len(entries)} numbers observed"),
-            (not seen.mirror_to_target, "a view that is not mirrored to the target"),
-            (seen.control_hz != CONTROL_HZ, f"{seen.control_hz:g} control steps per second"),
-            (seen.leaders != 1, f"{seen.leaders} leaders at once"),
-            (normalizing(model) is not None, "VecNormalize around its environment"),
-            (hidden or not hasattr(policy, "action_net"), "an actor of more than one layer"),
-        ):
-            if refused:
-                raise ParameterError(
-                    f"a model with {words} is not accepted as a leaning law: its leans must be "
-                    f"linear in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
-                )
+        policy, model_policy = getattr(model, "policy", model), ModelPolicy(model)
+        _check_is_leaning_law(model, model_policy)
         weights, bias = (
             LARGEST_LEAN * tensor.detach().cpu().double().numpy().ravel()
             for tensor in (policy.action_net.weight, policy.action_net.bias)
@@ -299,7 +285,7 @@ class LeaningLaw(LawPolicy):
             bias.item(),
             dict(zip(LEAN_FEATURES, weights.tolist(), strict=True)),
             bound="tanh" if policy.squash_output else "clip",
-            decision_period_s=seen.decision_period_s,
+            decision_period_s=model_policy.decision_period_s,
             judged=judged,
             provenance=provenance,
         )
@@ -311,7 +297,7 @@ class LeaningLaw(LawPolicy):
         Raises ParameterError for a text that is not a complete law.
         """
         law = cls.__new__(cls)
-        law._read(text)
+        law._set_from_json(text)
         return law
 
     @classmethod
@@ -334,7 +320,7 @@ class LeaningLaw(LawPolicy):
         """
         return cls.from_json(_core.Law.named(LEARNED, pool).to_json())
 
-    def _read(self, text: str) -> None:
+    def _set_from_json(self, text: str) -> None:
         law = _core.Law.from_json(text)
         self._values = values = json.loads(law.to_json())
         self.pool: str = values["pool"]
@@ -343,16 +329,17 @@ class LeaningLaw(LawPolicy):
         self.judged: dict[str, object] | None = values.get("judged")
         self.provenance: dict[str, str] = values.get("provenance", {})
         self.decision_period_s = values.get("decision_period_s")
-        steers = values["gains"] is None
-        self.action_mode = "lean" if self.decision_period_s is not None and not steers else "rudder"
-        others = dict.fromkeys(("phase", "target", "neighbors", "order"), False) | {"neighbors": 0}
-        # To steer to the lean, the law also reads the boat's own course.
-        own = self.action_mode == "rudder" and not steers
-        layout = {"own": own, **others, "lean_features": True}
+        sum_is_rudder = values["gains"] is None
+        action_is_lean = self.decision_period_s is not None and not sum_is_rudder
+        self.action_mode = "lean" if action_is_lean else "rudder"
+        # A law that steers to its lean also reads the boat's own course.
+        reads_own = not action_is_lean and not sum_is_rudder
+        unread = {"phase": False, "target": False, "neighbors": 0, "order": False}
+        layout = {"own": reads_own, **unread, "lean_features": True}
         super().__init__(law, layout, mirror_to_target=True)
 
     def to_json(self) -> str:
-        """Return the law as a JSON text, from which `from_json` makes the same bits."""
+        """Return the law as a JSON text, from which `from_json` makes the same law to the bit."""
         return self.law.to_json()
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -364,7 +351,7 @@ class LeaningLaw(LawPolicy):
 
     @property
     def digest(self) -> str:
-        """The first digits of the SHA-256 of the law's numbers."""
+        """The first 12 digits of the SHA-256 of the law's numbers."""
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 
@@ -375,14 +362,36 @@ class LeaningLaw(LawPolicy):
         return f"{type(self).__name__}({self.pool!r}, bias={self.bias:.3g}, 29 weights)"
 
 
-def _json(values: dict[str, object]) -> str:
+def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
+    """Refuse a model whose leans are not linear in the lean features."""
+    policy = getattr(model, "policy", model)
+    entries = [entry.name for entry in observation_entries(model_policy.observation)]
+    hidden_layers = len(getattr(getattr(policy, "mlp_extractor", None), "policy_net", ()))
+    mode, control_hz = model_policy.action_mode, model_policy.control_hz
+    for differs, property_words in (
+        (mode != "lean", f"actions of action_mode {mode!r}"),
+        (entries != [*LEAN_FEATURES], f"{len(entries)} numbers observed"),
+        (not model_policy.mirror_to_target, "a view that is not mirrored to the target"),
+        (control_hz != CONTROL_HZ, f"{control_hz:g} control steps per second"),
+        (model_policy.leaders != 1, f"{model_policy.leaders} leaders at once"),
+        (normalizing(model) is not None, "VecNormalize around its environment"),
+        (hidden_layers or not hasattr(policy, "action_net"), "an actor of more than one layer"),
+    ):
+        if differs:
+            raise ParameterError(
+                f"a model with {property_words} is not accepted as a leaning law: its leans must "
+                f"be linear in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
+            )
+
+
+def _json_text(values: dict[str, object]) -> str:
     try:
-        return json.dumps(values, allow_nan=False, default=_plain)
+        return json.dumps(values, allow_nan=False, default=_as_float)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"a law of {short_repr(values)} is not accepted: {error}") from error
 
 
-def _plain(value: object) -> float:
+def _as_float(value: object) -> float:
     if isinstance(value, Real):
         return float(value)
     raise TypeError(f"{short_repr(value)} is not a number")

@@ -54,13 +54,14 @@ class Leaders:
         """
         k = flock.n_leaders
         if isinstance(given, Mapping) and (given or k > 0):
-            found = cls(_seats(given, flock), is_per_leader=True)
-            for seat in found.seats:
+            leaders = cls(_seats(given, flock), is_per_leader=True)
+            for seat in leaders.seats:
                 seat.policy.check_action_mode("rudder", "leader by leader")
         else:
-            alone = EVERY_SUBSTEP if isinstance(given, Mapping) else given
-            found = cls((Seat(policy(alone, flock.pool), (*range(k),)),))
-        for seat in found.seats:
+            # An empty dictionary is right for a flock without leaders.
+            shared = EVERY_SUBSTEP if isinstance(given, Mapping) else given
+            leaders = cls((Seat(policy(shared, flock.pool), (*range(k),)),))
+        for seat in leaders.seats:
             if k == 0 and seat.policy.control_hz is not None:
                 raise ParameterError(
                     f"policy = {short_repr(given)} is not accepted: with n_leaders = 0 it steers "
@@ -68,7 +69,7 @@ class Leaders:
                 )
             if k > 0:
                 seat.policy.check_leaders(len(seat.leaders))
-        return found
+        return leaders
 
     @property
     def title(self) -> str:
@@ -82,7 +83,7 @@ class Leaders:
 
     @property
     def law(self) -> _core.Law | None:
-        """The core's law, if it is the one policy for all leaders."""
+        """The core's law that steers all leaders; None if another kind of policy does."""
         return None if self.is_per_leader else self.seats[0].policy.law
 
     def check_pool(self, pool: Pool) -> None:
@@ -91,7 +92,7 @@ class Leaders:
             seat.policy.check_pool(pool)
 
     def decisions(self, control_hz: float | None = None) -> "Decisions":
-        """Return the decisions of a run, at this rate or at the rates of the policies."""
+        """Return the decisions of a new run, at this rate or at the rates of the policies."""
         return Decisions(self.seats, control_hz)
 
 
@@ -103,15 +104,17 @@ def _seats(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Sea
             f"policy = {short_repr(dict(given))} is not accepted: a policy for each of {accepted}"
         )
     # Leaders with the same policy are steered together: a model of several leaders needs that.
-    found: dict[object, tuple[Policy, list[int]]] = {}
-    for leader, one in enumerate(given[name] for name in names):
-        key = one if isinstance(one, str) else id(one)
-        if key not in found:
-            own = policy(one, flock.pool)
-            # Beside other policies, the law acts at every control step.
-            found[key] = policy(PAPERS_LAW) if own.control_hz is None else own, []
-        found[key][1].append(leader)
-    return tuple(Seat(own, tuple(leaders)) for own, leaders in found.values())
+    leaders_of_policy: dict[object, tuple[Policy, list[int]]] = {}
+    for leader, policy_like in enumerate(given[name] for name in names):
+        key = policy_like if isinstance(policy_like, str) else id(policy_like)
+        if key not in leaders_of_policy:
+            checked = policy(policy_like, flock.pool)
+            # Beside other policies, the law acts at every control step, not at every substep.
+            if checked.control_hz is None:
+                checked = policy(PAPERS_LAW)
+            leaders_of_policy[key] = checked, []
+        leaders_of_policy[key][1].append(leader)
+    return tuple(Seat(checked, tuple(leaders)) for checked, leaders in leaders_of_policy.values())
 
 
 class Decisions:
@@ -122,16 +125,19 @@ class Decisions:
     seats
         The policies and the leaders that each steers.
     control_hz
-        How often per second all of them decide; None: each at its own rate.
+        Decisions per second of all policies; None: each has its own rate.
     """
 
     def __init__(self, seats: Sequence[Seat], control_hz: float | None = None) -> None:
-        self._seats = [_Deciding(seat.policy.started(), list(seat.leaders)) for seat in seats]
-        #: How often per second to call `rudders`.
-        self.control_hz = _common_rate(self._seats) if control_hz is None else control_hz
+        self._policies = [
+            _SteeringPolicy(seat.policy.started(), list(seat.leaders)) for seat in seats
+        ]
+        #: Calls of `rudders` per second.
+        self.control_hz = _set_common_rate(self._policies) if control_hz is None else control_hz
         #: The observation of each policy, and whether its view is mirrored.
         self.layouts = [
-            (dict(seat.policy.observation), seat.policy.mirror_to_target) for seat in self._seats
+            (dict(steering.policy.observation), steering.policy.mirror_to_target)
+            for steering in self._policies
         ]
 
     def rudders(
@@ -142,62 +148,72 @@ class Decisions:
         Parameters
         ----------
         signs
-            Sign of each leader's target, shape (leaders,): 1 for clockwise.
+            Sign of each leader's target, shape (flocks * leaders,): 1 for clockwise.
         observations
-            The leaders' observations, one array of shape (leaders, size) per layout.
+            All leaders' observations, one array of shape (flocks * leaders, size) per layout.
         """
-        leaders = sum(len(seat.leaders) for seat in self._seats)
+        leaders = sum(len(steering.leaders) for steering in self._policies)
         rudders = np.zeros((len(signs) // leaders, leaders))
-        for seat, observed in zip(self._seats, observations, strict=True):
-            rudders[:, seat.leaders] = seat.rudders(
-                observed.reshape(len(rudders), leaders, -1), signs.reshape(rudders.shape)
+        for steering, rows in zip(self._policies, observations, strict=True):
+            rudders[:, steering.leaders] = steering.rudders(
+                rows.reshape(len(rudders), leaders, -1), signs.reshape(rudders.shape)
             )
         return rudders.ravel()
 
 
 @dataclass
-class _Deciding:
-    """A policy in a run, with its leaders, and its state if it is recurrent."""
+class _SteeringPolicy:
+    """A policy in a run, with its leaders, its state, and the rudders that it holds."""
 
     policy: Policy
     leaders: list[int]
+    #: State of a recurrent policy.
     state: object = None
-    #: Control steps between two decisions, and control steps left until the next one.
+    #: Control steps from one decision to the next.
     period: int = 1
-    wait: int = 0
-    held: NDArray[np.float64] | None = None
+    #: Control steps for which the held rudders remain.
+    steps_left: int = 0
+    held_rudders: NDArray[np.float64] | None = None
 
     def rudders(
-        self, observed: NDArray[np.float32], signs: NDArray[np.float64]
+        self, observations: NDArray[np.float32], signs: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return rudders of its leaders, shape (flocks, leaders), from all observations."""
-        if self.held is not None and self.wait > 0:
-            self.wait -= 1
-            return self.held
-        self.wait = self.period - 1
-        rows = observed[:, self.leaders].reshape(-1, observed.shape[-1])
+        """Return rudders of this policy's leaders, shape (flocks, leaders).
+
+        Parameters
+        ----------
+        observations
+            Observations of all leaders, shape (flocks, leaders, size).
+        signs
+            Signs of all leaders' targets, shape (flocks, leaders): 1 for clockwise.
+        """
+        if self.held_rudders is not None and self.steps_left > 0:
+            self.steps_left -= 1
+            return self.held_rudders
+        self.steps_left = self.period - 1
+        rows = observations[:, self.leaders].reshape(-1, observations.shape[-1])
         actions, self.state = self.policy.decide(rows, self.state, len(rows))
         rudders = np.clip(actions, -1.0, 1.0).reshape(-1, len(self.leaders))
         # A mirrored policy steers as if every target were clockwise.
-        mirrored = signs[:, self.leaders] if self.policy.mirror_to_target else 1.0
-        self.held = mirrored * rudders
-        return self.held
+        rudder_signs = signs[:, self.leaders] if self.policy.mirror_to_target else 1.0
+        self.held_rudders = rudder_signs * rudders
+        return self.held_rudders
 
 
-def _common_rate(seats: Sequence[_Deciding]) -> float:
-    """Return the common rate of all seats, and set how long each seat holds its decision."""
-    rates = [seat.policy.decisions_hz for seat in seats]
+def _set_common_rate(policies: Sequence[_SteeringPolicy]) -> float:
+    """Return the least common multiple of all decision rates, and set each policy's period."""
+    rates = [steering.policy.decisions_hz for steering in policies]
     if len(set(rates)) == 1:
         return rates[0]
-    exact = [Fraction(rate).limit_denominator(1000) for rate in rates]
-    numerators, denominators = zip(*(rate.as_integer_ratio() for rate in exact), strict=True)
-    common = Fraction(math.lcm(*numerators), math.gcd(*denominators))
-    if common > _FASTEST_HZ:
-        given = ", ".join(f"{rate:g}" for rate in sorted(rates))
+    fractions = [Fraction(rate).limit_denominator(1000) for rate in rates]
+    numerators, denominators = zip(*(rate.as_integer_ratio() for rate in fractions), strict=True)
+    common_hz = Fraction(math.lcm(*numerators), math.gcd(*denominators))
+    if common_hz > _FASTEST_HZ:
+        rates_text = ", ".join(f"{rate:g}" for rate in sorted(rates))
         raise ParameterError(
-            f"the policies decide {given} times per second, and have no common multiple up to "
+            f"the policies decide {rates_text} times per second, and have no common multiple up to "
             f"{_FASTEST_HZ}: give control_hz"
         )
-    for seat, rate in zip(seats, exact, strict=True):
-        seat.period = int(common / rate)
-    return float(common)
+    for steering, rate in zip(policies, fractions, strict=True):
+        steering.period = int(common_hz / rate)
+    return float(common_hz)

@@ -19,7 +19,7 @@ from flockenv import _core
 from flockenv._io.extras import require
 from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
-from flockenv.policies.base import leaders_observed, observed
+from flockenv.policies.base import leaders_in_last_axis, observation_array
 
 if TYPE_CHECKING:
     import gymnasium
@@ -28,22 +28,22 @@ if TYPE_CHECKING:
 
     from flockenv.envs.spaces import ObservationSpace
 
-_WEIGHTS = "policy.pth"
-_NEEDED = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
+_WEIGHTS_ENTRY = "policy.pth"
+_READ_ENTRIES = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
 
 
 class ModelPolicy:
     """A model or policy of stable-baselines3 that steers leaders like any other policy here.
 
-    The model's observation space says what it takes: one leader's observation (trained on
-    `LeaderVecEnv`), for any number of leaders, or those of k leaders one after another (trained on
-    ``gymnasium.make("flockenv/Leaders-v0")``), for flocks with k leaders. If the model chooses
-    levels (`rudder_levels`), they become rudders. If its environment is a `VecNormalize`,
+    A model that was trained on `LeaderVecEnv` takes one leader's observation, and steers any number
+    of leaders. A model that was trained on ``gymnasium.make("flockenv/Leaders-v0")`` takes the
+    observations of k leaders one after another, and steers flocks with k leaders. If the model
+    chooses levels (`rudder_levels`), they become rudders. If its environment is a `VecNormalize`,
     observations are normalized the same way; a model's file does not hold the statistics.
 
-    A leader acts the same however many are steered at once, if the network has linear layers with
-    hyperbolic tangents or rectifiers between them, like the default `MlpPolicy`. With other layers,
-    PyTorch may round a row differently at another index.
+    A leader's rudder does not depend on the number of leaders that are steered at once, if the
+    network has linear layers with hyperbolic tangents or rectifiers between them, like the default
+    `MlpPolicy`. With other layers, PyTorch may round a row differently at another index.
 
     Parameters
     ----------
@@ -94,18 +94,18 @@ class ModelPolicy:
         actions: "gymnasium.Space[Any]",
         provenance: Mapping[str, str] | None,
     ) -> None:
-        """Store a model for environments with these spaces."""
+        """Store a model, and the options in the observation space that it was trained on."""
         self.model = model
         self.provenance = dict(provenance or {})
         self.leaders = space.leaders
-        self._size = space.shape[0] // space.leaders
+        self._observation_size = space.shape[0] // space.leaders
         options = space.policy_options()
         self.observation: dict[str, object] = options["observation"]
         self.mirror_to_target: bool = options["mirror_to_target"]
         self.control_hz: float = options["control_hz"]
         self.action_mode: str = options["action_mode"]
         self.decision_period_s: float | None = options["decision_period_s"]
-        self._levels = _levels_of(actions, self.leaders)
+        self._rudder_levels = _rudder_levels_of(actions, self.leaders)
 
     def predict(
         self,
@@ -116,63 +116,64 @@ class ModelPolicy:
     ) -> tuple[object, object]:
         """Return rudders for observations, as `LeaderPolicy`.
 
-        A model of k leaders treats every k consecutive leaders as a flock; `deterministic` is the
-        model's. Also raises ParameterError for numbers of leaders that are not a multiple of k.
+        A model of k leaders treats every k consecutive leaders as a flock. `deterministic` is
+        passed to the model. Also raises ParameterError for numbers of leaders that are not a
+        multiple of k.
         """
         if isinstance(observation, Mapping):
-            stacked = np.stack([observed(one) for one in observation.values()])
+            stacked = np.stack([observation_array(rows) for rows in observation.values()])
             rudders, state = self._predict(stacked, state, episode_start, deterministic)
             return dict(zip(observation, rudders, strict=True)), state
-        return self._predict(observed(observation), state, episode_start, deterministic)
+        return self._predict(observation_array(observation), state, episode_start, deterministic)
 
     def _predict(
         self, array: NDArray[np.float32], state: object, episode_start: object, deterministic: bool
     ) -> tuple[NDArray[np.float32], object]:
-        leaders = leaders_observed(array, self._size)
-        rows = array.size // self._size
+        leaders = leaders_in_last_axis(array, self._observation_size)
+        rows = array.size // self._observation_size
         if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
             raise ParameterError(
                 f"observation has shape {array.shape}, but {self!r} steers {self.leaders} leaders "
                 "at once"
             )
-        items = array.reshape(rows // self.leaders, -1)
+        inputs = array.reshape(rows // self.leaders, -1)
         if episode_start is not None:
             starts: NDArray[np.bool_] = np.asarray(episode_start, np.bool_).ravel()
-            episode_start = np.repeat(starts, len(items) // len(starts))
-        actions, state = self._decided(items, state, episode_start, deterministic)
-        given = np.asarray(actions, np.float64).reshape(rows)
-        if self._levels is not None:
-            given = np.array(_core.rudders_of_levels(given.tolist(), self._levels))
-        rudders = np.clip(given, -1.0, 1.0).astype(np.float32)
+            episode_start = np.repeat(starts, len(inputs) // len(starts))
+        returned, state = self._model_actions(inputs, state, episode_start, deterministic)
+        actions = np.asarray(returned, np.float64).reshape(rows)
+        if self._rudder_levels is not None:
+            actions = np.array(_core.rudders_of_levels(actions.tolist(), self._rudder_levels))
+        rudders = np.clip(actions, -1.0, 1.0).astype(np.float32)
         return rudders.reshape(*array.shape[:-1], leaders), state
 
-    def _decided(
+    def _model_actions(
         self,
-        items: NDArray[np.float32],
+        inputs: NDArray[np.float32],
         state: object,
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
     ) -> tuple[object, object]:
-        """Return the model's actions for observations, one item per leader or per flock."""
-        normalizes = normalizing(self.model)
-        if normalizes is not None:
-            items = normalizes.normalize_obs(items)
-        with one_by_one():
-            found: tuple[object, object] = self.model.predict(
-                items, state, episode_start, deterministic
+        """Return the model's actions and next state, for one input per leader or per flock."""
+        vec_normalize = normalizing(self.model)
+        if vec_normalize is not None:
+            inputs = vec_normalize.normalize_obs(inputs)
+        with independent_rows():
+            actions_and_state: tuple[object, object] = self.model.predict(
+                inputs, state, episode_start, deterministic
             )
-        return found
+        return actions_and_state
 
     def __repr__(self) -> str:
         name = self.provenance.get("file", type(self.model).__name__)
-        takes = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
-        return f"{type(self).__name__}({name}, {takes}, {self.control_hz:g} Hz)"
+        leaders = "one leader" if self.leaders == 1 else f"{self.leaders} leaders at once"
+        return f"{type(self).__name__}({name}, {leaders}, {self.control_hz:g} Hz)"
 
 
 def normalizing(model: object) -> Any:
     """Return the ``VecNormalize`` of a model's environment, if it normalizes observations."""
-    found = getattr(model, "get_vec_normalize_env", lambda: None)()
-    return found if found is not None and found.norm_obs else None
+    vec_normalize = getattr(model, "get_vec_normalize_env", lambda: None)()
+    return vec_normalize if vec_normalize is not None and vec_normalize.norm_obs else None
 
 
 def lacks_normalizing(model: object) -> bool:
@@ -186,24 +187,25 @@ def space_under_wrappers(model: object) -> "ObservationSpace | None":
     """Return the space of the unwrapped environment in which a model learns, if known."""
     from flockenv.envs.spaces import ObservationSpace
 
-    base = getattr(getattr(model, "env", None), "unwrapped", None)
-    first = getattr(base, "envs", [base])[0]
-    space = getattr(getattr(first, "unwrapped", first), "observation_space", None)
+    unwrapped = getattr(getattr(model, "env", None), "unwrapped", None)
+    # stable-baselines3's vector environment of single ones has a list of them.
+    first_env = getattr(unwrapped, "envs", [unwrapped])[0]
+    space = getattr(getattr(first_env, "unwrapped", first_env), "observation_space", None)
     return space if isinstance(space, ObservationSpace) else None
 
 
-def one_by_one() -> AbstractContextManager[object]:
+def independent_rows() -> AbstractContextManager[object]:
     """Return a context in which torch computes each row of a linear layer independently."""
     torch = sys.modules.get("torch")
-    return _mode_of(torch)() if torch else nullcontext()
+    return _independent_rows_mode(torch)() if torch else nullcontext()
 
 
 @cache
-def _mode_of(torch: ModuleType) -> type[AbstractContextManager[object]]:
-    """Return the class of that context, which can only be defined once torch is imported."""
+def _independent_rows_mode(torch: ModuleType) -> type[AbstractContextManager[object]]:
+    """Return the class of that context; it inherits from torch, so torch has to be imported."""
     linear = torch.nn.functional.linear
 
-    class EachAlone(torch.overrides.TorchFunctionMode):  # type: ignore[misc,name-defined]
+    class IndependentRows(torch.overrides.TorchFunctionMode):  # type: ignore[misc,name-defined]
         def __torch_function__(
             self,
             function: Callable[..., object],
@@ -213,19 +215,19 @@ def _mode_of(torch: ModuleType) -> type[AbstractContextManager[object]]:
         ) -> object:
             return (_linear if function is linear else function)(*arguments, **(options or {}))
 
-    return EachAlone
+    return IndependentRows
 
 
 def _linear(input: "Tensor", weight: "Tensor", bias: "Tensor | None" = None) -> "Tensor":  # noqa: A002 - torch's names
     """Return the output of torch's linear layer, computed by the core."""
     rows = input.reshape(-1, input.shape[-1])
-    added = weight.new_zeros(len(weight)) if bias is None else bias
-    arrays = (array.detach().float().cpu().numpy() for array in (rows, weight.T, added))
+    offset = weight.new_zeros(len(weight)) if bias is None else bias
+    arrays = (array.detach().float().cpu().numpy() for array in (rows, weight.T, offset))
     return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], len(weight))
 
 
-def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
-    """Return the number of levels of a model's actions; None for rudders."""
+def _rudder_levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
+    """Return the number of levels that a model chooses from; None if its actions are rudders."""
     import gymnasium
 
     if isinstance(space, gymnasium.spaces.Box) and space.shape == (leaders,):
@@ -242,19 +244,19 @@ def _levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
 
 def as_policy(policy: object) -> object:
     """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
-    gymnasium = sys.modules.get("gymnasium")  # Without stable-baselines3 there is no model.
+    gymnasium = sys.modules.get("gymnasium")  # A model's space is one of Gymnasium's.
     if gymnasium and isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
         return ModelPolicy(policy)
     return policy
 
 
 def is_model_file(path: str | os.PathLike[str]) -> bool:
-    """Return whether stable-baselines3 saved a model to a file, by its entries alone."""
+    """Return whether a file is a model of stable-baselines3, by the names of its zip's entries."""
     with open_plain(path) as file:
         try:
-            return _WEIGHTS in zipfile.ZipFile(file).namelist()
+            return _WEIGHTS_ENTRY in zipfile.ZipFile(file).namelist()
         except (zipfile.BadZipFile, NotImplementedError, ValueError):
-            # Damaged bytes may name an unknown version, or not be text.
+            # A damaged zip may state an unknown version, or names that are not text.
             return False
 
 
@@ -275,11 +277,10 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
                 "normalized: steer with the model in memory, or train without VecNormalize: "
                 "observations are scaled already"
             )
-        # Schedules, buffers and the like are not needed, so they are not read, nor their code
-        # executed.
-        skipped = dict.fromkeys(stored.keys() - set(_NEEDED))
+        # Other entries, such as schedules and buffers, are None, so their code is not executed.
+        skipped = dict.fromkeys(stored.keys() - set(_READ_ENTRIES))
         data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
-        model = _policy_of(data)
+        model = _new_policy(data)
         model.load_state_dict(weights["policy"])
         model.set_training_mode(False)
         provenance = {
@@ -300,13 +301,14 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
         ) from error
 
 
-def _policy_of(data: Mapping[str, Any]) -> "BasePolicy":
-    """Return the policy with new weights, as its algorithm would make it."""
-    kind, options = data["policy_class"], dict(data["policy_kwargs"])
+def _new_policy(data: Mapping[str, Any]) -> "BasePolicy":
+    """Return a policy of the stored class with the stored options, and newly drawn weights."""
+    policy_class, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
+    # The last one is the schedule of the learning rate, which nothing uses.
     arguments = data["observation_space"], data["action_space"], lambda _: 0.0
     try:
-        policy: BasePolicy = kind(*arguments, **{"use_sde": data["use_sde"], **options})
-    except TypeError:  # Those of DQN and the like do not take it.
-        policy = kind(*arguments, **options)
+        policy: BasePolicy = policy_class(*arguments, **{"use_sde": data["use_sde"], **options})
+    except TypeError:  # Policies of DQN and similar algorithms take no use_sde.
+        policy = policy_class(*arguments, **options)
     return policy

@@ -41,8 +41,8 @@ def _elu(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _gelu(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    share = np.vectorize(math.erf, [float])(values / math.sqrt(2.0))
-    return np.asarray(0.5 * values * (1.0 + share), np.float32)
+    erf = np.vectorize(math.erf, [float])(values / math.sqrt(2.0))
+    return np.asarray(0.5 * values * (1.0 + erf), np.float32)
 
 
 ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] = {
@@ -55,14 +55,15 @@ ACTIVATIONS: Mapping[str, Callable[[NDArray[np.float32]], NDArray[np.float32]]] 
 """Activations after a layer; "identity" changes nothing."""
 
 Norm = tuple[ArrayLike, ArrayLike, float]
-"""A layer's normalization, as in torch's ``LayerNorm``: scale, shift, and the number that is added
+"""A layer's normalization, as in torch's ``LayerNorm``: scale, shift, and the ``eps`` that is added
 to the variance."""
 
 
 @dataclass(frozen=True)
 class _Layer:
-    """A linear layer and its activation."""
+    """A linear layer, its normalization if it has one, and its activation."""
 
+    #: Shape (inputs, outputs).
     weight: NDArray[np.float32]
     bias: NDArray[np.float32]
     norm: tuple[NDArray[np.float32], NDArray[np.float32], float] | None
@@ -90,11 +91,11 @@ class NetworkPolicy(RowPolicy):
     biases
         One vector per layer, shape (outputs,), float32.
     activation
-        A name in `ACTIVATIONS`, for the activation between layers; or a list with one per layer,
-        where the last one follows the last layer. The output is clipped to [-1, 1].
+        A name in `ACTIVATIONS`, for the activation between layers; or a list with the activation
+        after each layer, the last included. The output is clipped to [-1, 1].
     norms
         For each layer None, or the normalization before its activation, as in torch's
-        ``LayerNorm``: scale and shift, shape (outputs,), and the number that is added to the
+        ``LayerNorm``: scale and shift, shape (outputs,), and the ``eps`` that is added to the
         variance.
     observation, mirror_to_target
         Layout of the observations, as in the environments' options of those names; the weights have
@@ -134,7 +135,7 @@ class NetworkPolicy(RowPolicy):
         self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
         self.provenance = {str(name): str(text) for name, text in dict(provenance or {}).items()}
         matrices, vectors = items(weights, "weights"), items(biases, "biases")
-        self._layers = _checked_layers(matrices, vectors, norms, activation, self._size)
+        self._layers = _checked_layers(matrices, vectors, norms, activation, self._observation_size)
 
     @classmethod
     def from_module(
@@ -154,18 +155,18 @@ class NetworkPolicy(RowPolicy):
             A ``torch.nn.Module`` from one leader's observation to its rudder: linear layers in the
             order of their use. Each may be followed by a ``LayerNorm``, and by one of Tanh, ReLU,
             ELU and GELU. Layers that change nothing (``Identity``, and ``Dropout``, which acts in
-            training alone) are passed over. The module is run on a few observations. It is refused
-            if its output is not that of its layers in this order, for example because its
+            training alone) are skipped. The module is run on a few random observations. It is
+            refused if its output is not that of its layers in this order, for example because its
             ``forward`` does more.
         space
-            The space of the observations that it was trained on, of one leader or of several: it
-            holds the options that a policy depends on.
+            The observation space that it was trained on, of one leader or of several: it holds the
+            options that a policy depends on.
         squashed
             Whether the distribution puts the mean through a hyperbolic tangent, as TorchRL's
             ``TanhNormal``.
         has_spread
             Whether the last layer has two outputs, the mean and the spread of a distribution. The
-            mean is the rudder. A last ``NormalParamExtractor`` of TorchRL says the same.
+            mean is the rudder. A last ``NormalParamExtractor`` of TorchRL has the same effect.
         provenance
             As for `NetworkPolicy`.
 
@@ -178,8 +179,8 @@ class NetworkPolicy(RowPolicy):
 
         if not isinstance(space, ObservationSpace):
             raise ParameterError(
-                f"space = {short_repr(space)} is not accepted: the space of observations of an "
-                "environment here"
+                f"space = {short_repr(space)} is not accepted: the observation space of an "
+                "environment of flockenv"
             )
         layers = read_module(module, has_spread=has_spread)
         activations = [layer.activation for layer in layers]
@@ -247,7 +248,7 @@ class NetworkPolicy(RowPolicy):
 
     @property
     def digest(self) -> str:
-        """The first digits of the SHA-256 of layout and numbers alone."""
+        """The first 12 digits of the SHA-256 of the policy's options and numbers."""
         header, arrays = self._contents()
         digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
         for name in sorted(arrays):
@@ -259,20 +260,11 @@ class NetworkPolicy(RowPolicy):
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Read a network from its ``.npz`` file, in which nothing is executed.
 
-        Raises what `flockenv.policies.load` raises.
+        Raises the errors of `flockenv.policies.load`.
         """
         arrays = read_arrays(path, _LARGEST_FILE)
         try:
-            header = json.loads(str(arrays.pop("header")).removeprefix("\ufeff"))
-            refuse_unknown(header, _HEADER, "entry of a network's header")
-            if header["format"] != FORMAT:
-                raise ParameterError(f"format = {short_repr(header['format'])}, not {FORMAT!r}")
-            version = header["observation_version"]
-            if version != OBSERVATION_VERSION:
-                raise ParameterError(
-                    f"it was made for version {short_repr(version)} of the observation, not "
-                    f"{OBSERVATION_VERSION}: train it again"
-                )
+            header = _checked_header(str(arrays.pop("header")))
             activations, epsilons = header["activations"], header["norms"]
             indices = range(len(items(activations, "activations")))
             has_norm = [index for index in indices if epsilons[index] is not None]
@@ -302,11 +294,26 @@ class NetworkPolicy(RowPolicy):
             raise ParameterError(f"{path} is not a complete policy: {error}") from error
 
     def __repr__(self) -> str:
-        sizes = [self._size, *(len(layer.bias) for layer in self._layers)]
+        sizes = [self._observation_size, *(len(layer.bias) for layer in self._layers)]
         *between, last = self.activations
         words = ", ".join(dict.fromkeys(between)) or "linear"
         words += "" if last == "identity" else f", then {last}"
         return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {words})"
+
+
+def _checked_header(text: str) -> dict[str, Any]:
+    """Return the header of a network's file; refuse other formats and observation versions."""
+    header: dict[str, Any] = json.loads(text.removeprefix("\ufeff"))
+    refuse_unknown(header, _HEADER, "entry of a network's header")
+    if header["format"] != FORMAT:
+        raise ParameterError(f"format = {short_repr(header['format'])}, not {FORMAT!r}")
+    version = header["observation_version"]
+    if version != OBSERVATION_VERSION:
+        raise ParameterError(
+            f"it was made for version {short_repr(version)} of the observation, not "
+            f"{OBSERVATION_VERSION}: train it again"
+        )
+    return header
 
 
 def _checked_layers(
@@ -314,53 +321,58 @@ def _checked_layers(
     biases: Sequence[ArrayLike],
     norms: Sequence[Norm | None] | None,
     activation: str | Sequence[str],
-    size: int,
+    observation_size: int,
 ) -> list[_Layer]:
-    """Return layers from a number of inputs to one output, as float32."""
+    """Return layers from one leader's observation to one output, as float32."""
     count = len(weights)
     if count != len(biases) or count == 0:
         raise ParameterError(
             f"{count} weights and {len(biases)} biases are not accepted: one of each a layer"
         )
     layer_norms: Sequence[Norm | None] = [None] * count if norms is None else items(norms, "norms")
-    if isinstance(activation, str):
-        named: Sequence[str] = [*[activation] * (count - 1), "identity"]
-        refuse_unknown((activation,), ACTIVATIONS, "activation")
-    else:
-        named = items(activation, "activation")
-        refuse_unknown(named, ACTIVATIONS, "activation")
-    if (len(layer_norms), len(named)) != (count, count):
+    activations = _checked_activations(activation, count)
+    if (len(layer_norms), len(activations)) != (count, count):
         raise ParameterError(
-            f"{len(layer_norms)} norms and {len(named)} activations are not accepted: one of each "
-            f"for {count} layers"
+            f"{len(layer_norms)} norms and {len(activations)} activations are not accepted: one of "
+            f"each for {count} layers"
         )
-    layers, inputs = [], size
+    layers, inputs = [], observation_size
     for index, (weight, bias) in enumerate(zip(weights, biases, strict=True)):
-        matrix, vector = (_as_float32(one, f"layer {index}") for one in (weight, bias))
-        wanted = 1 if index == count - 1 else vector.size
-        if matrix.shape != (inputs, wanted) or vector.shape != (wanted,) or wanted == 0:
-            seen = f": one leader observes {size} numbers" if index == 0 else ""
+        matrix, vector = (_as_float32(values, f"layer {index}") for values in (weight, bias))
+        outputs = 1 if index == count - 1 else vector.size
+        if matrix.shape != (inputs, outputs) or vector.shape != (outputs,) or outputs == 0:
+            reason = f": one leader observes {inputs} numbers" if index == 0 else ""
             raise ParameterError(
                 f"layer {index} has weights {matrix.shape} and biases {vector.shape}, but needs "
-                f"({inputs}, {wanted}) and ({wanted},){seen}"
+                f"({inputs}, {outputs}) and ({outputs},){reason}"
             )
         if not (np.isfinite(matrix).all() and np.isfinite(vector).all()):
             raise ParameterError(f"layer {index} holds numbers that are not finite")
-        norm = _checked_norm(layer_norms[index], wanted, f"the norm of layer {index}")
-        layers.append(_Layer(matrix, vector, norm, named[index]))
-        inputs = wanted
+        norm = _checked_norm(layer_norms[index], outputs, f"the norm of layer {index}")
+        layers.append(_Layer(matrix, vector, norm, activations[index]))
+        inputs = outputs
     return layers
 
 
+def _checked_activations(activation: str | Sequence[str], count: int) -> Sequence[str]:
+    """Return the activation after each layer, as `NetworkPolicy` takes them."""
+    if isinstance(activation, str):
+        refuse_unknown((activation,), ACTIVATIONS, "activation")
+        return [*[activation] * (count - 1), "identity"]
+    activations: Sequence[str] = items(activation, "activation")
+    refuse_unknown(activations, ACTIVATIONS, "activation")
+    return activations
+
+
 def _checked_norm(
-    given: Norm | None, size: int, name: str
+    norm: Norm | None, size: int, name: str
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], float] | None:
-    if given is None:
+    if norm is None:
         return None
-    if len(items(given, name)) != 3:
+    if len(items(norm, name)) != 3:
         raise ParameterError(f"{name} is not accepted: scale, shift and a number")
-    scale, shift = (_as_float32(one, name) for one in given[:2])
-    epsilon = float(number(given[2], name))
+    scale, shift = (_as_float32(values, name) for values in norm[:2])
+    epsilon = float(number(norm[2], name))
     if not (scale.shape == shift.shape == (size,) and 0.0 <= epsilon < math.inf):
         raise ParameterError(
             f"{name} has scales {scale.shape}, shifts {shift.shape} and {epsilon:g}, but needs "
@@ -372,9 +384,9 @@ def _checked_norm(
 
 
 def _as_float32(values: ArrayLike, name: str) -> NDArray[np.float32]:
-    """Return real numbers as float32; numbers beyond its range are infinite."""
-    found = real_numbers(values, name)
-    if found.dtype.kind == "b" or np.ma.is_masked(found):
+    """Return real numbers as float32; numbers beyond its range become infinite."""
+    array = real_numbers(values, name)
+    if array.dtype.kind == "b" or np.ma.is_masked(array):
         raise ParameterError(f"{name} is not accepted: real numbers, all of them")
     with np.errstate(over="ignore"):
-        return np.array(found, np.float32)
+        return np.array(array, np.float32)

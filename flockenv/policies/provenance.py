@@ -8,22 +8,22 @@ from flockenv._core import __version__
 
 
 def commit() -> str:
-    """Return the commit that flockenv runs from, with a + if files differ from it; or "unknown".
+    """Return the commit that flockenv runs from, with a + if files differ from it.
 
-    Only a checkout knows its commit; an installed package has only a version.
+    An installed package has no commit: "unknown".
     """
     root = Path(__file__).parents[2]
     if not (root / ".git").exists():
         return "unknown"
 
     def git(*arguments: str) -> str:
-        done = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
-        done.check_returncode()
-        return done.stdout.strip()
+        process = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
+        process.check_returncode()
+        return process.stdout.strip()
 
     try:
-        changed = "+" if git("status", "--porcelain", "--untracked-files=no") else ""
-        return git("rev-parse", "--short=12", "HEAD") + changed
+        suffix = "+" if git("status", "--porcelain", "--untracked-files=no") else ""
+        return git("rev-parse", "--short=12", "HEAD") + suffix
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
 
@@ -42,14 +42,14 @@ def provenance_of(
     samples
         Number of leaders' decisions in the training.
     cpu_s
-        Processor time that it took in s, on all cores together.
+        Processor time of the training in s, on all cores together.
     flock_hours
         Simulated flock-hours of the training.
 
     Returns
     -------
     dict
-        These as texts, with the versions of flockenv and Python and the commit.
+        The arguments, the versions of flockenv and Python, and the commit.
     """
     hours = {} if flock_hours is None else {"flock_hours": f"{flock_hours:.6g}"}
     return {

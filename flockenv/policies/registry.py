@@ -27,13 +27,13 @@ PolicyLike = Policy | LeaderPolicy | str | os.PathLike[str] | Callable[[], objec
 """Forms in which a policy may be given; see `policy`."""
 
 FILES = (".json", ".npz", ".zip")
-"""Endings of policies' files: laws, networks, and models of stable-baselines3."""
+"""Endings of files that hold a law, a network, or a model of stable-baselines3."""
 
 POOL_POLICIES: Mapping[str, Callable[[Pool | None], LeaderPolicy]] = {
-    TUNED_LAW: lambda pool: DampedLaw.tuned(_named(pool)),
-    LEARNED: lambda pool: LeaningLaw.learned(_named(pool)),
+    TUNED_LAW: lambda pool: DampedLaw.tuned(_pool_name(pool)),
+    LEARNED: lambda pool: LeaningLaw.learned(_pool_name(pool)),
 }
-"""Policies by name, each tuned or trained for a pool."""
+"""Policies that are tuned or trained for a pool, by name."""
 
 POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
     PAPERS_LAW: SteeringLaw,
@@ -43,15 +43,15 @@ POLICIES: Mapping[str, Callable[[], LeaderPolicy]] = {
     # A law of the core that has no Python class needs no line here.
     **{name: partial(NamedLaw, name) for name in OTHER_LAWS},
 }
-"""Policies by name that are the same in every pool."""
+"""Policies that are the same in every pool, by name."""
 
 NAMES = (EVERY_SUBSTEP, *POLICIES, *POOL_POLICIES)
 """The names of all policies."""
 
-_ATTRIBUTE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
+_MODULE_ATTRIBUTE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 
-def _named(pool: Pool | None) -> str:
+def _pool_name(pool: Pool | None) -> str:
     if not isinstance(pool, str):
         raise ParameterError(
             f"pool = {short_repr(pool)} is not accepted: tuned and learned leaders are for pools "
@@ -61,7 +61,7 @@ def _named(pool: Pool | None) -> str:
 
 
 def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) -> Policy:
-    """Return the policy for a name, a file or an object. All policies pass through here.
+    """Return the policy for a name, a file or an object, checked. All users of policies call this.
 
     Parameters
     ----------
@@ -89,21 +89,24 @@ def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) 
         For attributes of another kind than the options have.
     """
     if given is None or (isinstance(given, str) and given == EVERY_SUBSTEP):
-        every = _core.Law.named(EVERY_SUBSTEP)
-        return Policy(source=SteeringLaw(), name=EVERY_SUBSTEP, control_hz=None, law=every)
-    found = given if isinstance(given, Policy) else _source(given, pool, trust)
-    if not isinstance(found, Policy):
-        law = found.law if isinstance(found, LawPolicy) else None
-        leaders = found.leaders if isinstance(found, ModelPolicy) else 1
-        found = Policy.from_source(found, leaders=leaders, law=law)
+        law = _core.Law.named(EVERY_SUBSTEP)
+        return Policy(source=SteeringLaw(), name=EVERY_SUBSTEP, control_hz=None, law=law)
+    source = given if isinstance(given, Policy) else _source(given, pool, trust)
+    checked = source if isinstance(source, Policy) else _checked(source)
     if pool is not None:
-        found.check_pool(pool)
-    return found
+        checked.check_pool(pool)
+    return checked
+
+
+def _checked(source: LeaderPolicy) -> Policy:
+    law = source.law if isinstance(source, LawPolicy) else None
+    leaders = source.leaders if isinstance(source, ModelPolicy) else 1
+    return Policy.from_source(source, leaders=leaders, law=law)
 
 
 def _source(given: PolicyLike, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
-    """Return the object with ``predict`` that a value is or names."""
-    made: object = given
+    """Return the object with ``predict`` that `given` is, names or makes."""
+    source: object = given
     if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(FILES)):
         return load(given, trust=trust)
     if isinstance(given, str) and given in POLICIES:
@@ -111,23 +114,23 @@ def _source(given: PolicyLike, pool: Pool | None, trust: bool) -> LeaderPolicy |
     if isinstance(given, str) and given in POOL_POLICIES:
         return POOL_POLICIES[given](pool)
     if isinstance(given, str):
-        made = _attribute(given, trust)
-    if isinstance(made, type) or (callable(made) and not hasattr(made, "predict")):
+        source = _imported(given, trust)
+    if isinstance(source, type) or (callable(source) and not hasattr(source, "predict")):
         try:
-            made = made()
+            source = source()
         except TypeError as error:
-            raise _not_a_policy(made) from error
-    made = as_policy(made)
-    if isinstance(made, type) or not isinstance(made, LeaderPolicy):
-        raise _not_a_policy(made)
-    return made
+            raise _not_a_policy(source) from error
+    source = as_policy(source)
+    if isinstance(source, type) or not isinstance(source, LeaderPolicy):
+        raise _not_a_policy(source)
+    return source
 
 
-def _not_a_policy(found: object) -> ParameterError:
-    words = "a policy's name or file, an object with predict, or a function that returns one"
-    if hasattr(found, "state_dict"):
-        words += "; a network of torch becomes one by NetworkPolicy.from_module"
-    return ParameterError(f"policy = {short_repr(found)} is not accepted: {words}")
+def _not_a_policy(value: object) -> ParameterError:
+    accepted = "a policy's name or file, an object with predict, or a function that returns one"
+    if hasattr(value, "state_dict"):
+        accepted += "; a network of torch becomes one by NetworkPolicy.from_module"
+    return ParameterError(f"policy = {short_repr(value)} is not accepted: {accepted}")
 
 
 def _unknown_name(name: str) -> ParameterError:
@@ -140,9 +143,12 @@ def _unknown_name(name: str) -> ParameterError:
     return ParameterError(f"{name!r} is not a policy and not a .json, .npz or .zip file: {hint}")
 
 
-def _attribute(name: str, trust: bool) -> object:
-    """Return the object ``"module:attribute"``, also of a module in the working directory."""
-    if not _ATTRIBUTE.fullmatch(name):
+def _imported(name: str, trust: bool) -> object:
+    """Return the object that ``"module:attribute"`` names, after importing its module.
+
+    The module may be in the working directory.
+    """
+    if not _MODULE_ATTRIBUTE.fullmatch(name):
         raise _unknown_name(name)
     if not trust:
         raise ParameterError(
@@ -151,17 +157,17 @@ def _attribute(name: str, trust: bool) -> object:
         )
     module, _, attribute = name.partition(":")
     # Add the working directory, as `python -m` does; an installed command does not.
-    path, folder = [*sys.path], os.getcwd()
-    sys.path.insert(0, folder)
+    original_path = [*sys.path]
+    sys.path.insert(0, os.getcwd())
     try:
-        found: object = importlib.import_module(module)
+        value: object = importlib.import_module(module)
         for part in attribute.split("."):
-            found = getattr(found, part)
+            value = getattr(value, part)
     except Exception as error:  # The module's own code may raise anything.
         raise ParameterError(f"{name} is not accepted: {type(error).__name__}: {error}") from error
     finally:
-        sys.path[:] = path
-    return found
+        sys.path[:] = original_path
+    return value
 
 
 def load(
@@ -180,7 +186,8 @@ def load(
         network's ``.npz`` file, or the ``.zip`` file of a model that was trained with
         stable-baselines3 (needs the extra ``train``).
     pool
-        With ``"learned"``, and then needed: the named pool that the leaders were trained in.
+        For ``"learned"``, which needs it, and only for that: the named pool that the leaders were
+        trained in.
     trust
         Whether a model's ``.zip`` file may execute the code in it.
 
@@ -195,7 +202,7 @@ def load(
         For a model's file without the extra ``train``.
     """
     if path == LEARNED:
-        return LeaningLaw.learned(_named(pool))
+        return LeaningLaw.learned(_pool_name(pool))
     if pool is not None:
         raise ParameterError(
             f"pool = {short_repr(pool)} is not accepted with the file {os.fspath(path)!r}: only "
@@ -215,5 +222,5 @@ def load(
 
 
 def quoted(names: Iterable[str]) -> str:
-    """Return names in one line, each in quotes, since some hold spaces."""
+    """Return names in one line, each in quotes, because some contain spaces."""
     return ", ".join(map(repr, names))

@@ -13,27 +13,28 @@ from flockenv.errors import ParameterError, short_repr
 if TYPE_CHECKING:
     from torch import Tensor, nn
 
-#: Torch's activations by name, with the attributes that are read from each.
+#: Torch's activations by class: the name in a policy, and the attributes that a module must have.
 _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
     "Tanh": ("tanh", {}),
     "ReLU": ("relu", {}),
     "ELU": ("elu", {"alpha": 1.0}),
     "GELU": ("gelu", {"approximate": "none"}),
 }
-_PASSED_OVER = ("Identity", "Dropout", "NormalParamExtractor")
+_SKIPPED = ("Identity", "Dropout", "NormalParamExtractor")
 _ACCEPTED = (
     "linear layers with biases, after each of them a LayerNorm or none, and then one of "
     f"{', '.join(_ACTIVATIONS)} or none"
 )
 #: Number of observations on which a module is tried, and the largest accepted difference from the
 #: output of its layers.
-_TRIED, _AS_NEAR_AS = 16, 1e-4
+_TRIAL_ROWS, _OUTPUT_TOLERANCE = 16, 1e-4
 
 
 @dataclass
 class ModuleLayer:
-    """A linear layer and its activation."""
+    """A linear layer, its normalization if it has one, and its activation."""
 
+    #: Shape (inputs, outputs), the transpose of torch's.
     weight: NDArray[np.float32]
     bias: NDArray[np.float32]
     norm: tuple[NDArray[np.float32], NDArray[np.float32], float] | None = None
@@ -41,22 +42,22 @@ class ModuleLayer:
 
 
 def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[ModuleLayer]:
-    """Return the layers of a ``torch.nn.Module``, or refuse other objects.
+    """Return the layers of a ``torch.nn.Module``; refuse modules that are not such layers in a row.
 
     With `has_spread`, or if a ``NormalParamExtractor`` ends it, the second of two outputs is
     dropped: the spread of a distribution.
     """
-    own = [layer for layer in module.modules() if next(layer.children(), None) is None]
+    leaf_modules = [child for child in module.modules() if next(child.children(), None) is None]
     layers: list[ModuleLayer] = []
-    for layer in own:
-        if type(layer).__name__ not in _PASSED_OVER:
-            _add(layers, layer)
+    for leaf in leaf_modules:
+        if type(leaf).__name__ not in _SKIPPED:
+            _append_module(layers, leaf)
     if not layers:
         raise ParameterError(f"a module with no linear layer is not accepted: {_ACCEPTED}")
-    _check_between(layers)
-    _check_computes(module, layers)
+    _check_activations_between(layers)
+    _check_output(module, layers)
     last = layers[-1]
-    if has_spread or type(own[-1]).__name__ == "NormalParamExtractor":
+    if has_spread or type(leaf_modules[-1]).__name__ == "NormalParamExtractor":
         if len(last.bias) != 2 or last.norm is not None or last.activation != "identity":
             raise ParameterError(
                 f"a last layer with {len(last.bias)} outputs is not accepted with a spread: two, a "
@@ -71,41 +72,41 @@ def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[Module
     return layers
 
 
-def _numbers(tensor: "Tensor") -> NDArray[np.float32]:
-    found: NDArray[np.float32] = tensor.detach().cpu().numpy()
-    return found
+def _as_array(tensor: "Tensor") -> NDArray[np.float32]:
+    array: NDArray[np.float32] = tensor.detach().cpu().numpy()
+    return array
 
 
-def _add(layers: list[ModuleLayer], layer: Any) -> None:
-    """Add a layer to those before it."""
-    kind, last = type(layer).__name__, layers[-1] if layers else None
-    is_free = last is not None and last.activation == "identity"
-    if kind == "Linear" and layer.bias is not None:
-        layers.append(ModuleLayer(_numbers(layer.weight).T, _numbers(layer.bias)))
-    elif kind == "LayerNorm" and last is not None and is_free and last.norm is None:
+def _append_module(layers: list[ModuleLayer], module: Any) -> None:
+    """Append a linear module as a layer; add a LayerNorm or an activation to the last layer."""
+    kind, last = type(module).__name__, layers[-1] if layers else None
+    has_no_activation = last is not None and last.activation == "identity"
+    if kind == "Linear" and module.bias is not None:
+        layers.append(ModuleLayer(_as_array(module.weight).T, _as_array(module.bias)))
+    elif kind == "LayerNorm" and last is not None and has_no_activation and last.norm is None:
         size = len(last.bias)
         scale, shift = np.ones(size, np.float32), np.zeros(size, np.float32)
-        if layer.weight is not None:
-            scale = _numbers(layer.weight)
-        if layer.bias is not None:
-            shift = _numbers(layer.bias)
-        last.norm = (scale, shift, float(layer.eps))
-    elif kind in _ACTIVATIONS and last is not None and is_free:
+        if module.weight is not None:
+            scale = _as_array(module.weight)
+        if module.bias is not None:
+            shift = _as_array(module.bias)
+        last.norm = (scale, shift, float(module.eps))
+    elif kind in _ACTIVATIONS and last is not None and has_no_activation:
         name, settings = _ACTIVATIONS[kind]
         for setting, accepted in settings.items():
-            if (found := getattr(layer, setting)) != accepted:
+            if (value := getattr(module, setting)) != accepted:
                 raise ParameterError(
-                    f"{setting} = {found!r} of {kind} is not accepted: {accepted!r}"
+                    f"{setting} = {value!r} of {kind} is not accepted: {accepted!r}"
                 )
         last.activation = name
     else:
         raise ParameterError(
-            f"a module with the layer {short_repr(layer)} at this position is not accepted: "
+            f"a module with the layer {short_repr(module)} at this position is not accepted: "
             f"{_ACCEPTED}"
         )
 
 
-def _check_between(layers: list[ModuleLayer]) -> None:
+def _check_activations_between(layers: list[ModuleLayer]) -> None:
     for first, second in itertools.pairwise(layers):
         if first.activation == "identity" and first.norm is None:
             raise ParameterError(
@@ -116,36 +117,33 @@ def _check_between(layers: list[ModuleLayer]) -> None:
             )
 
 
-def _check_computes(module: "nn.Module", layers: list[ModuleLayer]) -> None:
-    """Refuse a module whose output is not that of its layers one after another."""
+def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
+    """Refuse a module whose output for random rows is not that of its layers in their order."""
     import torch
 
     size = len(layers[0].weight)
-    rows = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, size)).astype(np.float32)
+    rows = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIAL_ROWS, size)).astype(np.float32)
     was_training = module.training
     module.eval()
     try:
         with torch.no_grad():
-            found = module(torch.from_numpy(rows).to(next(module.parameters())))
+            output = module(torch.from_numpy(rows).to(next(module.parameters())))
             expected = torch.from_numpy(rows)
             for layer in layers:
-                expected = _computed(layer, expected)
+                expected = _layer_output(layer, expected)
     except RuntimeError as error:  # The layers' shapes do not fit each other.
         raise ParameterError(
             f"a module is not accepted whose layers do not fit each other in their order: {error}"
         ) from error
     finally:
         module.train(was_training)
-    outputs = list(_tensors(found))
-    joined = torch.cat(
-        [torch.empty(_TRIED, 0), *(output.float().cpu() for output in outputs)], dim=-1
-    )
-    # A distribution's spread is made positive after the last layer.
-    columns = 1 if len(outputs) == 2 else expected.shape[1]
-    own, ours = (values[:, :columns] for values in (joined, expected))
-    # Weights that are not finite are refused by name when they become a policy.
+    tensors = [tensor.float().cpu() for tensor in _tensors(output)]
+    joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)
+    # The mean alone is compared: a distribution's spread is made positive after the last layer.
+    columns = 1 if len(tensors) == 2 else expected.shape[1]
+    # NaN is equal here: a policy refuses weights that are not finite, with a better message.
     is_same = joined.shape == expected.shape and torch.allclose(
-        own, ours, atol=_AS_NEAR_AS, equal_nan=True
+        joined[:, :columns], expected[:, :columns], atol=_OUTPUT_TOLERANCE, equal_nan=True
     )
     if not is_same:
         raise ParameterError(
@@ -155,16 +153,16 @@ def _check_computes(module: "nn.Module", layers: list[ModuleLayer]) -> None:
         )
 
 
-def _tensors(found: object) -> Iterator[Any]:
-    """Yield the tensors of an output, such as those of a distribution."""
-    if isinstance(found, tuple | list):
-        for layer in found:
-            yield from _tensors(layer)
-    elif hasattr(found, "detach"):
-        yield found
+def _tensors(output: object) -> Iterator[Any]:
+    """Yield the tensors of an output, such as the mean and the spread of a distribution."""
+    if isinstance(output, tuple | list):
+        for part in output:
+            yield from _tensors(part)
+    elif hasattr(output, "detach"):
+        yield output
 
 
-def _computed(layer: ModuleLayer, values: "Tensor") -> "Tensor":
+def _layer_output(layer: ModuleLayer, values: "Tensor") -> "Tensor":
     """Return a layer's output, computed by torch."""
     import torch
 

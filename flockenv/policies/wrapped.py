@@ -13,9 +13,9 @@ from flockenv.errors import ParameterError, short_repr
 from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.model import (
     ModelPolicy,
+    independent_rows,
     lacks_normalizing,
     normalizing,
-    one_by_one,
     space_under_wrappers,
 )
 
@@ -23,15 +23,16 @@ if TYPE_CHECKING:
     import gymnasium
 
 Wrap = Callable[[Any], Any]
-"""A function that returns an environment in a wrapper, or in several."""
+"""A function that puts an environment into one or several wrappers, and returns the outermost."""
 
 
 class WrappedPolicy(ModelPolicy):
     """A model that was trained in a wrapper of an environment, with the wrapper.
 
-    The wrapper changes what leaders observe: it may cut, scale, stack or remember. It is made again
-    for each run, around a stand-in for the environment. The stand-in has the environment's spaces
-    and passes on the flock's observations, but has no rewards, infos or attributes.
+    The wrapper changes what leaders observe: it may cut, scale or stack observations, or remember
+    earlier ones. It is made again for each run, around a stand-in for the environment. The stand-in
+    has the environment's spaces and returns the flock's observations, but it has no rewards, infos
+    or attributes.
 
     Parameters
     ----------
@@ -39,8 +40,8 @@ class WrappedPolicy(ModelPolicy):
         A model of stable-baselines3 such as ``PPO``, or any object with its ``predict``.
     wrapper
         A function that puts an environment into the wrapper or wrappers, such as
-        ``lambda venv: VecFrameStack(venv, 4)``. It must not contain the `VecNormalize` of the
-        model's own environment, whose statistics are applied anyway. A wrapper that normalizes
+        ``lambda venv: VecFrameStack(venv, 4)``. The `VecNormalize` of the model's own environment
+        must not be among them: its statistics are applied anyway. A wrapper that normalizes
         observations itself must hold the training's statistics, which are not updated.
     env
         The environment that was wrapped for the training: a `LeaderVecEnv`, or
@@ -76,32 +77,36 @@ class WrappedPolicy(ModelPolicy):
                 f"env = {short_repr(env)} is not accepted: a LeaderVecEnv or flockenv/Leaders-v0 "
                 "as it was before it was wrapped"
             )
-        own = space_under_wrappers(model)
-        if own is not None and own != space:
+        training_space = space_under_wrappers(model)
+        if training_space is not None and training_space != space:
             raise ParameterError(
-                f"env = {short_repr(env)} is not accepted: the model was trained in {own}, not "
-                f"{space}"
+                f"env = {short_repr(env)} is not accepted: the model was trained in "
+                f"{training_space}, not {space}"
             )
-        self._wrapper, self._is_per_item = wrapper, is_single
+        self._wrapper, self._is_per_flock = wrapper, is_single
         self._space, self._actions = space, unwrapped.action_space
         self._set_model(model, space, self._actions, provenance)
-        made = self._made(space.low[None])
-        if made.action_space != self._actions:
+        wrapped = self._wrapped_stand_in(space.low[None])
+        if wrapped.action_space != self._actions:
             raise ParameterError(
-                f"a wrapper that makes the action space {made.action_space} is not accepted: it "
+                f"a wrapper that makes the action space {wrapped.action_space} is not accepted: it "
                 f"may change what leaders observe, but not their actions, {self._actions}"
             )
-        self._check_normalizing(made)
-        takes = getattr(getattr(model, "observation_space", None), "shape", None)
-        if takes is not None and takes != made.observation_space.shape:
+        self._set_normalizing(wrapped)
+        wrapped_shape = wrapped.observation_space.shape
+        model_shape = getattr(getattr(model, "observation_space", None), "shape", None)
+        if model_shape is not None and model_shape != wrapped_shape:
             raise ParameterError(
-                f"a wrapper that makes observations of shape {made.observation_space.shape} is not "
-                f"accepted: the model takes {takes}"
+                f"a wrapper that makes observations of shape {wrapped_shape} is not accepted: the "
+                f"model takes {model_shape}"
             )
 
-    def _check_normalizing(self, made: Any) -> None:
-        """Refuse wrappers that do not normalize as the model's training did."""
-        statistics = [layer.obs_rms for layer in _layers(made) if hasattr(layer, "obs_rms")]
+    def _set_normalizing(self, wrapped: Any) -> None:
+        """Store whether the model's `VecNormalize` acts before the wrapper.
+
+        Refuse wrappers that do not normalize as the model's training did.
+        """
+        statistics = [layer.obs_rms for layer in _layers(wrapped) if hasattr(layer, "obs_rms")]
         if any(statistic.count < 1.0 for statistic in statistics):
             raise ParameterError(
                 "a wrapper that normalizes without statistics is not accepted: let it take over "
@@ -112,135 +117,143 @@ class WrappedPolicy(ModelPolicy):
                 "a model that was trained in VecNormalize and loaded without it is not accepted: "
                 "let the wrapper return VecNormalize.load(..., venv)"
             )
-        own = normalizing(self.model)
-        self._is_normalized_first = (
-            own is not None and self.model.env is not own and own.venv is own.unwrapped
+        vec_normalize = normalizing(self.model)
+        # Of the training's wrappers, VecNormalize is the innermost but not the outermost.
+        self._normalizes_first = (
+            vec_normalize is not None
+            and self.model.env is not vec_normalize
+            and vec_normalize.venv is vec_normalize.unwrapped
         )
-        seen = self._space if self._is_normalized_first else made.observation_space
-        if own is not None and own.obs_rms.mean.shape != seen.shape:
+        normalized = self._space if self._normalizes_first else wrapped.observation_space
+        if vec_normalize is None:
+            return
+        training_shape = vec_normalize.obs_rms.mean.shape
+        if training_shape != normalized.shape:
             raise ParameterError(
-                f"a wrapper that makes observations of shape {seen.shape} is not accepted: those "
-                f"of the training's VecNormalize have shape {own.obs_rms.mean.shape}"
+                f"a wrapper that makes observations of shape {normalized.shape} is not accepted: "
+                f"those of the training's VecNormalize have shape {training_shape}"
             )
 
-    def _made(self, items: NDArray[np.float32]) -> Any:
-        """Return the wrapper around stand-ins that give these observations."""
-        if self._is_per_item:
-            made = self._wrapper(_stand_in(self._space, self._actions, items[0]))
+    def _wrapped_stand_in(self, inputs: NDArray[np.float32]) -> Any:
+        """Return the wrapper around a stand-in for the first flock of `inputs`, or for all."""
+        if self._is_per_flock:
+            wrapped = self._wrapper(_stand_in(self._space, self._actions, inputs[0]))
         else:
-            made = self._wrapper(_vector_stand_in(self._space, self._actions, items))
-        for layer in _layers(made):
-            # Of stable-baselines3's VecNormalize, and of Gymnasium's NormalizeObservation.
-            for learns in ("training", "update_running_mean"):
-                if hasattr(layer, "obs_rms") and hasattr(layer, learns):
-                    setattr(layer, learns, False)
-        return made
+            wrapped = self._wrapper(_vector_stand_in(self._space, self._actions, inputs))
+        for layer in _layers(wrapped):
+            # Switches of stable-baselines3's VecNormalize and Gymnasium's NormalizeObservation.
+            for updates_statistics in ("training", "update_running_mean"):
+                if hasattr(layer, "obs_rms") and hasattr(layer, updates_statistics):
+                    setattr(layer, updates_statistics, False)
+        return wrapped
 
-    def _decided(
+    def _model_actions(
         self,
-        items: NDArray[np.float32],
+        inputs: NDArray[np.float32],
         state: object,
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
     ) -> tuple[object, object]:
-        starts = state is None
+        is_first = state is None
         if episode_start is not None and episode_start.any():
             if not episode_start.all():
                 raise ParameterError(
                     "episode_start of some flocks is not accepted: a wrapper's memory restarts "
                     "for all flocks together"
                 )
-            starts = True
-        own = normalizing(self.model)
-        if own is not None and self._is_normalized_first:
-            items = own.normalize_obs(items)
-        run = state if isinstance(state, _Run) and not starts else _Run(self, items)
-        seen = run.observed(items)
-        if own is not None and not self._is_normalized_first:
-            seen = own.normalize_obs(seen)
-        with one_by_one():
-            actions, run.state = self.model.predict(seen, run.state, None, deterministic)
+            is_first = True
+        vec_normalize = normalizing(self.model)
+        if vec_normalize is not None and self._normalizes_first:
+            inputs = vec_normalize.normalize_obs(inputs)
+        run = state if isinstance(state, _Run) and not is_first else _Run(self, inputs)
+        observations = run.wrapped_observations(inputs)
+        if vec_normalize is not None and not self._normalizes_first:
+            observations = vec_normalize.normalize_obs(observations)
+        with independent_rows():
+            actions, run.state = self.model.predict(observations, run.state, None, deterministic)
         run.actions = actions
         return actions, run
 
 
 def _layers(wrapped: Any) -> list[Any]:
     """Return a wrapper and those within it, but not the environment itself."""
-    found = []
+    layers = []
     while wrapped is not wrapped.unwrapped:
-        found.append(wrapped)
+        layers.append(wrapped)
         wrapped = wrapped.venv if "venv" in vars(wrapped) else wrapped.env
-    return found
+    return layers
 
 
 class _Run:
-    """A run: the wrappers' memory, and the model's decisions."""
+    """A run: its wrappers, and the model's state and last actions."""
 
-    def __init__(self, policy: WrappedPolicy, items: NDArray[np.float32]) -> None:
-        self.is_per_item = policy._is_per_item
-        count = len(items) if self.is_per_item else 1
-        self.wrapped = [policy._made(items[index:]) for index in range(count)]
+    def __init__(self, policy: WrappedPolicy, inputs: NDArray[np.float32]) -> None:
+        self.is_per_flock = policy._is_per_flock
+        count = len(inputs) if self.is_per_flock else 1
+        #: A wrapper for each flock, or one for all.
+        self.wrappers = [policy._wrapped_stand_in(inputs[index:]) for index in range(count)]
         self.state: object = None
         self.actions: Any = None
 
-    def observed(self, items: NDArray[np.float32]) -> object:
-        """Return observations after the wrappers have changed them."""
-        for index, wrapper in enumerate(self.wrapped):
-            wrapper.unwrapped.given = items[index] if self.is_per_item else items
-        starts = self.actions is None
-        if not self.is_per_item:
-            (venv,) = self.wrapped
-            return venv.reset() if starts else venv.step(self.actions)[0]
-        seen = [
-            wrapper.reset()[0] if starts else wrapper.step(self.actions[index])[0]
-            for index, wrapper in enumerate(self.wrapped)
+    def wrapped_observations(self, inputs: NDArray[np.float32]) -> object:
+        """Return the observations that the wrappers make of the flocks' own."""
+        for index, wrapper in enumerate(self.wrappers):
+            wrapper.unwrapped.observation = inputs[index] if self.is_per_flock else inputs
+        is_first = self.actions is None
+        if not self.is_per_flock:
+            (venv,) = self.wrappers
+            return venv.reset() if is_first else venv.step(self.actions)[0]
+        rows = [
+            wrapper.reset()[0] if is_first else wrapper.step(self.actions[index])[0]
+            for index, wrapper in enumerate(self.wrappers)
         ]
-        return np.stack([np.asarray(row) for row in seen])
+        return np.stack([np.asarray(row) for row in rows])
 
 
 def _stand_in(
-    space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
+    space: ObservationSpace, actions: "gymnasium.Space[Any]", observation: NDArray[np.float32]
 ) -> "gymnasium.Env[Any, Any]":
-    """Return an environment of Gymnasium whose observations are given to it."""
+    """Return a Gymnasium environment that always returns its attribute `observation`."""
     import gymnasium
 
     class StandIn(gymnasium.Env[object, object]):
         observation_space, action_space = space, actions
 
         def __init__(self) -> None:
-            self.given = given
+            self.observation = observation
 
         def reset(
             self, *, seed: int | None = None, options: object = None
         ) -> tuple[object, dict[str, Any]]:
-            return self.given, {}
+            return self.observation, {}
 
         def step(self, action: object) -> tuple[object, float, bool, bool, dict[str, Any]]:
-            return self.given, 0.0, False, False, {}
+            return self.observation, 0.0, False, False, {}
 
     return StandIn()
 
 
 def _vector_stand_in(
-    space: ObservationSpace, actions: "gymnasium.Space[Any]", given: NDArray[np.float32]
+    space: ObservationSpace, actions: "gymnasium.Space[Any]", observation: NDArray[np.float32]
 ) -> object:
-    """Return a vector environment of stable-baselines3 whose observations are given to it."""
+    """Return a vector environment of stable-baselines3 that returns its attribute `observation`."""
     vec_env = require("stable_baselines3.common.vec_env", "train")
 
     class StandIn(vec_env.VecEnv):  # type: ignore[misc,name-defined]
         def __init__(self) -> None:
-            self.given, self.render_mode = given, None
-            super().__init__(len(given), space, actions)
+            self.observation, self.render_mode = observation, None
+            super().__init__(len(observation), space, actions)
 
         def reset(self) -> object:
-            return self.given
+            return self.observation
 
         def step_async(self, actions: object) -> None:
             pass
 
         def step_wait(self) -> tuple[object, ...]:
             count = self.num_envs
-            return self.given, np.zeros(count), np.zeros(count, bool), [{} for _ in range(count)]
+            infos: list[dict[str, Any]] = [{} for _ in range(count)]
+            return self.observation, np.zeros(count), np.zeros(count, bool), infos
 
         def close(self) -> None:
             pass
