@@ -53,7 +53,7 @@ __all__ = [
     "simulate",
 ]
 
-_NAMES = {
+_NAMES_OF_MODULE = {
     "envs.parallel": ("LeadersParallelEnv", "env", "parallel_env"),
     "envs.single": ("LeadersEnv",),
     "envs.vector": ("LeadersVectorEnv",),
@@ -65,15 +65,15 @@ _NAMES = {
     "simulation": ("simulate",),
 }
 
-_MAKE = 'gymnasium.make("flockenv/Leaders-v0")'
-_MADE = {
-    **dict.fromkeys(("make", "make_env", "Env", "FlockEnv", "LeaderEnv"), _MAKE),
+_MAKE_ENV = 'gymnasium.make("flockenv/Leaders-v0")'
+_COUNTERPARTS = {
+    **dict.fromkeys(("make", "make_env", "Env", "FlockEnv", "LeaderEnv"), _MAKE_ENV),
     "make_vec": 'gymnasium.make_vec("flockenv/Leaders-v0", num_envs=64)',
     "LeaderVecEnv": "flockenv.sb3.LeaderVecEnv",
     "run": "flockenv.simulate",
     "load": "flockenv.Recording.load, or flockenv.policies.load",
 }
-"""Names of other packages, and their counterparts here."""
+"""Names that users of other packages may look for, and what has that role here."""
 
 
 def _prints_help_alone() -> bool:
@@ -85,7 +85,7 @@ def _prints_help_alone() -> bool:
     return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
 
 
-# This runs before anything uses the core.
+# Before anything uses the core.
 _built.check()
 _avx2.choose()
 # Gymnasium, which has no entry points for packages, and PettingZoo take as long to import as NumPy.
@@ -94,8 +94,8 @@ if not _prints_help_alone():
 
 
 def __getattr__(name: str) -> Any:
-    # Imported where it is used: Gymnasium and PettingZoo alone take as long to import as NumPy.
-    for module, names in _NAMES.items():
+    # A module is imported when one of its names is first used, so that `import flockenv` is fast.
+    for module, names in _NAMES_OF_MODULE.items():
         if name in names:
             value = getattr(importlib.import_module(f"flockenv.{module}"), name)
             break
@@ -112,7 +112,7 @@ def _hint(name: str) -> str:
     from flockenv.errors import nearest
 
     # hasattr of a dunder name, for example, needs no suggestion.
-    near = None if name.startswith("_") else _MADE.get(name) or nearest(name, __all__)
+    near = None if name.startswith("_") else _COUNTERPARTS.get(name) or nearest(name, __all__)
     return f": did you mean {near}?" if near else ""
 
 

@@ -9,7 +9,10 @@ from flockenv import _core
 
 
 def choose() -> None:
-    """Let `flockenv._core` be the AVX2 build, with the same bits, if the processor has AVX2."""
+    """Replace `flockenv._core` by the AVX2 build, if it exists and the processor has AVX2.
+
+    Both builds compute the same bits.
+    """
     if _core.USES_AVX2 or not _core.HAS_AVX2:
         return
     name, file = _core.__name__, Path(str(_core.__file__))

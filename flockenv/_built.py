@@ -5,28 +5,29 @@ from pathlib import Path
 
 from flockenv import _core
 
-_HERE = Path(__file__).parent
-_DECLARED = re.compile(r"^(?:class (\w+)|( {4})?def (\w+)|(\w+): )", re.MULTILINE)
+_PACKAGE = Path(__file__).parent
+_DECLARATION = re.compile(r"^(?:class (\w+)|( {4})?def (\w+)|(\w+): )", re.MULTILINE)
 
 
 def check() -> None:
     """Raise an ImportError if the core lacks a name that the stubs beside it declare.
 
-    When the sources of a clone change, its core stays the one that was compiled last.
+    In a clone the core may have been compiled from older sources. An installed package is not
+    checked.
     """
-    if not (_HERE.parent / "Cargo.toml").exists():
+    if not (_PACKAGE.parent / "Cargo.toml").exists():
         return
-    if missing := _missing((_HERE / "_core.pyi").read_text(encoding="utf-8")):
+    if missing := _missing((_PACKAGE / "_core.pyi").read_text(encoding="utf-8")):
         raise ImportError(
             f"{_core.__file__} was compiled from older sources than those beside it: it has no "
-            f"{missing}. Run `make build` in {_HERE.parent}"
+            f"{missing}. Run `make build` in {_PACKAGE.parent}"
         )
 
 
 def _missing(stubs: str) -> str | None:
     """Return the first name of the stubs that the core lacks."""
     owner: object = _core
-    for class_name, is_method, function, constant in _DECLARED.findall(stubs):
+    for class_name, is_method, function, constant in _DECLARATION.findall(stubs):
         name: str = class_name or function or constant
         if not is_method:
             owner = _core

@@ -30,19 +30,19 @@ class UnknownOptionError(ParameterError, TypeError):
 
 
 def short_repr(value: object) -> str:
-    """Return a value as messages show it: its repr, cut at a length that fits a line."""
+    """Return the repr of a value for a message, cut after 80 characters."""
     try:
         text = repr(value)
-    except Exception:  # The repr of an int of more than 4300 digits fails, and so may others.
+    except Exception:  # The repr of an int of more than 4300 digits fails; a user's may, too.
         return "a value that cannot be printed"
     return text if len(text) <= 80 else f"{text[:80]}…"
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """Return the known name most similar to another one; None if no similarity reaches `cutoff`."""
-    plain = {word.casefold(): word for word in known}
-    near = difflib.get_close_matches(str(name).casefold(), plain, n=1, cutoff=cutoff)
-    return plain[near[0]] if near else None
+    """Return the known name that is most similar to `name`; None if none reaches `cutoff`."""
+    by_lower_case = {word.casefold(): word for word in known}
+    matches = difflib.get_close_matches(str(name).casefold(), by_lower_case, n=1, cutoff=cutoff)
+    return by_lower_case[matches[0]] if matches else None
 
 
 def hint(name: object, known: Iterable[str]) -> str:
@@ -52,13 +52,13 @@ def hint(name: object, known: Iterable[str]) -> str:
     return f"did you mean {near!r}?" if near else f"there are {', '.join(known)}"
 
 
-def refuse_unknown(names: Iterable[object], known: Iterable[str], what: str) -> None:
-    """Refuse unknown names; the error calls them `what`."""
+def refuse_unknown(names: Iterable[object], known: Iterable[str], noun: str) -> None:
+    """Refuse unknown names; the error calls a name by a noun, such as "field of a state"."""
     known = list(known)
     for name in names:
         if name not in known:
-            article = "an" if what[0] in "aeiou" else "a"
-            raise ParameterError(f"{name!r} is not {article} {what}: {hint(name, known)}")
+            article = "an" if noun[0] in "aeiou" else "a"
+            raise ParameterError(f"{name!r} is not {article} {noun}: {hint(name, known)}")
 
 
 class HintsAtNames:
@@ -72,10 +72,10 @@ class HintsAtNames:
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> NoReturn:
-            words = f"{type(self).__name__!r} object has no attribute {name!r}"
+            message = f"{type(self).__name__!r} object has no attribute {name!r}"
             # Libraries look for private names; they need no suggestion.
             if not name.startswith("_"):
                 near = nearest(name, (word for word in dir(type(self)) if word[0] != "_"))
                 if meant := self._meanings.get(name, near and repr(near)):
-                    words += f": did you mean {meant}?"
-            raise AttributeError(words)
+                    message += f": did you mean {meant}?"
+            raise AttributeError(message)

@@ -50,7 +50,8 @@ class Quantity:
     def title(self) -> str:
         """Label, symbol and unit, as axes show them."""
         symbol = f" {self.symbol}" if self.symbol else ""
-        return f"{self.label}{symbol}{f' [{self.unit}]' if self.unit else ''}"
+        unit = f" [{self.unit}]" if self.unit else ""
+        return f"{self.label}{symbol}{unit}"
 
 
 QUANTITIES = tuple(Quantity(**entry) for entry in _core.QUANTITIES)
@@ -74,7 +75,7 @@ _T = TypeVar("_T")
 _NAN: Any = math.nan
 
 if TYPE_CHECKING:
-    # The table, written out for editors and mypy; a test compares them.
+    # The recorded quantities, written out for editors and mypy; a test compares both.
     @dataclass(frozen=True, eq=False)
     class _Recorded(Generic[_T]):
         psi_o: _T = _NAN
@@ -151,7 +152,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         samples: slice | NDArray[np.bool_ | np.integer[Any]],
         time_s: NDArray[np.float64] | None = None,
     ) -> "OrderSeries":
-        """Return some samples of the series, chosen by a NumPy index, with these times."""
+        """Return the samples that a NumPy index selects, as a series with the times `time_s`."""
         return OrderSeries(*(column[samples] for column in self.columns()), time_s=time_s)
 
     def __len__(self) -> int:
@@ -166,7 +167,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def __getitem__(self, index: int) -> OrderParameters:
         return OrderParameters(*(float(column[index]) for column in self.columns()))
 
-    def _orders(self) -> dict[str, NDArray[np.float64]]:
+    def _order_columns(self) -> dict[str, NDArray[np.float64]]:
+        """Return the columns from which the core derives other quantities and states."""
         return {name: with_gaps(getattr(self, name), name) for name in ("psi_o", "phi_o", "psi_v")}
 
     def series(self, name: str, target: str | Sequence[str] = "cw") -> NDArray[np.float64]:
@@ -197,7 +199,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
                 )
             column: NDArray[np.float64] = getattr(self, name)
             return column
-        return _core.derived_series(name, self._orders(), target)
+        return _core.derived_series(name, self._order_columns(), target)
 
     def signed_order(self, target: str | Sequence[str]) -> NDArray[np.float64]:
         """Return Ψ_o·cos(φ_o - φ_target) in [-1, 1], shape (t,), for target "cw" or "ccw".
@@ -213,7 +215,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def outward(self) -> NDArray[np.float64]:
         """Return Ψ_o·cos φ_o in [-1, 1], shape (t,): 1 for a jam, 0 for streams along the pool.
 
-        It is the mean of cos φ over boats, so that opposed streams do not cancel as in `rotation`.
+        It is the mean of cos φ over boats, to which each boat along the pool adds 0, in whichever
+        direction it circulates.
         """
         return self.series("outward")
 
@@ -224,8 +227,9 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
 
         Meant for times in the analysis window. ``"ordered cw"`` and ``"ordered ccw"``: Ψ_o above
         0.8, φ_o within π/4 of ±π/2, Ψ_v at least a quarter of the preferred speed. ``"jamming"``:
-        Ψ_o above 0.8, φ_o within π/4 of 0, Ψ_v below that. ``"disordered"``: Ψ_o below 0.5.
-        ``"clustering"``: the same, with at least three quarters of the boats in one cluster.
+        Ψ_o above 0.8, φ_o within π/4 of 0, Ψ_v below a quarter of that speed. ``"disordered"``: Ψ_o
+        below 0.5. ``"clustering"``: the same, with at least three quarters of the boats in one
+        cluster.
         ``"between"``: none of these.
 
         Parameters
@@ -241,7 +245,7 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         ParameterError
             For an array of another length.
         """
-        orders = self._orders()
+        orders = self._order_columns()
         if largest_cluster is None:
             largest_cluster = np.zeros(len(orders["psi_o"]))
         return STATES[_core.collective_states(orders, speed_cm_s, largest_cluster)]
@@ -264,18 +268,18 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         ParameterError
             For times of another length.
         """
-        return _core.ordering_time_s(self._orders(), with_gaps(time_s, "time_s"), within)
+        return _core.ordering_time_s(self._order_columns(), with_gaps(time_s, "time_s"), within)
 
     def plot(
         self, *names: str, target: str | Sequence[str] = "cw", ax: "Axes | None" = None
     ) -> "Axes":
-        """Draw quantities against time (extra ``plot``): of the series of a recording.
+        """Draw quantities of a recording's series against time (needs the extra ``plot``).
 
         Parameters
         ----------
         names
-            Recorded and derived quantities of the table, such as "psi_v" or "signed_order". None:
-            the recorded ones that have no unit and lie within known bounds.
+            Recorded and derived quantities, such as "psi_v" or "signed_order". Without names: the
+            recorded quantities that have no unit and lie within known bounds.
         target
             Direction in which signed quantities are positive, "cw" or "ccw".
         ax
@@ -325,15 +329,15 @@ def order_series(pose: ArrayLike, velocity: ArrayLike) -> OrderSeries:
     -------
     OrderSeries
         Section 3.2's order parameters, the nematic order and milling, of the boats that have both a
-        pose and a velocity; NaN where too few have.
+        pose and a velocity; NaN at times with too few of them.
 
     Raises
     ------
     ParameterError
         For other shapes, and for values that are not numbers.
     """
-    states = {"pose": with_gaps(pose, "pose"), "velocity": with_gaps(velocity, "velocity")}
-    for name, shares in states.items():
-        if shares.ndim != 3:
-            raise ParameterError(f"{name} has shape {shares.shape}, expected (t, n, 3)")
-    return OrderSeries(**_core.order_columns(**states))
+    motion = {"pose": with_gaps(pose, "pose"), "velocity": with_gaps(velocity, "velocity")}
+    for name, values in motion.items():
+        if values.ndim != 3:
+            raise ParameterError(f"{name} has shape {values.shape}, expected (t, n, 3)")
+    return OrderSeries(**_core.order_columns(**motion))

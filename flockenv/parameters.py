@@ -11,17 +11,17 @@ from flockenv._io.arguments import materialized
 from flockenv._io.toml import read_toml
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 
-_TABLE = {parameter["name"]: parameter for parameter in _core.PARAMETERS}
+_DECLARATIONS = {parameter["name"]: parameter for parameter in _core.PARAMETERS}
 
 OBSTACLES = tuple(
-    name for name, declared in _TABLE.items() if declared["kind"].startswith("tuple of ")
+    name for name, declared in _DECLARATIONS.items() if declared["kind"].startswith("tuple of ")
 )
 """Fields with a row for each obstacle, in the order in which contacts number them."""
 
 
 def _declared(name: str) -> Any:
-    """Return the field that the core declares under this name: default, unit, range and meaning."""
-    return field(default=_TABLE[name]["default"], metadata=_TABLE[name])
+    """Return a dataclass field with the core's declaration: default, unit, range and meaning."""
+    return field(default=_DECLARATIONS[name]["default"], metadata=_DECLARATIONS[name])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,16 +81,16 @@ class FlockParameters:
     if not TYPE_CHECKING:  # Editors complete the fields, as the dataclass declares them.
 
         def __init__(self, **values: object) -> None:
-            self._hold(_changed("simulation", values))
+            self._set_core(_checked("simulation", values))
 
     @classmethod
     def _from_core(cls, core: _core.Parameters) -> Self:
         """Return the parameters that the core has checked."""
         parameters = cls.__new__(cls)
-        parameters._hold(core)
+        parameters._set_core(core)
         return parameters
 
-    def _hold(self, core: _core.Parameters) -> None:
+    def _set_core(self, core: _core.Parameters) -> None:
         vars(self).update(core.values, _in_core=core)
 
     @property
@@ -100,19 +100,17 @@ class FlockParameters:
         return core
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor, so that unpickled parameters are checked, too.
+        # Unpickled parameters are checked, too.
         return type(self).from_dict, (self.to_dict(),)
 
     @classmethod
     def presets(cls) -> list[str]:
-        """Names of the presets."""
+        """Return the names of the presets."""
         return list(_core.PRESETS)
 
     @classmethod
     def preset(cls, name: str) -> Self:
         """Return a named set of parameters.
-
-        Raises ParameterError for an unknown name.
 
         Parameters
         ----------
@@ -120,6 +118,11 @@ class FlockParameters:
             ``"simulation"``: Table 3 with `leapfrog` and white noise, whose statistics do not
             depend on dt. ``"paper"``: Table 3 with the paper's literal scheme and per-step noise.
             ``"experiment"``: Table 1, with constants fitted to Section 4.
+
+        Raises
+        ------
+        ParameterError
+            For an unknown name.
         """
         return cls._from_core(_core.Parameters(name, {}))
 
@@ -135,7 +138,7 @@ class FlockParameters:
     def critical_bw_s(
         cls, preset: str | None = None, pool: str | tuple[float, float] | None = None
     ) -> float:
-        """Critical noise of 27 boats: the bw_s at which leaderless flocks lose their order.
+        """Return the critical noise of 27 boats: the bw_s at which leaderless flocks lose order.
 
         At this noise the mean Ψ_o of leaderless runs falls through the middle between its ordered
         and its disordered level. ``studies/critical_noise`` measured it for Table 3's presets in
@@ -145,8 +148,8 @@ class FlockParameters:
         if not isinstance(preset, str) or pool is None:
             raise ParameterError(
                 "critical_bw_s takes a preset and a pool, as in FlockParameters.critical_bw_s("
-                "'simulation', 'wide'), and knows 27 boats with the preset's constants; for a "
-                "flock of your own `flockenv sweep FILE.toml` measures it, with bw_s in the grid "
+                "'simulation', 'wide'), and is known for 27 boats with the preset's constants; for "
+                "a flock of your own `flockenv sweep FILE.toml` measures it, with bw_s in the grid "
                 "(docs/runs.md has the file)"
             )
         bw_s = _core.critical_bw_s(preset, pool)
@@ -175,17 +178,15 @@ class FlockParameters:
         If the hull is resized, the radius of gyration scales with it, unless ``gyration_radius_cm``
         is among the changes.
         """
-        return self._from_core(_changed(self._in_core, changes))
+        return self._from_core(_checked(self._in_core, changes))
 
     def to_dict(self) -> dict[str, Any]:
-        """Every field by name: numbers, bools, words, tuples for unnamed pools and targets."""
+        """Return every field by name, as plain numbers, bools, strings and tuples."""
         return asdict(self)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """Return parameters from fields by name.
-
-        Raises what the class raises.
+        """Return parameters from fields by name; see the class for the errors.
 
         Parameters
         ----------
@@ -196,7 +197,7 @@ class FlockParameters:
         if not isinstance(values, Mapping):
             raise TypeError(f"parameters must be a mapping of fields, not {type(values).__name__}")
         changes = {str(name): value for name, value in values.items()}
-        return cls._from_core(_changed(changes.pop("preset", "simulation"), changes))
+        return cls._from_core(_checked(changes.pop("preset", "simulation"), changes))
 
     def to_toml(self) -> str:
         """Return the parameters as TOML, one field per line."""
@@ -206,7 +207,7 @@ class FlockParameters:
     def from_toml(cls, text: str) -> Self:
         """Return parameters from TOML, with the keys of `from_dict`.
 
-        Raises what the class raises, and a ParameterError for text that is not TOML.
+        Raises the errors of the class, and ParameterError for text that is not TOML.
         """
         return cls.from_dict(read_toml(text, "the text of parameters"))
 
@@ -214,13 +215,13 @@ class FlockParameters:
 _NAMES = tuple(parameter.name for parameter in fields(FlockParameters))
 
 
-def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.Parameters:
-    """Return parameters, or a preset by name, with some of their fields changed."""
+def _checked(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.Parameters:
+    """Return a preset, or other parameters, with some fields changed, after checking them."""
     refuse_unknown(changes, _NAMES, "field of FlockParameters")
     bw_s = changes.get("bw_s")
     if isinstance(bw_s, tuple | list) and len(bw_s) == 2:
         raise TypeError(
-            f"bw_s must be a number, not {short_repr(bw_s)}: environments take a range, of which "
+            f"bw_s must be a number, not {short_repr(bw_s)}: environments take a range, from which "
             "each episode draws its own, "
             'as in gymnasium.make("flockenv/Leaders-v0", bw_s=(0.1, 0.4))'
         )
@@ -230,10 +231,10 @@ def _changed(base: _core.Parameters | str, changes: Mapping[str, Any]) -> _core.
             f'target = "{target}" is not accepted: "cw" or "ccw"; environments take it, as in '
             f'gymnasium.make("flockenv/Leaders-v0", target="{target}")'
         )
-    return _core.Parameters(base, {name: _stored(value) for name, value in changes.items()})
+    return _core.Parameters(base, {name: _as_tuple(value) for name, value in changes.items()})
 
 
-def _stored(value: object) -> object:
+def _as_tuple(value: object) -> object:
     """Return an iterator, such as a generator of discs, as a tuple; other values unchanged."""
-    held = materialized(value)
-    return held if held is value else tuple(materialized(name) for name in held)
+    items = materialized(value)
+    return value if items is value else tuple(materialized(item) for item in items)

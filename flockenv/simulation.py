@@ -25,13 +25,13 @@ Schedule = Iterable[tuple[float, Mapping[str, object]]]
 """Times in s from the start of a run, and the fields of the parameters that change then."""
 
 Start = bytes | Mapping[str, object] | Recording
-"""A snapshot, a state, or a recording whose last sample it is."""
+"""A snapshot, a state, or a recording, whose last sample is the start."""
 
 Changes = list[tuple[float, str | tuple[str, ...] | FlockParameters]]
-"""Times of a schedule, and the target or the parameters that hold from then on."""
+"""Times of a schedule in s, and the target or the parameters from then on."""
 
-# These fields decide whether boats fit, which is checked before a run.
-_PLACED = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
+# The fields that decide whether boats fit the pool, which is checked before a run.
+_FIT_FIELDS = ("pool", "boat_radius_cm", "boat_shape", *OBSTACLES)
 
 
 def simulate(
@@ -88,10 +88,10 @@ def simulate(
     start
         Where the run starts, and at which time. None: a random placement, at rest, at 0 s. A
         snapshot (bytes of `Flock.snapshot`) of a flock with this seed and these parameters, apart
-        from the target: under the law the run continues bit for bit. A dictionary with ``pose`` (n,
-        3) and, optionally, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as in
-        `Flock.set_state`. A recording: its last sample. Boats may be at most a hull's width outside
-        the water.
+        from the target: under the paper's law the run continues bit for bit. A dictionary with
+        ``pose`` (n, 3) and, optionally, ``velocity`` (n, 3), ``time_s`` and ``allow_overlap``, as
+        in `Flock.set_state`. A recording: its last sample. Boats may be at most a hull's width
+        outside the water.
     noise_seed
         Other noise after a start from a snapshot; see `Flock.restore`.
     schedule
@@ -132,24 +132,24 @@ def simulate(
     if progress is not None:
         check_function(progress, "progress")
     leaders = Leaders.from_policies(policy, parameters)
-    start = _state_of(start)
-    changes = _changes(parameters, schedule, seed)
+    start = _start_state(start)
+    changes = _parse_schedule(parameters, schedule, seed)
     for pool in {change.pool for _, change in changes if isinstance(change, FlockParameters)}:
         leaders.check_pool(pool)
     functions = checked_functions({} if quantities is None else quantities)
-    flock = _started(parameters, seed, start, noise_seed)
+    flock = _starting_flock(parameters, seed, start, noise_seed)
     plan = {
         "sample_hz": sample_hz,
-        "single_precision": _is_single(dtype),
+        "single_precision": _is_single_precision(dtype),
         "contacts": as_bool(contacts, "contacts"),
         "changes": changes,
-        "control": _control(leaders, control_hz),
+        "control": _steering(leaders, control_hz),
         "progress": progress,
     }
 
     origin = {"parameters": parameters, "seed": flock.seed, "policy": leaders.title}
     origin |= _origin(flock, start, noise_seed, control_hz)
-    run = _recorded(flock, duration_s, plan, partial(_recording, origin, changes))
+    run = _run(flock, duration_s, plan, partial(_build_recording, origin, changes))
     return run.with_quantities(functions) if functions else run
 
 
@@ -167,13 +167,13 @@ def _origin(
     }
 
 
-def _recorded(
+def _run(
     flock: Flock,
     duration_s: float,
     plan: dict[str, Any],
     recording: Callable[[dict[str, Any]], Recording],
 ) -> Recording:
-    """Run a flock in the core; an error has the run until then as its ``recording``."""
+    """Run a flock in the core; an error gets the run until then as its attribute ``recording``."""
     try:
         columns = _core.record(flock._in_core, duration_s, plan)
     except BaseException as error:
@@ -183,31 +183,34 @@ def _recorded(
     return recording(columns)
 
 
-def _recording(origin: Mapping[str, Any], changes: Changes, columns: dict[str, Any]) -> Recording:
-    """Return the recording of the core's columns, with its origin."""
-    series = columns.pop("contacts", None)
-    read = {
+def _build_recording(
+    origin: Mapping[str, Any], changes: Changes, columns: dict[str, Any]
+) -> Recording:
+    """Return a recording with the core's columns and this origin."""
+    contacts = columns.pop("contacts", None)
+    converted = {
         "phase": PHASES[columns["phase"]],
         "order": OrderSeries(**columns["order"]),
         "statistics": StepStatistics(**columns["statistics"]),
-        "contacts": None if series is None else ContactSeries.from_columns(series),
+        "contacts": None if contacts is None else ContactSeries.from_columns(contacts),
+        "version": _core.__version__,
+        "schedule_sha256": _schedule_digest(origin["parameters"], changes, columns["time_s"]),
     }
-    digest = _schedule_digest(origin["parameters"], changes, columns["time_s"])
-    return Recording(**columns | read, **origin, version=_core.__version__, schedule_sha256=digest)
+    return Recording(**columns | converted, **origin)
 
 
-def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
-    """Return a run's steering and its rate in the form that the core takes."""
+def _steering(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
+    """Return how leaders are steered, and how often, in the form that the core takes."""
     if leaders.law is not None:
-        # The core runs the law, and keeps each lean until the next decision.
-        own = leaders.seats[0].policy.control_hz
-        if own is None and control_hz is not None:
+        # The core evaluates the law, and holds each lean until the next decision.
+        law_hz = leaders.seats[0].policy.control_hz
+        if law_hz is None and control_hz is not None:
             raise ParameterError(
                 f"control_hz = {short_repr(control_hz)} is not accepted: without a policy the "
                 "paper's law steers at every substep"
             )
-        rate = own if control_hz is None else control_hz
-        return {"steer": leaders.law, "layouts": [], "control_hz": rate}
+        rate_hz = law_hz if control_hz is None else control_hz
+        return {"steer": leaders.law, "layouts": [], "control_hz": rate_hz}
     for seat in leaders.seats:
         seat.policy.check_action_mode("rudder", "in a simulation")
     decisions = leaders.decisions(control_hz)
@@ -218,48 +221,53 @@ def _control(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     }
 
 
-def _changes(parameters: FlockParameters, schedule: Schedule, seed: int) -> Changes:
-    """Return a schedule's changes, each of the target alone or of all parameters."""
-    entries = [(*_change(entry), entry) for entry in items(schedule, "schedule")]
+def _parse_schedule(parameters: FlockParameters, schedule: Schedule, seed: int) -> Changes:
+    """Return a schedule's changes in order of time, after checking them.
+
+    A change that leaves all parameters but the target is the target, and any other one is all
+    parameters.
+    """
+    entries = [(*_parse_entry(entry), entry) for entry in items(schedule, "schedule")]
     changes: Changes = []
-    now, times = parameters, dict[float, set[str]]()
+    now, names_at = parameters, dict[float, set[str]]()
     for time_s, fields, entry in sorted(entries, key=lambda parsed: parsed[0]):
         try:
-            if twice := times.setdefault(time_s, set()) & fields.keys():
+            if twice := names_at.setdefault(time_s, set()) & fields.keys():
                 raise ParameterError(f"{twice.pop()} changes twice at this time")
-            times[time_s] |= fields.keys()
+            names_at[time_s] |= fields.keys()
             before, now = now, now.replace(**fields)
             if before.pool != now.pool and math.inf in before.pool_radii_cm + now.pool_radii_cm:
                 raise ParameterError("open water and a pool do not change into each other")
-            if any(getattr(before, name) != getattr(now, name) for name in _PLACED):
+            if any(getattr(before, name) != getattr(now, name) for name in _FIT_FIELDS):
                 Flock(now, seed)
         except ParameterError as error:
             raise ParameterError(
                 f"schedule = {short_repr(entry)} is not accepted: {error}"
             ) from error
-        # New parameters restart the random streams, so equal ones are dropped: they change nothing.
-        is_target = now == before.replace(target=now.target)
-        changes.append((time_s, now.target if is_target else now))
+        # New parameters would restart the random streams, so a change of the target stays one.
+        is_target_alone = now == before.replace(target=now.target)
+        changes.append((time_s, now.target if is_target_alone else now))
     return changes
 
 
-def _change(entry: object) -> tuple[float, dict[str, object]]:
+def _parse_entry(entry: object) -> tuple[float, dict[str, object]]:
     """Return the time and the fields of an entry of a schedule."""
-    words = "pairs of a time in s, at least 0, and a dictionary of fields"
+    reason = "pairs of a time in s, at least 0, and a dictionary of fields"
     match entry:
+        # These are no times, but count as real numbers.
         case (bool(), _):
             pass
         case (np.timedelta64(), _):
             pass
         case (Real() as number, Mapping() as fields) if fields and (time_s := float(number)) >= 0.0:
-            sized = {"n_boats", "n_leaders"} & fields.keys()
-            if not sized and time_s <= 1e9:
+            counts = {"n_boats", "n_leaders"} & fields.keys()
+            if not counts and time_s <= 1e9:
                 return time_s, {str(name): value for name, value in fields.items()}
-            words = f"{sized.pop()} does not change on the way" if sized else words
-    raise ParameterError(f"schedule = {short_repr(entry)} is not accepted: {words}")
+            reason = f"{counts.pop()} cannot change during a run" if counts else reason
+    raise ParameterError(f"schedule = {short_repr(entry)} is not accepted: {reason}")
 
 
-def _is_single(dtype: DTypeLike) -> bool:
+def _is_single_precision(dtype: DTypeLike) -> bool:
     precision = np.dtype(dtype)
     if precision not in PRECISIONS:
         raise ParameterError(f"dtype = {precision} is not accepted: float64 or float32")
@@ -267,24 +275,31 @@ def _is_single(dtype: DTypeLike) -> bool:
 
 
 def _schedule_digest(
-    now: FlockParameters, changes: Changes, times_s: NDArray[np.float64]
+    parameters: FlockParameters, changes: Changes, times_s: NDArray[np.float64]
 ) -> str | None:
-    """Return the SHA-256 of all changes and their times; None if nothing changed."""
-    before, length_s = now, round(times_s[-1] - times_s[0], 9)
-    after: dict[float, FlockParameters] = {}  # The last of several changes at one time counts.
-    # A change acts after the sample at its time, so a run that ended early does not include it.
-    for time_s, change in ((time_s, change) for time_s, change in changes if time_s < length_s):
-        now = change if isinstance(change, FlockParameters) else now.replace(target=change)
-        after[time_s] = now
-    named = []
-    for time_s, now in after.items():
+    """Return the SHA-256 of the changes of a run and their times; None if nothing changed.
+
+    `parameters` are those at the start, `times_s` the times of the samples.
+    """
+    now, length_s = parameters, round(times_s[-1] - times_s[0], 9)
+    # If several changes have the same time, only the parameters after the last one count.
+    parameters_from: dict[float, FlockParameters] = {}
+    for time_s, change in changes:
+        # A change acts after the sample at its time. The run may have ended before that.
+        if time_s < length_s:
+            now = change if isinstance(change, FlockParameters) else now.replace(target=change)
+            parameters_from[time_s] = now
+    before, effective = parameters, []
+    for time_s, now in parameters_from.items():
         if now != before:
-            named.append((time_s, now.to_dict()))
+            effective.append((time_s, now.to_dict()))
         before = now
-    return hashlib.sha256(json.dumps(named, sort_keys=True).encode()).hexdigest() if named else None
+    if not effective:
+        return None
+    return hashlib.sha256(json.dumps(effective, sort_keys=True).encode()).hexdigest()
 
 
-def _state_of(start: Start | None) -> bytes | Mapping[str, object] | None:
+def _start_state(start: Start | None) -> bytes | Mapping[str, object] | None:
     """Return the last sample of a recording, and any other start unchanged."""
     if not isinstance(start, Recording):
         return start
@@ -298,10 +313,10 @@ def _start_digest(start: bytes | Mapping[str, object] | None, flock: Flock) -> s
     if isinstance(start, bytes):
         return hashlib.sha256(start).hexdigest()
     state = (flock.pose, flock.velocity, np.float64(flock.time_s))
-    return hashlib.sha256(b"".join(key.tobytes() for key in state)).hexdigest()
+    return hashlib.sha256(b"".join(array.tobytes() for array in state)).hexdigest()
 
 
-def _started(
+def _starting_flock(
     parameters: FlockParameters,
     seed: int,
     start: bytes | Mapping[str, object] | None,

@@ -45,7 +45,7 @@ class Contacts(_Columns):
         Mean force on boat i along the normal over the last substep in cm/s² (mass 1), at least 0;
         boat j feels its opposite.
     point_cm : float64 array, shape (c, 2)
-        Where boat i is pushed: a point of its hull, world axes.
+        The point of boat i's hull at which it is pushed, world axes.
     along_cm : float64 array, shape (c,)
         That point's coordinate along the core of boat i, from its center to the bow.
     """
@@ -90,7 +90,7 @@ class ContactSeries(_Columns):
         return cls(*(columns[column.name] for column in fields(cls)))
 
     def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":
-        """Return the contacts of some of the samples, shape (t,)."""
-        chosen = np.repeat(samples, self.count)
-        others = (getattr(self, column.name)[chosen] for column in fields(self)[1:])
-        return ContactSeries(self.count[samples], *others)
+        """Return the series of the samples in a mask, shape (t,)."""
+        in_samples = np.repeat(samples, self.count)
+        columns = (getattr(self, column.name)[in_samples] for column in fields(self)[1:])
+        return ContactSeries(self.count[samples], *columns)

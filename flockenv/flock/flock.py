@@ -37,7 +37,7 @@ class Flock(HintsAtNames):
     ParameterError
         If the boats do not fit the pool, and for a seed out of range.
     InUseError
-        From every method and attribute, while another thread is at work with the flock.
+        From every method and attribute, while another thread runs a method of the flock.
     """
 
     __slots__ = ("_in_core",)
@@ -128,8 +128,8 @@ class Flock(HintsAtNames):
     def current_cm_s(self) -> float:
         """Speed of the water's current in cm/s, counter-clockwise positive (Section 4.5).
 
-        It belongs to the time of `velocity`. Poses and velocities that are set start in water at
-        rest if the water has inertia (``current_relaxation_s``).
+        Its time is that of `velocity`. Water with inertia (``current_relaxation_s``) is at rest
+        after `set_state`.
         """
         return self._in_core.current_cm_s
 
@@ -167,8 +167,8 @@ class Flock(HintsAtNames):
         time_s
             Time in s, 0 to 1e9.
         allow_overlap
-            Accept hulls that overlap each other or a wall by more than a hundredth of their radius;
-            contacts leave less. The next substeps move them apart.
+            Accept hulls that overlap each other or a wall by more than a hundredth of their radius,
+            which is more than contacts leave. The next substeps move them apart.
 
         Raises
         ------
@@ -182,15 +182,17 @@ class Flock(HintsAtNames):
         self._in_core.set_state({**state, "allow_overlap": allow_overlap})
 
     def set_target(self, target: str | Sequence[str]) -> None:
-        """Change the direction that leaders head for by the paper's law.
-
-        Raises ParameterError for another name, and for a list of another length; the flock is
-        unchanged then.
+        """Change the direction that the paper's law steers leaders in.
 
         Parameters
         ----------
         target
             "cw" or "ccw", or a list with one per leader.
+
+        Raises
+        ------
+        ParameterError
+            For another name, and for a list of another length; the flock is unchanged then.
         """
         self._in_core.set_target(materialized(target))
 
@@ -252,8 +254,12 @@ class Flock(HintsAtNames):
         Parameters
         ----------
         dt_s
-            As for `FlockParameters`. Raises ParameterError for a step out of range; the flock is
-            unchanged then.
+            As for `FlockParameters`.
+
+        Raises
+        ------
+        ParameterError
+            For a step out of range; the flock is unchanged then.
         """
         self._in_core.set_step(dt_s)
 
@@ -266,8 +272,8 @@ class Flock(HintsAtNames):
 
         Raises ParameterError if there is no such boat.
         """
-        every = as_bool(include_leaders, "include_leaders")
-        return OrderParameters(*self._in_core.order_parameters(every))
+        of_all_boats = as_bool(include_leaders, "include_leaders")
+        return OrderParameters(*self._in_core.order_parameters(of_all_boats))
 
     def contacts(self) -> Contacts:
         """Return contacts and near-contacts of the last substep; none after a state was set."""
@@ -276,7 +282,8 @@ class Flock(HintsAtNames):
     def snapshot(self) -> bytes:
         """Return the whole state; continuing from it is bit-identical on the same machine.
 
-        Parameters are in it by name. Motion and noise belong to the build that wrote it.
+        Parameters are stored by name. Motion and noise can be read only by the build that wrote
+        them.
         """
         return self._in_core.snapshot()
 

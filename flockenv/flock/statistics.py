@@ -29,8 +29,8 @@ class Statistics:
     unsolved : int
         Substeps that left overlaps deeper than the tolerance.
     halved_substeps : int
-        Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have
-        driven boats, or a boat moved too far.
+        Halvings of substeps. The reasons are overlaps deeper than the tolerance at the end of a
+        substep, contacts that would have driven boats, and boats that moved too far.
     depenetration_passes : int
         Passes that moved deeply overlapping hulls apart.
     neighbor_builds : int
@@ -43,7 +43,7 @@ class Statistics:
         Sum of the absolute changes of the angular momentum about the pool's center, in cm²/s for
         boats of mass 1, when deeply overlapping hulls were moved apart.
     worst_error_cm : float
-        Largest error that `Flock.advance_with_error` stated, in cm; 0 if it was not called.
+        Largest error that `Flock.advance_with_error` returned, in cm; 0 if it was not called.
     """
 
     substeps: int
@@ -65,7 +65,7 @@ class Statistics:
 
 @dataclass(frozen=True, kw_only=True)
 class StepStatistics:
-    """Whether a run kept its tolerance; as in `Statistics`.
+    """The fields of `Statistics` that say whether a run kept its tolerance.
 
     Attributes
     ----------

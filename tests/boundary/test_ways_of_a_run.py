@@ -49,7 +49,7 @@ class Masked(Held):
 @pytest.mark.parametrize(
     ("schedule", "words"),
     [
-        ([(1.0, {"n_boats": 11})], "n_boats does not change"),
+        ([(1.0, {"n_boats": 11})], "n_boats cannot change"),
         ([(1.0, {"bw": 1.0})], "'bw' is not a field.*'bw_s'"),
         ([(1.0, {"bw_s": -1.0})], "bw_s"),
         ([(1.0, {"target": "left"})], "target"),
