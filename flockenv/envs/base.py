@@ -30,7 +30,7 @@ class Resumable(OwnFlocks):
     _batch: LeaderBatch
 
     def get_state(self) -> bytes:
-        """Return everything on which the future depends, as bytes.
+        """Return the whole state of the environment, as bytes.
 
         Parameters, options, terms and blocks are stored by name. The rest, such as motion and
         noise, can be read only by the build that wrote it.
@@ -42,24 +42,24 @@ class Resumable(OwnFlocks):
         self._batch.core.restore(as_bytes(state, "state"))
 
     def set_next_episodes(self, **options: object) -> None:
-        """Set ``bw_s`` or ``target`` of all future episodes, until they are set again.
+        """Set ``bw_s`` or ``target`` of all future episodes.
 
-        Values are as for `reset`: bw_s is drawn from a range (low, high). In a vector environment
-        they hold for all flocks. Raises ParameterError for other names, and for values that are not
-        accepted.
+        Values are as for `reset`: from a range (low, high) each episode draws its bw_s. A vector
+        environment sets all flocks. Raises ParameterError for other names, and for values that are
+        not accepted.
         """
         self._batch.set_upcoming(range(self._batch.num_flocks), options)
 
     def clone(self) -> Self:
-        """Return an independent copy that continues with the same bits.
+        """Return an independent copy that continues bit for bit as this environment does.
 
-        If the environment was never reset, its copy draws another seed.
+        A copy of an environment that was never reset draws another seed.
         """
         return copy.deepcopy(self)
 
 
 class ManyFlocks(Resumable):
-    """An environment of many flocks, whose boats can be looked at."""
+    """An environment of many flocks, with arrays of all boats and flocks."""
 
     def poses(self) -> NDArray[np.float64]:
         """Return all poses, shape (flocks, n, 3): [x cm, y cm, heading rad], leaders first."""
@@ -72,7 +72,7 @@ class ManyFlocks(Resumable):
     def snapshots(self) -> list[bytes]:
         """Return each flock's snapshot, as `Flock.snapshot`, for the `snapshot` option of `reset`.
 
-        They hold the flocks, but not the progress of their episodes.
+        Snapshots hold the flocks, but not the progress of their episodes.
         """
         return [self._batch.flock(flock).snapshot() for flock in range(self._batch.num_flocks)]
 
@@ -86,27 +86,27 @@ class ManyFlocks(Resumable):
 
 
 class SpecOfEpisodes:
-    """The spec under which Gymnasium knows an environment."""
+    """An environment with Gymnasium's spec, to which the length of its episodes is added."""
 
     _batch: LeaderBatch
     _spec: EnvSpec | None = None
 
     @property
     def spec(self) -> EnvSpec | None:
-        """Gymnasium's spec, with the number of steps of an episode."""
+        """Gymnasium's spec of the environment, with the decisions of an episode as its steps."""
         return self._spec
 
     @spec.setter
     def spec(self, spec: EnvSpec | None) -> None:
         if spec is not None and spec.max_episode_steps is None:
-            # The registered spec serves all options, so it has no number of steps.
+            # The registered spec is for all options, so it has no number of steps.
             spec = copy.deepcopy(spec)
             spec.max_episode_steps = self._batch.decisions
         self._spec = spec
 
 
 class SingleEnvironmentBase(Resumable):
-    """The base of the environments of one flock: its episodes, infos and frames."""
+    """The base of environments of one flock: episodes, infos and frames."""
 
     metadata: dict[str, Any]
     np_random: np.random.Generator
@@ -126,11 +126,11 @@ class SingleEnvironmentBase(Resumable):
         self.metadata = {**self.metadata, "render_fps": fps}
 
     def _reset(self, seed: object, options: object) -> int | None:
-        """Start an episode; return the seed that was given, as an int."""
+        """Start an episode; return the seed of this reset as an int, or None without one."""
         requests = reset_requests(options, 1, lists_flocks=False)
-        given = None if seed is None else seed_of(seed)
-        self._batch.reset([given], requests, lambda: drawn_seed(self.np_random))
-        return given
+        checked_seed = None if seed is None else seed_of(seed)
+        self._batch.reset([checked_seed], requests, lambda: drawn_seed(self.np_random))
+        return checked_seed
 
     def state(self) -> NDArray[np.float32]:
         """Return the global state for centralized critics, shape (state size,), float32."""
@@ -141,8 +141,8 @@ class SingleEnvironmentBase(Resumable):
         """Return features of the flock, shape (features,), float32.
 
         They depend neither on the order of boats nor on absolute angles. They are in the frame of
-        the target; with several targets, of leader 0's. `envs.observation.flock_feature_entries`
-        lists them.
+        the target; with several targets, in that of leader 0's.
+        `envs.observation.flock_feature_entries` lists them.
         """
         features: NDArray[np.float32] = self._batch.core.flock_features(each_leader=False)[0]
         return features
@@ -163,7 +163,7 @@ class SingleEnvironmentBase(Resumable):
     def render(self) -> NDArray[np.uint8] | None:
         """Return a frame, (height, width, 3) uint8, if `render_mode` is "rgb_array".
 
-        With "human" every reset and step shows itself in a window, and nothing is returned.
+        With "human" every reset and step shows the flock in a window, and None is returned.
         """
         return None if self.render_mode is None else self._render_mode.render(self.flock)
 

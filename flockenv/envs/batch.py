@@ -17,27 +17,30 @@ from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
-# From this many numbers on, NumPy adds them in another order.
+# NumPy adds this many numbers, or more, in another order than one after another.
 _UNROLLED = 8
-# Larger batches would fill the memory before anything is simulated.
-_MOST = 100_000
+# Most flocks, or leaders of a flock: larger batches would fill the memory.
+_MOST_FLOCKS = 100_000
 
 
 class LeaderBatch:
-    """A batch of flocks with their episodes in the core. Rows are leaders, flock after flock."""
+    """A batch of flocks with their episodes in the core. Rows are leaders, flock after flock.
+
+    `leaders` is the number of leaders of each flock.
+    """
 
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
-        by_count = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
-        members = [by_count[k] for k in leaders]
-        self.core = _core.EnvBatch(members, {**options.settings, "autoreset_mode": autoreset_mode})
+        parameters_of = {k: options.parameters.replace(n_leaders=k) for k in set(leaders)}
+        flocks = [parameters_of[k] for k in leaders]
+        self.core = _core.EnvBatch(flocks, {**options.settings, "autoreset_mode": autoreset_mode})
         self.settings: dict[str, Any] = self.core.options
-        self.num_flocks = len(members)
+        self.num_flocks = len(flocks)
         self.leaders = tuple(leaders)
-        self._own_reward = options.own_reward
+        self._user_reward = options.own_reward
         self._flock_of_row = np.repeat(np.arange(self.num_flocks), self.leaders)
         self.state_space = state_space(options.parameters.n_boats)
         self.flock_feature_space = flock_feature_space()
-        #: Numbers in an observation, control steps in an episode and from one decision to the next.
+        #: Numbers in an observation; control steps in an episode, and in a decision.
         self.observation_size, self.episode_steps, self.period_steps = self.core.sizes
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
         #: Decisions of an episode; the last one may be shorter than the others.
@@ -50,18 +53,18 @@ class LeaderBatch:
         new_seed: Callable[[], int],
         mask: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Start episodes of all flocks, or of those in a mask, from `reset_requests`.
+        """Start episodes of all flocks, or of those in a mask, with the options in `requests`.
 
-        `new_seed` gives a seed to flocks that never had one.
+        `requests` come from `reset_requests`. `new_seed` returns a seed for a flock that has none.
         """
-        chosen = np.ones(self.num_flocks, np.bool_) if mask is None else mask
-        asked: list[dict[str, Any] | None] = [None] * self.num_flocks
-        for flock in np.flatnonzero(chosen).tolist():
+        starts = np.ones(self.num_flocks, np.bool_) if mask is None else mask
+        seeded_requests: list[dict[str, Any] | None] = [None] * self.num_flocks
+        for flock in np.flatnonzero(starts).tolist():
             seed = seeds[flock]
             if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
-            asked[flock] = {**requests[flock], "seed": seed}
-        self.core.reset(asked)
+            seeded_requests[flock] = {**requests[flock], "seed": seed}
+        self.core.reset(seeded_requests)
 
     def set_upcoming(self, flocks: Sequence[int], options: Mapping[str, Any]) -> None:
         """Set the target or the bw_s of all future episodes of flocks."""
@@ -74,17 +77,17 @@ class LeaderBatch:
     def step(
         self, env: object, actions: ArrayLike, precision: DTypeLike = np.float64
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
-        """Take a decision; return observations and rewards by row, and whether each flock ended.
+        """Take a decision; return observations and rewards by row, and whether each episode ended.
 
         A user's own reward function gets `env`. If that function returns anything but rewards that
-        are finite in its precision, an error is raised after the flocks have moved.
+        are finite in `precision`, an error is raised after the flocks have moved.
         """
-        if self._own_reward is None:
+        if self._user_reward is None:
             return self.core.step(actions)
         starts = ~np.array(self.running())
         observations, _, truncated = self.core.step(actions)
-        rewards = self._rewards(self._own_reward(env), precision)
-        # A step that only starts the next episode earns no reward.
+        rewards = self._checked_rewards(self._user_reward(env), precision)
+        # A step that only starts the next episode has no reward.
         rewards[starts[self._flock_of_row]] = 0.0
         self.core.add_rewards(rewards)
         return observations, rewards, truncated
@@ -93,24 +96,23 @@ class LeaderBatch:
         """Return which flocks have an episode under way."""
         return [self.core.is_running(flock) for flock in range(self.num_flocks)]
 
-    def _rewards(self, returned: object, precision: DTypeLike) -> NDArray[np.float64]:
+    def _checked_rewards(self, returned: object, precision: DTypeLike) -> NDArray[np.float64]:
+        """Return the rewards of a user's function by row; refuse all but finite numbers."""
         rows = len(self._flock_of_row)
         if np.ma.is_masked(returned):
-            raise ParameterError(
-                "the function of reward returned masked numbers: return plain ones"
-            )
-        found = real_numbers(returned, "what the function of reward returned").astype(np.float64)
-        if found.shape == (self.num_flocks,):
-            found = np.repeat(found, self.leaders)
+            raise ParameterError("the reward function returned masked numbers: return plain ones")
+        rewards = real_numbers(returned, "what the reward function returned").astype(np.float64)
+        if rewards.shape == (self.num_flocks,):
+            rewards = np.repeat(rewards, self.leaders)
         with np.errstate(over="ignore"):
-            is_finite = np.isfinite(found.astype(precision)).all()
-        if found.size != rows or not is_finite:
+            is_finite = np.isfinite(rewards.astype(precision)).all()
+        if rewards.size != rows or not is_finite:
             raise ParameterError(
-                f"the function of reward returned shape {found.shape}, expected numbers that are "
+                f"the reward function returned shape {rewards.shape}, expected numbers that are "
                 f"finite in {np.dtype(precision)}, one for each of {self.num_flocks} flocks or "
                 f"{rows} leaders"
             )
-        return np.asarray(found).ravel()
+        return np.asarray(rewards).ravel()
 
     def flock(self, flock: int) -> Flock:
         """Return a copy of a flock in its present state."""
@@ -121,13 +123,13 @@ class LeaderBatch:
         return FlockParameters._from_core(self.core.parameters(flock))
 
     def reset_info(self, flock: int) -> dict[str, Any]:
-        """Return the infos of the start of an episode."""
+        """Return the info at the start of a flock's episode."""
         episode = self.core.episode(flock)
         seed = Seed(episode["flock_seed"])
         return {"target": episode["target"], "bw_s": episode["bw_s"], "flock_seed": seed}
 
     def end_info(self, flock: int) -> dict[str, Any]:
-        """Return the infos of the end of an episode."""
+        """Return the info at the end of a flock's episode; empty before an end."""
         summary = self.core.finished(flock)
         if summary is None:
             return {}
@@ -139,7 +141,7 @@ class LeaderBatch:
 
 
 def mean_rows(rows: list[list[float]]) -> list[float]:
-    """Return the mean of each column, with the bits of NumPy's mean and in a tenth of its time."""
+    """Return the mean of each column: the bits of NumPy's mean, in a tenth of its time."""
     if len(rows) >= _UNROLLED:
         return [float(column.mean()) for column in np.array(rows).T]
     sums, count = [0.0] * len(rows[0]), len(rows)
@@ -152,13 +154,13 @@ _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
 
 
 def is_plain(action: object, shape: tuple[int, ...]) -> bool:
-    """Return whether an action is an array of floats of a shape, which needs no other check."""
+    """Return whether an action is a float array of this shape, so that it needs no other check."""
     return type(action) is np.ndarray and action.dtype in _FLOATS and action.shape == shape
 
 
 def at_least_one(count: object, name: str) -> int:
-    """Return a count of flocks or leaders as an int, or raise the error that names it."""
+    """Return a number of flocks or leaders as an int; refuse others by the argument's name."""
     number = as_int(count, name)
-    if not 1 <= number <= _MOST:
-        raise ParameterError(f"{name} = {short_repr(number)} is not accepted: 1 to {_MOST}")
+    if not 1 <= number <= _MOST_FLOCKS:
+        raise ParameterError(f"{name} = {short_repr(number)} is not accepted: 1 to {_MOST_FLOCKS}")
     return number

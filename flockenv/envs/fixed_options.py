@@ -24,27 +24,29 @@ class FixedOptions:
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; an AttributeError says what sets an option instead."""
-        if (words := _refusal(name, self._next_episode)) is not None:
+        if (refusal := _refusal(name, self._next_episode)) is not None:
             caller = sys._getframe(1)
             if not _is_method_of(self, caller):
                 self._refuse_from_outside(name)
             elif name in self._kept:
+                # Methods set these once.
                 if not _is_same(vars(self).get(name, value), value):
-                    raise AttributeError(words)
+                    raise AttributeError(refusal)
             elif not caller.f_globals.get("__name__", "").startswith("flockenv."):
-                own = vars(self).get("_names_of_subclass", frozenset())
-                vars(self)["_names_of_subclass"] = own | {name}
+                # A method of a user's subclass sets the subclass's own attribute.
+                names = vars(self).get("_names_of_subclass", frozenset())
+                vars(self)["_names_of_subclass"] = names | {name}
         super().__setattr__(name, value)
 
     def _refuse_from_outside(self, name: str) -> None:
-        """Refuse to set an option, unless a subclass keeps an attribute of that name."""
-        words = _refusal(name, self._next_episode)
-        is_own = name in vars(self).get("_names_of_subclass", ())
+        """Refuse to set an option, unless a user's subclass has an attribute of that name."""
+        refusal = _refusal(name, self._next_episode)
+        is_of_subclass = name in vars(self).get("_names_of_subclass", ())
         if name not in self._kept:
             subclasses = takewhile(_is_user_defined, type(self).__mro__)
-            is_own = is_own or any(name in vars(subclass) for subclass in subclasses)
-        if words is not None and not is_own:
-            raise AttributeError(words)
+            is_of_subclass = is_of_subclass or any(name in vars(cls) for cls in subclasses)
+        if refusal is not None and not is_of_subclass:
+            raise AttributeError(refusal)
 
 
 def _is_user_defined(cls: type) -> bool:
@@ -52,7 +54,7 @@ def _is_user_defined(cls: type) -> bool:
 
 
 def _is_method_of(env: object, frame: FrameType) -> bool:
-    """Return whether a frame belongs to a method of an environment or a classmethod making it."""
+    """Return whether a frame is that of a method of `env`, or of a classmethod that makes `env`."""
     cls = frame.f_locals.get("cls")
     return frame.f_locals.get("self") is env or (
         isinstance(cls, type) and issubclass(cls, FixedOptions) and isinstance(env, cls)
@@ -69,18 +71,18 @@ _SPELLINGS = Spellings(_FIXED, _FIXED)
 
 
 def _refusal(name: str, next_episode: str) -> str | None:
-    """Return why an attribute cannot be set; None if it is not named like an option."""
+    """Return the message that refuses to set an attribute; None if its name is no option's."""
     if name.startswith("_"):
         return None
     meant = _SPELLINGS.meant(name)
     if meant is None:
         return None
     if meant == "seed":
-        words = "it is given to a reset"
+        advice = "it is given to a reset"
     elif meant in _OF_RESET:
-        words = f"{next_episode} sets {meant!r} for an episode"
+        advice = f"{next_episode} sets {meant!r} for an episode"
         if meant in UPCOMING_OPTIONS:
-            words += f", set_next_episodes({meant}=...) for all that are to come"
+            advice += f", set_next_episodes({meant}=...) for all that are to come"
     else:
-        words = "it is fixed when an environment is made: make another one to change it"
-    return f"{name!r} cannot be set as an attribute: {words}"
+        advice = "it is fixed when an environment is made: make another one to change it"
+    return f"{name!r} cannot be set as an attribute: {advice}"

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 
 class Environment(NamedTuple):
-    """The declaration of an id; its page is made from it."""
+    """The declaration of an id, from which its page is made."""
 
     #: A few sentences in Markdown.
     purpose: str
@@ -46,10 +46,10 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         "environments are this one with other options.",
         {},
     ),
-    # With few boats, many leaders and small observations, a sample says more about the order.
+    # Few boats, many leaders and small observations, so that learning needs few samples.
     "flockenv/Order-easy-v0": _level(
         "The environment to start with: four of ten boats lead and see few numbers. The order "
-        "answers within seconds, so that plain PPO learns to lead in two minutes of one core.",
+        "responds within seconds, so that plain PPO learns to lead in two minutes of one core.",
         0.3,
         120.0,
         **_TEN_BOATS,
@@ -70,7 +70,7 @@ ENVIRONMENTS: Mapping[str, Environment] = {
         pool="narrow",
     ),
     "flockenv/Order-wide-v0": _level(
-        "Can three leaders of 27 boats learn to steer in `wide`, where the order answers within "
+        "Can three leaders of 27 boats learn to steer in `wide`, where the order responds within "
         "minutes? They choose rudders from the default observation.",
         0.31,
         480.0,

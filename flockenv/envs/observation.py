@@ -32,7 +32,7 @@ class Entry(NamedTuple):
 
 
 def observation_entries(blocks: Mapping[str, Any] | None = None) -> list[Entry]:
-    """Return every entry of an observation, in order; blocks differ from `BLOCKS`."""
+    """Return every entry of an observation, in order; `blocks` replace those of `BLOCKS`."""
     return [Entry(**row) for row in _core.observation_table(dict(blocks or {}))]
 
 
@@ -60,12 +60,11 @@ def observe(
     flock
         The flock; its own target is the one observed.
     observation
-        Blocks that differ from the default layout.
+        The blocks that differ from the default layout.
     mirror_to_target
         Whether the view is reflected if the target is counter-clockwise.
     rudder
-        The rudders as they stand, shape (k,) in [-1, 1], positive counter-clockwise;
-        0 if not given.
+        The leaders' present rudders, shape (k,) in [-1, 1], positive counter-clockwise. None: 0.
 
     Returns
     -------

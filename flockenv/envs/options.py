@@ -63,7 +63,7 @@ NAMES = (
 ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
 """Arguments of constructors and resets that users may mistake for options."""
 
-#: Defaults if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
+#: Defaults if neither ``params`` nor these fields are values: the paper's 27 boats, three of them
 #: leaders.
 _DEFAULTS = {"n_boats": 27, "n_leaders": 3}
 
@@ -92,35 +92,35 @@ class EnvOptions:
         takes_function
             Whether the reward may be a function.
         counts
-            Name of the argument that is the number of flocks; None for one flock.
+            Name of the argument that sets the number of flocks; None for one flock.
         """
         for name in (option for option in options if option not in NAMES):
-            # TorchRL looks for these words.
+            # TorchRL searches messages for the first four words.
             raise UnknownOptionError(
                 f"got an unexpected keyword argument {name!r}, which is not an option of the "
                 f"environment: {_suggestion(name, counts)}"
             )
-        given: dict[str, Any] = {name: listed(value) for name, value in options.items()}
-        own_reward = _pop_function(given)
+        values: dict[str, Any] = {name: listed(value) for name, value in options.items()}
+        own_reward = _pop_function(values)
         if own_reward is not None and not takes_function:
             raise ParameterError(
                 f"reward = {short_repr(own_reward)} is not accepted: weights by name. "
                 "LeadersVectorEnv and LeaderVecEnv also take a function. For a single flock, "
                 "compute your own reward in a subclass or a wrapper"
             )
-        settings = {name: given.pop(name) for name in _SETTINGS if name in given}
-        if isinstance(given.get("bw_s"), tuple | list):
-            settings["bw_s"] = tuple(given.pop("bw_s"))
+        settings = {name: values.pop(name) for name in _SETTINGS if name in values}
+        if isinstance(values.get("bw_s"), tuple | list):
+            settings["bw_s"] = tuple(values.pop("bw_s"))
         for name in ("observation", "reward"):
             if name in settings:
-                settings[name] = _plain(settings[name])
+                settings[name] = _as_dictionaries(settings[name])
         target = settings.get("target")
-        # Anything but a direction is refused later, when the settings are checked.
         targets = target if isinstance(target, list | tuple) else (target,)
+        # Other targets, such as "random", are settings alone; the core checks them.
         if targets and all(direction in ("cw", "ccw") for direction in targets):
-            given["target"] = target
-        stepping = _physics(given)
-        parameters = _parameters({**given, **stepping})
+            values["target"] = target
+        stepping = _pop_physics(values)
+        parameters = _flock_parameters({**values, **stepping})
         if parameters.n_leaders == 0:
             raise ParameterError(
                 "n_leaders = 0 is not accepted: at least 1 in an environment; simulate runs flocks "
@@ -130,12 +130,12 @@ class EnvOptions:
         return cls(parameters, settings, own_reward)
 
 
-def _pop_function(given: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
+def _pop_function(values: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
     """Remove a reward function from the options, and return it; None without one."""
-    if not callable(given.get("reward")):
+    if not callable(values.get("reward")):
         return None
-    function: Callable[[Any], ArrayLike] = given.pop("reward")
-    given["reward"] = {}
+    function: Callable[[Any], ArrayLike] = values.pop("reward")
+    values["reward"] = {}
     return function
 
 
@@ -150,32 +150,32 @@ def _suggestion(name: str, counts: str | None) -> str:
     return f"the number of flocks is {counts!r} here"
 
 
-def _plain(value: object) -> object:
-    """Return a mapping, or each mapping of a list, as the dictionary that the core reads."""
+def _as_dictionaries(value: object) -> object:
+    """Return a mapping as a dictionary, also those in a list; any other value unchanged."""
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [_as_dictionaries(item) for item in value]
     return dict(value) if isinstance(value, Mapping) else value
 
 
-def _physics(given: dict[str, Any]) -> dict[str, Any]:
+def _pop_physics(values: dict[str, Any]) -> dict[str, Any]:
     """Remove the choice of physics from the options, and return the fields that it sets."""
-    name = given.pop("physics", "default")
-    chosen = _core.physics_fields(name)
-    for field in chosen:
-        if field in given:
+    name = values.pop("physics", "default")
+    physics_fields = _core.physics_fields(name)
+    for field in physics_fields:
+        if field in values:
             raise ParameterError(f"physics = {name!r} and {field} are both given: give one")
-    return chosen
+    return physics_fields
 
 
-def _parameters(given: dict[str, Any]) -> FlockParameters:
-    params, preset = given.pop("params", None), given.pop("preset", None)
+def _flock_parameters(values: dict[str, Any]) -> FlockParameters:
+    params, preset = values.pop("params", None), values.pop("preset", None)
     if params is None:
         name = "simulation" if preset is None else preset
-        return FlockParameters.from_dict({"preset": name, **_DEFAULTS, **given})
+        return FlockParameters.from_dict({"preset": name, **_DEFAULTS, **values})
     if preset is not None:
         raise ParameterError("params and preset are both given: give one")
     if isinstance(params, Mapping):
-        return FlockParameters.from_dict({**params, **given})
+        return FlockParameters.from_dict({**params, **values})
     if not isinstance(params, FlockParameters):
         raise TypeError(f"params must be FlockParameters, not {type(params).__name__}")
-    return params.replace(**given)
+    return params.replace(**values)

@@ -41,15 +41,15 @@ class LeadersParallelEnv(
     time limit; `agents` is empty from then on.
 
     ## Action space
-    An agent's is `Box(-1, 1, (1,), float32)`, its rudder; `Discrete(n)` with `rudder_levels=n`.
+    Each agent has `Box(-1, 1, (1,), float32)`, its rudder, or `Discrete(n)` with `rudder_levels=n`.
 
     ## Observation space
-    An agent's is a `Box` of shape (observation size,), float32.
+    Each agent has a `Box` of shape (observation size,), float32.
 
     ## Rewards
-    Each agent gets the weighted sum of its terms: terms of a leader alone are its own, and with
-    several targets all are towards its own target. Each step's infos have the agent's
-    `"reward_terms"`, the last ones the `"episode_summary"`.
+    Each agent gets the weighted sum of its terms. The terms of a leader alone are those of the
+    agent's boat. With several targets, all terms refer to the agent's own target. The infos of each
+    step have the agent's `"reward_terms"`, and the last infos also have the `"episode_summary"`.
 
     ## Version history
     - v0: as `LeadersEnv`.
@@ -98,8 +98,8 @@ class LeadersParallelEnv(
         Parameters
         ----------
         seed
-            Fixes the start, the noise and what is drawn for the episode, and those of the episodes
-            that follow without a seed. None continues with the next episode.
+            Fixes everything random in this episode and in the episodes that follow without a seed.
+            None continues with the next episode.
         options
             ``target``, ``bw_s``, ``state``, ``snapshot`` and ``noise_seed`` as in
             `LeadersEnv.reset`.
@@ -110,9 +110,9 @@ class LeadersParallelEnv(
             By agent; observations have shape (observation size,), float32. Each info has target,
             backward duration and seed of the episode.
         """
-        given = self._reset(seed, options)
-        if given is not None:
-            self._seed_generator(given)
+        checked_seed = self._reset(seed, options)
+        if checked_seed is not None:
+            self._seed_generator(checked_seed)
         self.agents = self.possible_agents[:]
         self._show()
         info = self._batch.reset_info(0)
@@ -141,30 +141,29 @@ class LeadersParallelEnv(
         EpisodeError
             Before the first reset and after the end.
         """
-        flat = self._flat(actions)
-        rows, rewards, truncated = self._batch.step(self, flat)
-        agents, over = self.agents, bool(truncated[0])
-        infos = self._infos(over)
-        if over:
+        rows, rewards, truncated = self._batch.step(self, self._flat_actions(actions))
+        agents, is_over = self.agents, bool(truncated[0])
+        infos = self._infos(is_over)
+        if is_over:
             self.agents = []
         self._show()
         return (
             dict(zip(agents, rows, strict=True)),
             dict(zip(agents, rewards.tolist(), strict=True)),
             dict.fromkeys(agents, False),
-            dict.fromkeys(agents, over),
+            dict.fromkeys(agents, is_over),
             infos,
         )
 
-    def _flat(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+    def _flat_actions(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
         if not self.agents:
             raise EpisodeError("step was called before a reset or after the episode's end")
         if not isinstance(actions, Mapping):
             raise TypeError(f"actions must be a dictionary, not {type(actions).__name__}")
         if actions.keys() != self._every_agent:
-            wrong = sorted(set(self.agents).symmetric_difference(actions), key=str)
+            differing = sorted(set(self.agents).symmetric_difference(actions), key=str)
             raise ParameterError(
-                f"actions must be for {', '.join(self.agents)}; these differ: {wrong}"
+                f"actions must be for {', '.join(self.agents)}; these differ: {differing}"
             )
         if self._levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
             return np.array(rudders)
@@ -177,19 +176,19 @@ class LeadersParallelEnv(
             raise ParameterError(f"the action of {agent} is NaN, which is not accepted: a number")
         return rudder
 
-    def _infos(self, over: bool) -> Infos:
+    def _infos(self, is_over: bool) -> Infos:
         rows = self._batch.core.reward_terms().tolist()
         infos: Infos = {
             agent: {"reward_terms": dict(zip(TERMS, row, strict=True))}
             for agent, row in zip(self.agents, rows, strict=True)
         }
-        if over:
+        if is_over:
             for info in infos.values():
                 info.update(self._batch.end_info(0))
         return infos
 
     def observe(self) -> Observations:
-        """Return the observations as they are now, by agent."""
+        """Return the present observations, by agent."""
         return dict(zip(self.possible_agents, self._batch.core.observe(), strict=True))
 
     def set_state(self, state: bytes) -> None:
@@ -199,7 +198,7 @@ class LeadersParallelEnv(
 
 
 def _plain_rudders(actions: list[Any]) -> list[float] | None:
-    """Return rudders that are arrays as the action spaces give them; None for all others."""
+    """Return the rudders if all actions are float arrays (1,) without NaN; None otherwise."""
     if not all(is_plain(action, (1,)) for action in actions):
         return None
     rudders: list[float] = [action.item() for action in actions]
@@ -212,7 +211,7 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
 
 
 class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
-    """Agents that act in turn; a wrong action is refused in its agent's turn."""
+    """Agents that act in turn. An action is checked in its agent's turn, before the flock moves."""
 
     def __init__(self, flock: LeadersParallelEnv) -> None:
         self._flock = flock

@@ -11,7 +11,7 @@ from flockenv.envs.ids import ENVIRONMENTS
 
 ENTRY_POINT = "flockenv.envs.single:LeadersEnv"
 
-_OF_PETTINGZOO = {
+_PETTINGZOO_ENTRY_POINTS = {
     "parallel": "flockenv.envs.parallel:parallel_env",
     "aec": "flockenv.envs.parallel:env",
 }
@@ -19,26 +19,26 @@ _OF_PETTINGZOO = {
 
 def register() -> None:
     """Make the environments known to Gymnasium and PettingZoo."""
-    for env_id, declared in ENVIRONMENTS.items():
+    for env_id, environment in ENVIRONMENTS.items():
         if env_id in gymnasium.registry:
             continue
         gymnasium.register(
             id=env_id,
             entry_point=ENTRY_POINT,
             vector_entry_point="flockenv.envs.vector:LeadersVectorEnv",
-            kwargs=dict(declared.options),
-            # The environment itself refuses a step before a reset. It also refuses options as
-            # attributes, which wrappers would accept.
+            kwargs=dict(environment.options),
+            # The environment itself refuses a step before a reset, and options as attributes. A
+            # wrapper would take such attributes for itself.
             order_enforce=False,
             disable_env_checker=True,
         )
         # PettingZoo before version 1.27 has no ids.
         if hasattr(pettingzoo, "register"):
-            for kind, entry_point in _OF_PETTINGZOO.items():
-                pettingzoo.register(kind, env_id, entry_point, kwargs=dict(declared.options))
+            for kind, entry_point in _PETTINGZOO_ENTRY_POINTS.items():
+                pettingzoo.register(kind, env_id, entry_point, kwargs=dict(environment.options))
 
 
 def registered(is_ours: Callable[[Mapping[str, Any]], bool]) -> EnvSpec | None:
-    """Return the first registered environment of leaders with fitting options, or None."""
+    """Return the first registered spec whose options `is_ours` accepts; None if there is none."""
     specs = (spec for spec in gymnasium.registry.values() if spec.entry_point == ENTRY_POINT)
     return next((spec for spec in specs if is_ours(spec.kwargs)), None)

@@ -22,7 +22,7 @@ RENDER_MODES = ("human", "rgb_array")
 class RenderMode:
     """The render mode of an environment, the size of its frames, and its window if it has one.
 
-    Copies and pickles have the same mode and size, and no window until they render.
+    A copy or an unpickled one has the same mode and size, and no window until it renders.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class RenderMode:
         self._window: Window | None = None
         self._shown_s: float | None = None
         self._closed = False
-        # Wrong sizes and missing extras are named before anything is simulated.
+        # Wrong sizes and missing extras are errors before anything is simulated.
         if mode is not None or self.size != DEFAULT_SIZE:
             renderer(*self.size)
         if mode == "human":
@@ -54,7 +54,7 @@ class RenderMode:
 
     @property
     def is_live(self) -> bool:
-        """Whether every step is shown."""
+        """Whether every step is shown in a window."""
         return self.mode == "human" and not self._closed
 
     def frame(self, flock: Flock) -> NDArray[np.uint8]:
@@ -76,7 +76,7 @@ class RenderMode:
         """Render the flock, as `render` of an environment with one flock does."""
         if self.mode == "rgb_array":
             return self.frame(flock)
-        # A step that was shown already is not shown again, which would take time.
+        # Showing waits for the next frame's time, so a step is shown only once.
         if self._window is None or flock.time_s != self._shown_s:
             self.show(flock)
         return None

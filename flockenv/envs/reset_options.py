@@ -1,4 +1,4 @@
-"""Options of a reset: their names, their refusals, and the values for each flock."""
+"""Options of a reset: their names, the errors for misplaced ones, and the values of each flock."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -23,38 +23,39 @@ _UNITS = {"s", "sec", "cm", "rad", "hz", "per", "seconds"}
 class Spellings:
     """Names that are recognized in any case, with other separators, or without separators.
 
-    "episodes" does not match "episode_s", though, because its s is a unit.
+    "episodes" does not match "episode_s", because the s of "episode_s" is a unit.
 
     Parameters
     ----------
     names
         The names.
     without_unit
-        Those names that are recognized without their unit, too.
+        The names that are also recognized without their unit.
     """
 
     def __init__(self, names: Iterable[str], without_unit: Iterable[str] = ()) -> None:
-        self._bare = {"".join(_parts_without_unit(name)): name for name in without_unit}
+        self._names_without_unit = {_joined_without_unit(name): name for name in without_unit}
         self._names: dict[str, str] = {}
         for name in names:
-            joined, bare = "".join(_parts(name)), "".join(_parts_without_unit(name))
-            if joined != f"{bare}s" or len(bare) <= 2:
+            joined, bare = "".join(_parts(name)), _joined_without_unit(name)
+            looks_like_plural = joined == f"{bare}s" and len(bare) > 2
+            if not looks_like_plural:
                 self._names[joined] = name
             self._names["_".join(_parts(name))] = name
 
     def meant(self, name: object) -> str | None:
-        """Return the option that a name spells in another way; None if it spells none."""
+        """Return the known name that `name` spells, exactly or in another way; None if none."""
         parts = _parts(name)
         known = self._names.get("_".join(parts)) or self._names.get("".join(parts))
-        return known or self._bare.get("".join(_parts_without_unit(name)))
+        return known or self._names_without_unit.get(_joined_without_unit(name))
 
 
 def _parts(name: object) -> list[str]:
     return re.findall(r"[a-z0-9]+", str(name).casefold())
 
 
-def _parts_without_unit(name: object) -> list[str]:
-    return [part for part in _parts(name) if part not in _UNITS]
+def _joined_without_unit(name: object) -> str:
+    return "".join(part for part in _parts(name) if part not in _UNITS)
 
 
 def reset_requests(
@@ -62,13 +63,14 @@ def reset_requests(
     flocks: int,
     *,
     lists_flocks: bool = True,
-    takes: tuple[str, ...] = RESET_OPTIONS,
+    accepted: tuple[str, ...] = RESET_OPTIONS,
 ) -> list[dict[str, Any]]:
-    """Return the request for each flock's reset.
+    """Return the options of each flock's reset.
 
-    Other keys may be meant for a wrapper: Gymnasium passes one dictionary through all wrappers.
-    Raises ParameterError for keys that would be ignored silently: other spellings of the options,
-    arguments of the constructor, and keys of ``state``.
+    Unknown keys are ignored, because they may be meant for a wrapper: Gymnasium passes one
+    dictionary through all wrappers. Raises ParameterError for keys that are meant for the
+    environment but misplaced: other spellings of the options, arguments of the constructor, and
+    keys of ``state``.
 
     Parameters
     ----------
@@ -77,8 +79,8 @@ def reset_requests(
     flocks
         Number of flocks.
     lists_flocks
-        Whether a list has an entry for each flock; otherwise the whole list is one value.
-    takes
+        Whether a list has one value per flock; if not, the whole list is a value.
+    accepted
         Names of the options that are accepted.
     """
     if options is None:
@@ -86,18 +88,19 @@ def reset_requests(
     if not isinstance(options, Mapping):
         raise TypeError(f"reset options must be a dictionary, not {type(options).__name__}")
     for name in options:
-        if name not in takes:
-            _refuse_misplaced(name, takes)
+        if name not in accepted:
+            _refuse_misplaced(name, accepted)
     requests: list[dict[str, Any]] = [{} for _ in range(flocks)]
     for name in (option for option in RESET_OPTIONS if option in options):
-        for request, value in zip(
-            requests, _values(name, options[name], flocks, lists_flocks), strict=True
-        ):
+        values = _values_of_flocks(name, options[name], flocks, lists_flocks)
+        for request, value in zip(requests, values, strict=True):
             request[name] = as_bytes(value, name) if name == "snapshot" else value
     return requests
 
 
-def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Sequence[object]:
+def _values_of_flocks(
+    name: str, value: object, flocks: int, lists_flocks: bool
+) -> Sequence[object]:
     """Return the value of an option for each flock."""
     values = materialized(value)
     is_list = isinstance(value, list) or (isinstance(value, np.ndarray) and value.ndim > 0)
@@ -111,22 +114,23 @@ def _values(name: str, value: object, flocks: int, lists_flocks: bool) -> Sequen
     return list(values)
 
 
-def _refuse_misplaced(name: object, takes: tuple[str, ...]) -> None:
-    if (meant := _OF_RESET.meant(name)) in takes:
+def _refuse_misplaced(name: object, accepted: tuple[str, ...]) -> None:
+    """Refuse a key that spells an option, an argument of the constructor, or a key of a state."""
+    if (meant := _OF_RESET.meant(name)) in accepted:
         raise ParameterError(f"{name!r} is not a reset option: did you mean {meant!r}?")
     meant = meant or _MISPLACED.meant(name)
     if meant is None:
         return
     if meant in _KEYS_OF_STATE:
-        words = f"{meant!r} is a key of 'state': options={{'state': {{'pose': ..., ...}}}}"
+        advice = f"{meant!r} is a key of 'state': options={{'state': {{'pose': ..., ...}}}}"
     elif meant == "seed":
-        words = "the seed is an argument of its own"
+        advice = "the seed is an argument of its own"
     elif meant == "reset_mask":
-        words = "only a vector environment of Gymnasium takes 'reset_mask'"
+        advice = "only a vector environment of Gymnasium takes 'reset_mask'"
     else:
-        words = f"{meant!r} is fixed when an environment is made: make another one to change it"
-    options = f"{', '.join(takes[:-1])} and {takes[-1]}"
-    raise ParameterError(f"{name!r} is not a reset option (these are {options}): {words}")
+        advice = f"{meant!r} is fixed when an environment is made: make another one to change it"
+    options = f"{', '.join(accepted[:-1])} and {accepted[-1]}"
+    raise ParameterError(f"{name!r} is not a reset option (these are {options}): {advice}")
 
 
 _OF_RESET = Spellings((*RESET_OPTIONS, "reset_mask"), RESET_OPTIONS)

@@ -18,8 +18,8 @@ class Seed(int):
 class OwnGenerator:
     """Gymnasium's `np_random`, for environments of other libraries.
 
-    The generator is made when it is first asked for. So copies of an environment that was never
-    reset have different flocks, and copies made after a reset continue alike.
+    The generator is made at its first use. So copies of an environment that was never reset have
+    different flocks, and copies of one that was reset continue alike.
     """
 
     _np_random: np.random.Generator | None = None
@@ -55,25 +55,25 @@ def drawn_seed(random: np.random.Generator) -> int:
 
 
 def seed_of(seed: object) -> int:
-    """Return the seed of one flock as an int; raise an error for anything else."""
+    """Return the seed of one flock as an int; refuse anything but a whole number in its range."""
     return seeds_from(seed, 1)[0]
 
 
 def seeds_from(first: object, flocks: int) -> list[int]:
-    """Return consecutive seeds for flocks, from this one on."""
-    number = as_int(first, "seed")
-    if not 0 <= number <= _SEEDS - flocks:
+    """Return consecutive seeds for a number of flocks, the first of which has seed `first`."""
+    first_seed = as_int(first, "seed")
+    if not 0 <= first_seed <= _SEEDS - flocks:
         raise ParameterError(
-            f"seed = {short_repr(number)} is not accepted: at least 0, and below 2^64 for the last "
-            f"of {flocks} flocks"
+            f"seed = {short_repr(first_seed)} is not accepted: at least 0, and below 2^64 for the "
+            f"last of {flocks} flocks"
         )
-    return [number + flock for flock in range(flocks)]
+    return [first_seed + flock for flock in range(flocks)]
 
 
 def seeds_of_flocks(seed: object, flocks: int) -> Sequence[int | None]:
-    """Return a seed for each flock, given the first one's seed or a list with a seed for each.
+    """Return the seed of each flock, from the seed of the first one or a list with a seed for each.
 
-    None continues with the next episode.
+    A flock with None continues with its next episode.
     """
     if seed is None:
         return [None] * flocks

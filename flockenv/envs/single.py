@@ -52,10 +52,11 @@ class LeadersEnv(
     - With `action_mode="heading"` an action is a heading: its angle outward of the target's tangent
       over π. `DampedLaw()` steers to it in every control step.
     - With `action_mode="lean"` an action is that angle over 1.2 rad, and the damped law with the
-      gains tuned in the pool steers to it: 0 is that law itself, bit for bit. Both laws read what
-      the leader sees of itself.
-    - `decision_period_s` makes a step hold its action for that long. Its reward is the sum over
-      those control steps, or over fewer if the episode ends, and its `reward_terms` are means.
+      gains tuned in the pool steers to it: with 0 that law steers, bit for bit.
+    - Both laws read what the leader observes of itself.
+    - `decision_period_s` makes a step hold its action for that long. The reward of the step is the
+      sum over its control steps, of which there are fewer if the episode ends. Its `reward_terms`
+      are means.
 
     ## Observation space
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
@@ -78,16 +79,15 @@ class LeadersEnv(
     The weighted sum of reward terms, mean over leaders. `reward` has the weights for all leaders
     or, as a list of dictionaries, for each. By default `signed_order` alone counts: the mean of the
     signed order of the normal boats, in [-1, 1], over the control step. Other terms are
-    of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and, of its contacts,
-    `contact_push`. Each info has `"reward_terms"`, and the last one of an episode also has
-    `"episode_summary"`.
+    of the flock, such as `jam`, or of a leader alone, such as `rudder_effort` and `contact_push`.
+    Each info has `"reward_terms"`, and the last one of an episode also has `"episode_summary"`.
 
     If `target` is a list of "cw" and "ccw", one per leader, each leader has its own target. Its
     observation, the reflection by `mirror_to_target`, its actions and its reward terms refer to
     that target. Leaders with opposite targets play a general-sum game: their `signed_order` sums to
-    zero, the terms of a leader alone do not. The joint reward stays the mean over leaders, so that
-    k1 leaders against k2 are rewarded with (k1 - k2)/k of the signed order towards the k1 leaders'
-    target. Quantities of the whole flock refer to leader 0's target: the `signed_order` and
+    zero, the terms of a leader alone do not. The joint reward stays the mean over leaders: if k1
+    leaders have one target and k2 the other, it is (k1 - k2)/k times the signed order towards the
+    first. Quantities of the whole flock refer to leader 0's target: the `signed_order` and
     `share_towards_target` of the `"episode_summary"`, the reflection of `state()`, and the flock
     features (a `LeaderVecEnv` has them in the frame of each slot's target). The `target` of
     `state()` is the mean over leaders.
@@ -106,7 +106,7 @@ class LeadersEnv(
     - `flock_seed`, `bw_s` and `steps` (control steps) of the episode
     - `total_reward`, and the mean of each reward term over steps and leaders
     - means of order parameters of the normal boats, such as `psi_o`, `signed_order` and `rotation`,
-      over the analysis window without the first tenth; an episode that ends before it has none
+      over the analysis window without the first tenth; they are missing if the episode ends before
     - `share_towards_target`: fraction of that window with a signed order above 0.5
     - `ordering_time_s` and `ordering_time_wide_s`: eq. (7) with the angle π/20 as printed and with
       π/4; infinite if the flock never ordered
@@ -157,13 +157,13 @@ class LeadersEnv(
         Parameters
         ----------
         seed
-            Fixes this episode, and those that follow without a seed. None continues with the
-            next one.
+            Fixes everything random in this episode and in the episodes that follow without a seed.
+            None continues with the next episode.
         options
-            For this episode: ``target``, ``bw_s`` in s, and ``state`` or ``snapshot``, as the class
-            says of the starting state. A snapshot must come from a flock with the same parameters,
-            except for target and bw_s. With ``noise_seed`` it continues with other noise, as in
-            `Flock.restore`.
+            For this episode: ``target``, ``bw_s`` in s, and ``state`` or ``snapshot``, as under
+            "Starting state" of the class. A snapshot must come from a flock with the same
+            parameters, except for target and bw_s. With ``noise_seed`` it continues with other
+            noise, as in `Flock.restore`.
 
         Returns
         -------
@@ -199,18 +199,18 @@ class LeadersEnv(
         EpisodeError
             Before the first reset and after the end.
         """
-        flat: ArrayLike = action
+        actions: ArrayLike = action
         if self._levels is not None or not is_plain(action, self._actions_shape):
-            flat = _core.flat_actions(action, self._actions_shape, self._levels)
-        rows, rewards, truncated = self._batch.step(self, flat)
+            actions = _core.flat_actions(action, self._actions_shape, self._levels)
+        rows, rewards, truncated = self._batch.step(self, actions)
         means = mean_rows(self._batch.core.reward_terms().tolist())
         info: dict[str, Any] = {"reward_terms": dict(zip(TERMS, means, strict=True))}
-        over = bool(truncated[0])
-        if over:
+        is_over = bool(truncated[0])
+        if is_over:
             info.update(self._batch.end_info(0))
         self._show()
         (reward,) = mean_rows(rewards[:, None].tolist())
-        return rows.reshape(-1), reward, False, over, info
+        return rows.reshape(-1), reward, False, is_over, info
 
     def set_wrapper_attr(self, name: str, value: object, *, force: bool = True) -> bool:
         """Set an existing attribute, for Gymnasium's wrappers; options are refused."""

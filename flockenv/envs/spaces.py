@@ -44,8 +44,8 @@ class ObservationSpace(_Box):
 
     Models keep the space that they were trained on, also in their files. It says how observations
     are made, so that a model gets the same ones wherever it steers. Spaces with other options are
-    not equal, so that libraries refuse a model for flocks that look like its own and mean something
-    else. A plain `Box` says nothing of its meaning, and is equal if its bounds are.
+    not equal, so that libraries refuse a model for flocks whose observations have the same shape
+    and another meaning. A plain `Box` has no options, and is equal if its bounds are.
 
     Attributes
     ----------
@@ -75,11 +75,11 @@ class ObservationSpace(_Box):
 
     def __repr__(self) -> str:
         """Return shape, leaders and options, with only the changed blocks of the observation."""
-        own = {name: value for name, value in self.options.items() if name != "observation"}
+        options = {name: value for name, value in self.options.items() if name != "observation"}
         blocks = self.options["observation"]
-        own["observation"] = {block: n for block, n in blocks.items() if BLOCKS.get(block) != n}
-        words = ", ".join(f"{name}={value!r}" for name, value in own.items())
-        return f"ObservationSpace({self.shape}, leaders={self.leaders}, {words})"
+        options["observation"] = {block: n for block, n in blocks.items() if BLOCKS.get(block) != n}
+        arguments = ", ".join(f"{name}={value!r}" for name, value in options.items())
+        return f"ObservationSpace({self.shape}, leaders={self.leaders}, {arguments})"
 
     def policy_options(self) -> dict[str, Any]:
         """Return `options`, even if another build stored this space in a model's file.
@@ -99,14 +99,14 @@ def differing_options(
 
     Each name has a pair of values. Options that are missing count with their defaults.
     """
-    one, other = _completed(options), _completed(others)
-    names = dict.fromkeys((*one, *other))
-    pairs = {name: (one.get(name), other.get(name)) for name in names}
+    first, second = _completed(options), _completed(others)
+    names = dict.fromkeys((*first, *second))
+    pairs = {name: (first.get(name), second.get(name)) for name in names}
     return {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
 
 
 def _completed(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return options with the defaults of those that are missing."""
+    """Return options, with defaults for those that are missing."""
     full = {name: OPTIONS[name].default for name in POLICY_OPTIONS} | dict(options)
     full["observation"] = {**BLOCKS, **full["observation"]}
     period = full["decision_period_s"]
@@ -124,21 +124,22 @@ def flock_feature_space() -> _Box:
 
 def state_space(n_boats: int) -> _Box:
     """Return the space of the global state."""
-    boat_and_rest, rest = _bounds(state_entries(1)), _bounds(state_entries(0))
-    boats = np.tile(boat_and_rest[: -len(rest)], (n_boats, 1))
-    low, high = np.concatenate([boats, rest]).T.copy()
+    # The entries of the boats come first, and then those of the whole flock.
+    with_one_boat, of_flock = _bounds(state_entries(1)), _bounds(state_entries(0))
+    of_boats = np.tile(with_one_boat[: -len(of_flock)], (n_boats, 1))
+    low, high = np.concatenate([of_boats, of_flock]).T.copy()
     return _Box(low, high, dtype=np.float32)
 
 
 def leader_action_space(levels: int | None) -> gymnasium.Space[Any]:
-    """Return one leader's space: a rudder in [-1, 1], or the number of a level."""
+    """Return the space of one leader's action: a rudder in [-1, 1], or the number of a level."""
     if levels is None:
         return gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
     return gymnasium.spaces.Discrete(levels)
 
 
 def joint_action_space(levels: int | None, leaders: int) -> gymnasium.Space[Any]:
-    """Return the space of all leaders' rudders."""
+    """Return the space of all leaders' actions: rudders in [-1, 1], or numbers of levels."""
     if levels is None:
         return gymnasium.spaces.Box(-1.0, 1.0, (leaders,), np.float32)
     return gymnasium.spaces.MultiDiscrete([levels] * leaders)

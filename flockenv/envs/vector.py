@@ -48,11 +48,11 @@ class LeadersVectorEnv(
     of the last step, `leader_rewards()` each leader's own reward: with opposite targets the mean
     says little.
 
-    `reward` may also be a function of this environment. `step` calls it once the flocks have
-    moved, and it returns rewards (num_envs,), or (num_envs, k) for each leader. It looks at
-    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the like. With
-    `autoreset_mode="same_step"`, flocks have started again before it could look at them, so that is
-    refused.
+    `reward` may also be a function of this environment. `step` calls it after the flocks have
+    moved, and it returns rewards (num_envs,), or (num_envs, k) for each leader. It can call
+    `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and other methods. A function
+    is refused with `autoreset_mode="same_step"`, because flocks whose episodes end have started
+    again before it is called.
 
     ## Starting state
     `seed=s` seeds flock i with s + i; a list gives each flock its own. If an option of `reset` is a
@@ -142,18 +142,18 @@ class LeadersVectorEnv(
         observations : numpy.ndarray
             Shape (num_envs, k * observation size), float32, of all flocks.
         infos : dict
-            Infos of the flocks that were reset.
+            Infos of the flocks that were reset, as in `LeadersEnv.reset`.
         """
         seeds = seeds_of_flocks(seed, self.num_envs)
-        requests = reset_requests(options, self.num_envs, takes=(*RESET_OPTIONS, "reset_mask"))
+        requests = reset_requests(options, self.num_envs, accepted=(*RESET_OPTIONS, "reset_mask"))
         mask = None if options is None else _checked_mask(options.get("reset_mask"), self.num_envs)
         self._batch.reset(seeds, requests, lambda: drawn_seed(self.np_random), mask)
         if seeds[0] is not None:
             super().reset(seed=seeds[0])
         infos: dict[str, Any] = {}
         for flock in range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist():
-            infos = self._add_info(infos, _arrayed(self._batch.reset_info(flock)), flock)
-        return self._shaped(self._batch.core.observe()), infos
+            infos = self._add_info(infos, _array_info(self._batch.reset_info(flock)), flock)
+        return self._rows_of_flocks(self._batch.core.observe()), infos
 
     def step(
         self, actions: NDArray[Any]
@@ -197,24 +197,24 @@ class LeadersVectorEnv(
         self._rewards = rewards.reshape(self._actions_shape)
         infos = self._end_infos(truncated) if truncated.any() else {}
         return (
-            self._shaped(observations),
+            self._rows_of_flocks(observations),
             self._rewards.mean(axis=1),
             np.zeros(self.num_envs, np.bool_),
             truncated,
             infos,
         )
 
-    def _shaped(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _rows_of_flocks(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return rows.reshape(self.num_envs, -1)
 
     def _end_infos(self, truncated: NDArray[np.bool_]) -> dict[str, Any]:
         infos: dict[str, Any] = {}
         for flock in np.flatnonzero(truncated).tolist():
-            info = _arrayed(self._batch.end_info(flock))
+            info = _array_info(self._batch.end_info(flock))
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
                 last = self._batch.core.final_observation(flock).reshape(-1)
                 infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
-                info = _arrayed(self._batch.reset_info(flock))
+                info = _array_info(self._batch.reset_info(flock))
             infos = self._add_info(infos, info, flock)
         return infos
 
@@ -226,7 +226,7 @@ class LeadersVectorEnv(
         """Return features of every flock, shape (num_envs, features), float32.
 
         They depend neither on the order of boats nor on absolute angles. They are in the frame of
-        the target; with several targets, of leader 0's.
+        the target; with several targets, in that of leader 0's.
         """
         return self._batch.core.flock_features(each_leader=False)
 
@@ -251,11 +251,11 @@ class LeadersVectorEnv(
         return self._batch.core.in_analysis_window().ravel()
 
     def observe(self) -> NDArray[np.float32]:
-        """Return the observations as they are now."""
-        return self._shaped(self._batch.core.observe())
+        """Return the present observations, shape (num_envs, k * observation size)."""
+        return self._rows_of_flocks(self._batch.core.observe())
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """Return a frame of each flock, (height, width, 3) uint8, if that is the render mode."""
+        """Return a frame of each flock, (height, width, 3) uint8; None without a render mode."""
         if self.render_mode is None:
             return None
         flocks = map(self._batch.flock, range(self.num_envs))
@@ -269,13 +269,13 @@ _CORE_NAMES = {
 }
 
 
-def _arrayed(info: dict[str, Any]) -> dict[str, Any]:
-    """Return infos for Gymnasium's arrays, which hold no seed beyond 2^63 unless it is unsigned."""
+def _array_info(info: dict[str, Any]) -> dict[str, Any]:
+    """Return an info with unsigned seeds: Gymnasium's arrays hold no other ones beyond 2^63."""
     info = {**info}
     for name in info.keys() & {"flock_seed"}:
         info[name] = np.uint64(info[name])
     for name in info.keys() & {"episode_summary"}:
-        info[name] = _arrayed(info[name])
+        info[name] = _array_info(info[name])
     return info
 
 

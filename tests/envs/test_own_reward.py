@@ -92,7 +92,7 @@ def test_what_was_paid_is_a_part_of_the_state(make):
 )
 def test_rewards_that_are_none_are_refused(returned):
     env = started(reward=lambda env: returned)
-    with pytest.raises(ParameterError, match="the function of reward"):
+    with pytest.raises(ParameterError, match="the reward function"):
         env.step(ACTIONS)
 
 
