@@ -63,7 +63,7 @@ NAMES = (
 ARGUMENTS = ("seed", "render_mode", "render_size", "autoreset_mode", "num_envs", "num_flocks")
 """Arguments of constructors and resets that users may mistake for options."""
 
-#: Defaults if neither ``params`` nor these fields are values: the paper's 27 boats, three of them
+#: Defaults if neither ``params`` nor these fields are given: the paper's 27 boats, three of them
 #: leaders.
 _DEFAULTS = {"n_boats": 27, "n_leaders": 3}
 
@@ -95,7 +95,7 @@ class EnvOptions:
             Name of the argument that sets the number of flocks; None for one flock.
         """
         for name in (option for option in options if option not in NAMES):
-            # TorchRL searches messages for the first four words.
+            # TorchRL searches messages for "unexpected keyword argument".
             raise UnknownOptionError(
                 f"got an unexpected keyword argument {name!r}, which is not an option of the "
                 f"environment: {_suggestion(name, counts)}"
