@@ -93,7 +93,12 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         For unknown options, with the nearest known one.
     """
 
-    _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_flocks", "num_leaders", "rudder_levels")
+    _read_only_attributes: ClassVar[tuple[str, ...]] = (
+        "parameters",
+        "num_flocks",
+        "num_leaders",
+        "rudder_levels",
+    )
 
     def __init__(
         self,

@@ -110,7 +110,7 @@ class SingleEnvironmentBase(Resumable):
 
     metadata: dict[str, Any]
     np_random: np.random.Generator
-    _kept: ClassVar[tuple[str, ...]] = ("parameters", "num_leaders", "render_mode")
+    _read_only_attributes: ClassVar[tuple[str, ...]] = ("parameters", "num_leaders", "render_mode")
 
     def _set_up(
         self, options: dict[str, Any], render_mode: str | None, render_size: object

@@ -13,12 +13,12 @@ class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
     Names in another case or without their unit are refused, too. A user's subclass may still have
-    attributes with such names, except those in `_kept`: either as class attributes, or set by its
-    own methods. Once they exist, they may be set from outside, too.
+    attributes with such names, except those in `_read_only_attributes`: as class attributes, or set
+    by its own methods. Once such an attribute exists, it may be set from outside, too.
     """
 
-    #: Attributes of this class that are named like an argument.
-    _kept: ClassVar[tuple[str, ...]] = ()
+    #: Attributes of this class that are named like an argument, and set once.
+    _read_only_attributes: ClassVar[tuple[str, ...]] = ()
     #: The call that sets options of an episode.
     _next_episode: ClassVar[str] = "reset(options={...})"
 
@@ -28,8 +28,7 @@ class FixedOptions:
             caller = sys._getframe(1)
             if not _is_method_of(self, caller):
                 self._refuse_from_outside(name)
-            elif name in self._kept:
-                # Methods set these once.
+            elif name in self._read_only_attributes:
                 if not _is_same(vars(self).get(name, value), value):
                     raise AttributeError(refusal)
             elif not caller.f_globals.get("__name__", "").startswith("flockenv."):
@@ -42,7 +41,7 @@ class FixedOptions:
         """Refuse to set an option, unless a user's subclass has an attribute of that name."""
         refusal = _refusal(name, self._next_episode)
         is_of_subclass = name in vars(self).get("_names_of_subclass", ())
-        if name not in self._kept:
+        if name not in self._read_only_attributes:
             subclasses = takewhile(_is_user_defined, type(self).__mro__)
             is_of_subclass = is_of_subclass or any(name in vars(cls) for cls in subclasses)
         if refusal is not None and not is_of_subclass:

@@ -78,7 +78,12 @@ class LeadersVectorEnv(
         "render_modes": ["rgb_array"],
         "render_fps": 10.0,
     }
-    _kept: ClassVar[tuple[str, ...]] = ("num_envs", "num_leaders", "autoreset_mode", "render_mode")
+    _read_only_attributes: ClassVar[tuple[str, ...]] = (
+        "num_envs",
+        "num_leaders",
+        "autoreset_mode",
+        "render_mode",
+    )
 
     def __init__(
         self,

@@ -81,7 +81,12 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     - v0: as `LeadersEnv`.
     """
 
-    _kept: ClassVar[tuple[str, ...]] = ("num_envs", "num_flocks", "render_mode", "action_mode")
+    _read_only_attributes: ClassVar[tuple[str, ...]] = (
+        "num_envs",
+        "num_flocks",
+        "render_mode",
+        "action_mode",
+    )
     _next_episode: ClassVar[str] = "set_attr or set_options"
 
     def __init__(

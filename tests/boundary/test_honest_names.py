@@ -105,7 +105,7 @@ def keeping(base, name):
 def test_a_subclass_keeps_attributes_of_any_name(base):
     plain = base(**OPTIONS)
     nothing = np.zeros((plain.num_envs, 1) if hasattr(plain, "slots") else plain.action_space.shape)
-    for name in (each for each in ATTRIBUTES if each not in plain._kept):
+    for name in (each for each in ATTRIBUTES if each not in plain._read_only_attributes):
         env = keeping(base, name)
         env.reset()
         other = copy.deepcopy(env)
@@ -160,7 +160,7 @@ def test_a_tutorials_first_lines():
 
 def test_a_classmethod_sets_attributes_of_what_it_makes(base):
     class Mine(base):
-        parameters = None if "parameters" in base._kept else {"mine": 1}
+        parameters = None if "parameters" in base._read_only_attributes else {"mine": 1}
 
         @classmethod
         def from_config(cls, config):
@@ -170,7 +170,7 @@ def test_a_classmethod_sets_attributes_of_what_it_makes(base):
 
     env = Mine.from_config(OPTIONS)
     assert (env.reward, env.target) == (0.0, "goal")
-    for name in base._kept:
+    for name in base._read_only_attributes:
         with pytest.raises(AttributeError, match="cannot be set as an attribute"):
             setattr(env, name, 7)
 
