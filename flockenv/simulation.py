@@ -203,7 +203,7 @@ def _steering(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
     """Return how leaders are steered, and how often, in the form that the core takes."""
     if leaders.law is not None:
         # The core evaluates the law, and holds each lean until the next decision.
-        law_hz = leaders.seats[0].policy.control_hz
+        law_hz = leaders.assignments[0].policy.control_hz
         if law_hz is None and control_hz is not None:
             raise ParameterError(
                 f"control_hz = {short_repr(control_hz)} is not accepted: without a policy the "
@@ -211,8 +211,8 @@ def _steering(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
             )
         rate_hz = law_hz if control_hz is None else control_hz
         return {"steer": leaders.law, "layouts": [], "control_hz": rate_hz}
-    for seat in leaders.seats:
-        seat.policy.check_action_mode("rudder", "in a simulation")
+    for assignment in leaders.assignments:
+        assignment.policy.check_action_mode("rudder", "in a simulation")
     decisions = leaders.decisions(control_hz)
     return {
         "steer": decisions.rudders,

@@ -107,7 +107,7 @@ class Episodes:
         """Return the function that turns observations into actions; None: the law acts alone."""
         if self.leaders.is_per_leader:
             return _decide_each(self.leaders, batch)
-        policy, state = self.leaders.seats[0].policy.started(), None
+        policy, state = self.leaders.assignments[0].policy.started(), None
         if policy.control_hz is None:
             return lambda observed: None
         rows = batch.num_flocks * self.n_leaders
@@ -142,10 +142,10 @@ def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object
         _check_action_mode(leaders, options)
         rate = options.get("control_hz")
         return {"control_hz": leaders.decisions().control_hz if rate is None else rate}
-    policy: Policy = leaders.seats[0].policy
+    policy: Policy = leaders.assignments[0].policy
     if policy.control_hz is None:
         if refused := [name for name in options if name not in _OF_THE_FLOCK]:
-            name = policy.name if leaders.seats[0].leaders else NO_LEADERS
+            name = policy.name if leaders.assignments[0].leaders else NO_LEADERS
             raise ParameterError(
                 f"{name!r} makes no decisions in the environment, which then takes no "
                 f"{', '.join(refused)}"
@@ -164,8 +164,8 @@ def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object
 
 def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
     mode = options.get("action_mode")
-    for seat in leaders.seats if mode is not None else ():
-        seat.policy.check_action_mode(str(mode), "in this environment")
+    for assignment in leaders.assignments if mode is not None else ():
+        assignment.policy.check_action_mode(str(mode), "in this environment")
 
 
 def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:

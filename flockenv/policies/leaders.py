@@ -20,7 +20,7 @@ _FASTEST_HZ = 1000
 
 
 @dataclass(frozen=True)
-class Seat:
+class Assignment:
     """A policy and the leaders that it steers."""
 
     policy: Policy
@@ -33,13 +33,13 @@ class Leaders:
 
     Attributes
     ----------
-    seats
+    assignments
         Each policy with its leaders; together these are all leaders.
     is_per_leader
         Whether a policy was given for each leader.
     """
 
-    seats: tuple[Seat, ...]
+    assignments: tuple[Assignment, ...]
     is_per_leader: bool = False
 
     @classmethod
@@ -54,49 +54,50 @@ class Leaders:
         """
         k = flock.n_leaders
         if isinstance(given, Mapping) and (given or k > 0):
-            leaders = cls(_seats(given, flock), is_per_leader=True)
-            for seat in leaders.seats:
-                seat.policy.check_action_mode("rudder", "leader by leader")
+            leaders = cls(_assignments(given, flock), is_per_leader=True)
+            for assignment in leaders.assignments:
+                assignment.policy.check_action_mode("rudder", "leader by leader")
         else:
             # An empty dictionary is right for a flock without leaders.
             shared = EVERY_SUBSTEP if isinstance(given, Mapping) else given
-            leaders = cls((Seat(policy(shared, flock.pool), (*range(k),)),))
-        for seat in leaders.seats:
-            if k == 0 and seat.policy.control_hz is not None:
+            leaders = cls((Assignment(policy(shared, flock.pool), (*range(k),)),))
+        for assignment in leaders.assignments:
+            if k == 0 and assignment.policy.control_hz is not None:
                 raise ParameterError(
                     f"policy = {short_repr(given)} is not accepted: with n_leaders = 0 it steers "
                     "nobody"
                 )
             if k > 0:
-                seat.policy.check_leaders(len(seat.leaders))
+                assignment.policy.check_leaders(len(assignment.leaders))
         return leaders
 
     @property
     def title(self) -> str:
         """The name under which recordings hold the policies."""
         if not self.is_per_leader:
-            return self.seats[0].policy.name
-        return "; ".join(
-            f"{', '.join(f'leader_{leader}' for leader in seat.leaders)}: {seat.policy.name}"
-            for seat in self.seats
-        )
+            return self.assignments[0].policy.name
+        titles = []
+        for assignment in self.assignments:
+            names = ", ".join(f"leader_{leader}" for leader in assignment.leaders)
+            titles.append(f"{names}: {assignment.policy.name}")
+        return "; ".join(titles)
 
     @property
     def law(self) -> _core.Law | None:
         """The core's law that steers all leaders; None if another kind of policy does."""
-        return None if self.is_per_leader else self.seats[0].policy.law
+        return None if self.is_per_leader else self.assignments[0].policy.law
 
     def check_pool(self, pool: Pool) -> None:
         """Refuse a pool that one of the policies was not made for."""
-        for seat in self.seats:
-            seat.policy.check_pool(pool)
+        for assignment in self.assignments:
+            assignment.policy.check_pool(pool)
 
     def decisions(self, control_hz: float | None = None) -> "Decisions":
         """Return the decisions of a new run, at this rate or at the rates of the policies."""
-        return Decisions(self.seats, control_hz)
+        return Decisions(self.assignments, control_hz)
 
 
-def _seats(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Seat, ...]:
+def _assignments(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Assignment, ...]:
     names = [f"leader_{leader}" for leader in range(flock.n_leaders)]
     if given.keys() != set(names):
         accepted = ", ".join(names) or "none, since n_leaders = 0"
@@ -114,7 +115,9 @@ def _seats(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Sea
                 checked = policy(PAPERS_LAW)
             leaders_of_policy[key] = checked, []
         leaders_of_policy[key][1].append(leader)
-    return tuple(Seat(checked, tuple(leaders)) for checked, leaders in leaders_of_policy.values())
+    return tuple(
+        Assignment(checked, tuple(leaders)) for checked, leaders in leaders_of_policy.values()
+    )
 
 
 class Decisions:
@@ -122,15 +125,16 @@ class Decisions:
 
     Parameters
     ----------
-    seats
+    assignments
         The policies and the leaders that each steers.
     control_hz
         Decisions per second of all policies; None: each has its own rate.
     """
 
-    def __init__(self, seats: Sequence[Seat], control_hz: float | None = None) -> None:
+    def __init__(self, assignments: Sequence[Assignment], control_hz: float | None = None) -> None:
         self._policies = [
-            _SteeringPolicy(seat.policy.started(), list(seat.leaders)) for seat in seats
+            _SteeringPolicy(assignment.policy.started(), list(assignment.leaders))
+            for assignment in assignments
         ]
         #: Calls of `rudders` per second.
         self.control_hz = _set_common_rate(self._policies) if control_hz is None else control_hz

@@ -197,11 +197,11 @@ def test_a_run_goes_on_from_where_another_ended(dtype):
 
 
 def test_each_leader_has_a_policy_of_its_own():
-    seats = {"leader_1": Held(-0.25), "leader_0": Held(0.5)}
-    run = simulate(PARAMETERS, 3, 2.0, policy=seats)
+    assignments = {"leader_1": Held(-0.25), "leader_0": Held(0.5)}
+    run = simulate(PARAMETERS, 3, 2.0, policy=assignments)
     assert (run.rudder[1:] == [0.5, -0.25]).all()
     assert run.policy == "leader_0: Held; leader_1: Held"
-    both = simulate(PARAMETERS, 3, 2.0, policy=dict.fromkeys(seats, "damped law"))
+    both = simulate(PARAMETERS, 3, 2.0, policy=dict.fromkeys(assignments, "damped law"))
     assert np.array_equal(both.pose, simulate(PARAMETERS, 3, 2.0, policy="damped law").pose)
     mixed = simulate(
         PARAMETERS, 3, 2.0, policy={"leader_0": "paper's law", "leader_1": "straight ahead"}
