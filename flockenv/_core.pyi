@@ -72,24 +72,25 @@ ORDERED_WITHIN: tuple[float, float]
 ACTION_MODES: list[str]
 COLLECTIVE_STATES: list[str]
 STYLE_SHEET: str
-# Colors by name as "#rrggbb": of frames and of pages on light ground, and of plots in turn.
+# Colors by name as "#rrggbb": those of frames and light pages, and those that plots use in turn.
 PALETTE: dict[str, str]
 OKABE_ITO: dict[str, str]
 LEAN_FEATURES: list[str]
 PHASES: list[str]
 PRESETS: list[str]
 OBSERVATION_VERSION: int
-# Declarations. Those of fields have name, kind, unit, default, accepted and doc; the others have
-# the fields of `flockenv.order.Quantity` and `flockenv.envs.observation.Entry`.
+# Declarations by name. A parameter or an option has name, kind, unit, default, accepted and doc.
+# Quantities have the fields of `flockenv.order.Quantity`, and entries those of
+# `flockenv.envs.observation.Entry`.
 PARAMETERS: tuple[dict[str, Any], ...]
 OPTIONS: tuple[dict[str, Any], ...]
 BRANCH_OPTIONS: tuple[dict[str, Any], ...]
 QUANTITIES: tuple[dict[str, Any], ...]
-# Each law has name, doc, color (None: any that is free) and is_of_pool. The first one acts at every
+# Each law has name, doc, color (None: any unused one) and is_of_pool. The first one acts at every
 # substep.
 LAWS: tuple[dict[str, Any], ...]
 FLOCK_FEATURES: tuple[dict[str, Any], ...]
-# Name and meaning.
+# Name and meaning of each.
 REWARD_TERMS: list[tuple[str, str]]
 
 _Floats: TypeAlias = NDArray[np.float64]

@@ -19,14 +19,21 @@ from flockenv.parameters import FlockParameters
 
 # NumPy adds this many numbers, or more, in another order than one after another.
 _UNROLLED = 8
-# Most flocks, or leaders of a flock: larger batches would fill the memory.
-_MOST_FLOCKS = 100_000
+# The largest number of flocks or leaders: more would fill the memory.
+_LARGEST_COUNT = 100_000
 
 
 class LeaderBatch:
     """A batch of flocks with their episodes in the core. Rows are leaders, flock after flock.
 
-    `leaders` is the number of leaders of each flock.
+    Parameters
+    ----------
+    options
+        Options of all flocks.
+    leaders
+        Number of leaders of each flock; it replaces the one in `options`.
+    autoreset_mode
+        ``"next_step"``, ``"same_step"`` or ``"disabled"``.
     """
 
     def __init__(self, options: EnvOptions, leaders: Sequence[int], autoreset_mode: str) -> None:
@@ -43,7 +50,7 @@ class LeaderBatch:
         #: Numbers in an observation; control steps in an episode, and in a decision.
         self.observation_size, self.episode_steps, self.period_steps = self.core.sizes
         self.decisions_hz: float = self.settings["control_hz"] / self.period_steps
-        #: Decisions of an episode; the last one may be shorter than the others.
+        #: Decisions of an episode, rounded up: the last one may be shorter than the others.
         self.decisions = -(-self.episode_steps // self.period_steps)
 
     def reset(
@@ -67,10 +74,11 @@ class LeaderBatch:
         self.core.reset(seeded_requests)
 
     def set_upcoming(self, flocks: Sequence[int], options: Mapping[str, Any]) -> None:
-        """Set the target or the bw_s of all future episodes of flocks."""
+        """Set the target or the bw_s of all future episodes of these flocks."""
         refuse_unknown(options, UPCOMING_OPTIONS, "option of the next episodes")
-        values = {name: listed(value) for name, value in options.items()}
-        for name, value in values.items():
+        values = {}
+        for name, option in options.items():
+            value = listed(option)
             values[name] = tuple(value) if isinstance(value, list) else value
         self.core.set_upcoming(list(flocks), values)
 
@@ -84,11 +92,11 @@ class LeaderBatch:
         """
         if self._user_reward is None:
             return self.core.step(actions)
-        starts = ~np.array(self.running())
+        # In these flocks the step only starts the next episode, for which there is no reward.
+        only_starts = ~np.array(self.running())
         observations, _, truncated = self.core.step(actions)
         rewards = self._checked_rewards(self._user_reward(env), precision)
-        # A step that only starts the next episode has no reward.
-        rewards[starts[self._flock_of_row]] = 0.0
+        rewards[only_starts[self._flock_of_row]] = 0.0
         self.core.add_rewards(rewards)
         return observations, rewards, truncated
 
@@ -161,6 +169,8 @@ def is_plain(action: object, shape: tuple[int, ...]) -> bool:
 def at_least_one(count: object, name: str) -> int:
     """Return a number of flocks or leaders as an int; refuse others by the argument's name."""
     number = as_int(count, name)
-    if not 1 <= number <= _MOST_FLOCKS:
-        raise ParameterError(f"{name} = {short_repr(number)} is not accepted: 1 to {_MOST_FLOCKS}")
+    if not 1 <= number <= _LARGEST_COUNT:
+        raise ParameterError(
+            f"{name} = {short_repr(number)} is not accepted: 1 to {_LARGEST_COUNT}"
+        )
     return number

@@ -1,4 +1,4 @@
-"""Refuses to set an option as an attribute from outside the class: it would have no effect."""
+"""Refuses to set an option as an attribute from outside the class, which would have no effect."""
 
 import sys
 from itertools import takewhile
@@ -23,7 +23,7 @@ class FixedOptions:
     _next_episode: ClassVar[str] = "reset(options={...})"
 
     def __setattr__(self, name: str, value: object) -> None:
-        """Set an attribute; an AttributeError says what sets an option instead."""
+        """Set an attribute; raise AttributeError for an option, and say what sets it instead."""
         if (refusal := _refusal(name, self._next_episode)) is not None:
             caller = sys._getframe(1)
             if not _is_method_of(self, caller):
@@ -60,8 +60,8 @@ def _is_method_of(env: object, frame: FrameType) -> bool:
     )
 
 
-def _is_same(one: object, other: object) -> bool:
-    return one is other or (type(one) is type(other) and bool(one == other))
+def _is_same(first: object, second: object) -> bool:
+    return first is second or (type(first) is type(second) and bool(first == second))
 
 
 _OF_RESET = (*RESET_OPTIONS, "seed", "reset_mask")
@@ -70,7 +70,7 @@ _SPELLINGS = Spellings(_FIXED, _FIXED)
 
 
 def _refusal(name: str, next_episode: str) -> str | None:
-    """Return the message that refuses to set an attribute; None if its name is no option's."""
+    """Return why an attribute cannot be set; None if its name is not that of an option."""
     if name.startswith("_"):
         return None
     meant = _SPELLINGS.meant(name)

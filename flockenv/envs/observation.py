@@ -21,12 +21,17 @@ class Entry(NamedTuple):
     """One number of an observation or of the global state."""
 
     block: str
+    #: Index of the neighbor, obstacle or boat in its block; 0 in other blocks.
     place: int
     name: str
+    #: Unit of the physical value; empty for none.
     unit: str
+    #: The physical value that is observed as 1, or the scaling in words.
     scale: str
+    #: Bounds of the observed value, to which it is clipped.
     low: float
     high: float
+    #: Whether `mirror_to_target` changes its sign.
     mirrored: bool
     meaning: str
 

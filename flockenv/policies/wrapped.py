@@ -109,8 +109,8 @@ class WrappedPolicy(ModelPolicy):
         statistics = [layer.obs_rms for layer in _layers(wrapped) if hasattr(layer, "obs_rms")]
         if any(statistic.count < 1.0 for statistic in statistics):
             raise ParameterError(
-                "a wrapper that normalizes without statistics is not accepted: let it take over "
-                "obs_rms of the training's"
+                "a wrapper that normalizes without statistics is not accepted: give it the obs_rms "
+                "of the training's wrapper"
             )
         if not statistics and lacks_normalizing(self.model):
             raise ParameterError(
@@ -124,9 +124,9 @@ class WrappedPolicy(ModelPolicy):
             and self.model.env is not vec_normalize
             and vec_normalize.venv is vec_normalize.unwrapped
         )
-        normalized = self._space if self._normalizes_first else wrapped.observation_space
         if vec_normalize is None:
             return
+        normalized = self._space if self._normalizes_first else wrapped.observation_space
         training_shape = vec_normalize.obs_rms.mean.shape
         if training_shape != normalized.shape:
             raise ParameterError(
