@@ -76,7 +76,7 @@ class LeaderBatch:
     def set_upcoming(self, flocks: Sequence[int], options: Mapping[str, Any]) -> None:
         """Set the target or the bw_s of all future episodes of these flocks."""
         refuse_unknown(options, UPCOMING_OPTIONS, "option of the next episodes")
-        values = {}
+        values: dict[str, object] = {}
         for name, option in options.items():
             value = listed(option)
             values[name] = tuple(value) if isinstance(value, list) else value

@@ -107,7 +107,6 @@ class LeadersVectorEnv(
         self._batch = LeaderBatch(
             parsed, [self.num_leaders] * num_envs, _CORE_NAMES[self.autoreset_mode]
         )
-        levels = self._batch.settings["rudder_levels"]
         self.render_mode = render_mode
         fps = self._batch.decisions_hz
         self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
@@ -116,14 +115,18 @@ class LeadersVectorEnv(
             "autoreset_mode": self.autoreset_mode,
             "render_fps": fps,
         }
-        self.single_observation_space = ObservationSpace(self._batch.settings, self.num_leaders)
-        self.single_action_space = joint_action_space(levels, self.num_leaders)
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._set_spaces()
+        self._rewards: NDArray[np.float64] | None = None
+
+    def _set_spaces(self) -> None:
+        settings = self._batch.settings
+        self.single_observation_space = ObservationSpace(settings, self.num_leaders)
+        self.single_action_space = joint_action_space(settings["rudder_levels"], self.num_leaders)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.single_state_space = self._batch.state_space
         self.flock_feature_space = self._batch.flock_feature_space
-        self._actions_shape = (num_envs, self.num_leaders)
-        self._rewards: NDArray[np.float64] | None = None
+        self._actions_shape = (self.num_envs, self.num_leaders)
 
     def reset(
         self,
