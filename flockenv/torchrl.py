@@ -110,7 +110,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     ) -> None:
         flocks = at_least_one(num_flocks, "num_flocks")
         refuse_unknown((state,), STATES, "state")
-        parsed = EnvOptions.parse(options, counts="num_flocks")
+        parsed = EnvOptions.parse(options, flocks_argument="num_flocks")
         self.parameters = parsed.parameters
         self.num_flocks, self.num_leaders = flocks, parsed.parameters.n_leaders
         at_least_one(self.num_leaders, "n_leaders")

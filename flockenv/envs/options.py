@@ -79,7 +79,11 @@ class EnvOptions:
 
     @classmethod
     def parse(
-        cls, options: Mapping[str, Any], *, takes_function: bool = False, counts: str | None = None
+        cls,
+        options: Mapping[str, Any],
+        *,
+        takes_function: bool = False,
+        flocks_argument: str | None = None,
     ) -> Self:
         """Return options from keyword arguments.
 
@@ -91,14 +95,14 @@ class EnvOptions:
             The user's keyword arguments; arrays become lists.
         takes_function
             Whether the reward may be a function.
-        counts
+        flocks_argument
             Name of the argument that sets the number of flocks; None for one flock.
         """
         for name in (option for option in options if option not in NAMES):
             # TorchRL searches messages for "unexpected keyword argument".
             raise UnknownOptionError(
                 f"got an unexpected keyword argument {name!r}, which is not an option of the "
-                f"environment: {_suggestion(name, counts)}"
+                f"environment: {_suggestion(name, flocks_argument)}"
             )
         values: dict[str, Any] = {name: listed(value) for name, value in options.items()}
         own_reward = _pop_function(values)
@@ -139,15 +143,15 @@ def _pop_function(values: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
     return function
 
 
-def _suggestion(name: str, counts: str | None) -> str:
+def _suggestion(name: str, flocks_argument: str | None) -> str:
     """Return a suggestion for an unknown option."""
     if name in ("max_cycles", "max_steps", "max_episode_steps", "horizon", "time_limit"):
         return "an episode lasts 'episode_s' seconds, with 'control_hz' steps in each"
     if name not in ("num_envs", "num_flocks", "n_envs", "num_workers"):
         return hint(name, NAMES)
-    if counts is None:
+    if flocks_argument is None:
         return "this is one flock; gymnasium.make_vec(id, num_envs=...) makes many"
-    return f"the number of flocks is {counts!r} here"
+    return f"the number of flocks is {flocks_argument!r} here"
 
 
 def _as_dictionaries(value: object) -> object:

@@ -96,7 +96,7 @@ class LeadersVectorEnv(
     ) -> None:
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         num_envs = at_least_one(num_envs, "num_envs")
-        parsed = EnvOptions.parse(options, takes_function=True, counts="num_envs")
+        parsed = EnvOptions.parse(options, takes_function=True, flocks_argument="num_envs")
         if parsed.own_reward is not None and self.autoreset_mode == AutoresetMode.SAME_STEP:
             raise ParameterError(
                 "reward = a function is not accepted with autoreset_mode 'same_step': "

@@ -101,7 +101,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         num_flocks = at_least_one(num_flocks, "num_flocks")
         counts = None if n_leaders is None else _leader_counts(n_leaders)
         options = {**options, "n_leaders": max(counts)} if counts else options
-        parsed = EnvOptions.parse(options, takes_function=True, counts="num_flocks")
+        parsed = EnvOptions.parse(options, takes_function=True, flocks_argument="num_flocks")
         counts = counts or [parsed.parameters.n_leaders]
         leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
         # Flocks start again here, once their rewards are known.
