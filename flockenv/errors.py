@@ -24,8 +24,8 @@ __all__ = [
 class UnknownOptionError(ParameterError, TypeError):
     """An environment was given a keyword argument that is not one of its options.
 
-    It is a `TypeError`, too, because libraries try optional arguments and drop those that raise one
-    (TorchRL's ``GymEnv`` tries ``frameskip``).
+    It is a `TypeError`, too, because libraries try optional arguments and drop those that raise a
+    `TypeError` (TorchRL's ``GymEnv`` tries ``frameskip``).
     """
 
 

@@ -27,14 +27,16 @@ STATES = np.array(_core.COLLECTIVE_STATES)
 class Quantity:
     """An entry of the table of quantities."""
 
-    #: Name in recordings and tables; and a few words for labels.
+    #: Name in recordings and tables.
     name: str
+    #: A few words for axes and legends.
     label: str
     symbol: str
     #: Empty for none.
     unit: str
-    #: Its meaning, with its sign; and the paper's definition.
+    #: Meaning, with its sign.
     meaning: str
+    #: The paper's equation, or another definition.
     source: str
     #: Least and greatest value, or None.
     range: tuple[float, float] | None

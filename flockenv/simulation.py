@@ -75,9 +75,9 @@ def simulate(
         observes what it was trained on. A dictionary has one of these for each of ``"leader_0"`` to
         ``"leader_{k-1}"``; the law then acts at every control step.
     control_hz
-        How many times per second policies decide. None: a model as often as in its training, if its
-        observation space says so, and others 10 times. Policies of a dictionary may then decide at
-        different rates; the rudder of a slower one is held.
+        Decisions per second of every policy. None: a policy's own rate, such as that of a model's
+        training, or 10 if it has none. Policies of a dictionary may then decide at different rates;
+        the rudder of a slower policy is held.
     dtype
         float64, or float32 for half the size: it rounds the stored pose and velocity, not the run.
     contacts
@@ -117,9 +117,10 @@ def simulate(
         For arguments out of range, unknown names of policies, pools that a policy was not made for,
         policies whose actions are not rudders, policies without leaders to steer, boats that do not
         fit the pool, a start that this flock cannot have, a noise_seed without a snapshot, a
-        schedule that changes n_boats or n_leaders, a schedule that no sample shows, quantities of
-        another shape or with a name that is taken, rudders that are NaN, and a recording of more
-        than 16 GiB. An error during the run has an attribute ``recording``: the run until then.
+        schedule that changes n_boats or n_leaders, a schedule without a change before the last
+        sample, quantities of another shape or with a name that is taken, rudders that are NaN, and
+        a recording of more than 16 GiB. An error during the run has an attribute ``recording``: the
+        run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
@@ -159,7 +160,7 @@ def _origin(
     noise_seed: int | None,
     control_hz: float | None,
 ) -> dict[str, object]:
-    """Return the fields that tell apart runs with the same parameters, seed and policy."""
+    """Return the fields in which runs with the same parameters, seed and policy may differ."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
         "control_hz": None if control_hz is None else float(control_hz),
@@ -224,8 +225,8 @@ def _steering(leaders: Leaders, control_hz: float | None) -> dict[str, object]:
 def _parse_schedule(parameters: FlockParameters, schedule: Schedule, seed: int) -> Changes:
     """Return a schedule's changes in order of time, after checking them.
 
-    A change that leaves all parameters but the target is the target, and any other one is all
-    parameters.
+    An entry that changes the target alone becomes that target. Any other entry becomes the full
+    parameters from then on.
     """
     entries = [(*_parse_entry(entry), entry) for entry in items(schedule, "schedule")]
     changes: Changes = []

@@ -145,7 +145,7 @@ class Flock(HintsAtNames):
 
     @property
     def statistics(self) -> Statistics:
-        """Sums and worst cases of the substeps since the flock was made."""
+        """Sums and worst cases of the substeps since the flock was made or reset."""
         return Statistics(**self._in_core.statistics)
 
     def set_state(
@@ -220,11 +220,12 @@ class Flock(HintsAtNames):
         self._in_core.advance(seconds, rudder)
 
     def advance_with_error(self, seconds: float, rudder: ArrayLike | None = None) -> float:
-        """Advance as `advance` does, and return the error in cm that the finite dt_s made.
+        """Advance as `advance` does, and return the error in cm that the finite dt_s caused.
 
         The error is the distance from a run with substeps of dt_s / 8 from the same start, with the
         same noise: the root mean square over boats of ``|Δx|² + ρ²Δα²``, with the radius of
-        gyration ρ. It takes nine times as long. Errors of successive advances do not add up.
+        gyration ρ. The call takes nine times as long as `advance`. The error of two advances
+        together is not the sum of their errors.
 
         Parameters
         ----------

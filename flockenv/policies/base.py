@@ -40,7 +40,7 @@ class LeaderPolicy(Protocol):
         observation
             Shape (..., m * observation size): m leaders' observations one after another in the
             last axis, as the environments give them. The policies of this package also take a
-            dictionary of such arrays by agent, and then return one.
+            dictionary of such arrays by agent, and then return a dictionary.
         state, episode_start
             The state that the last call returned, and shape (flocks,): whether an episode has just
             started. Both matter to recurrent policies only.
@@ -50,7 +50,7 @@ class LeaderPolicy(Protocol):
         action : numpy.ndarray or dict
             Shape (..., m), in [-1, 1], and float32 from the policies of this package.
         state
-            The next state of a recurrent policy; others return the one that was given.
+            The next state of a recurrent policy; other policies return `state` unchanged.
 
         Raises
         ------
@@ -230,7 +230,7 @@ def observation_array(observation: ArrayLike) -> NDArray[np.float32]:
 
 
 def leaders_in_last_axis(observation: NDArray[Any], size: int) -> int:
-    """Return how many leaders' observations, of this size each, the last axis holds."""
+    """Return how many leaders' observations, each of `size` numbers, the last axis holds."""
     width = observation.shape[-1] if observation.ndim else 0
     if width == 0 or width % size != 0:
         raise ParameterError(

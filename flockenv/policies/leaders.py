@@ -36,7 +36,7 @@ class Leaders:
     assignments
         Each policy with its leaders; together these are all leaders.
     is_per_leader
-        Whether a policy was given for each leader.
+        Whether the policies were given leader by leader.
     """
 
     assignments: tuple[Assignment, ...]

@@ -22,7 +22,7 @@ _ACTIVATIONS: Mapping[str, tuple[str, Mapping[str, object]]] = {
 }
 _SKIPPED = ("Identity", "Dropout", "NormalParamExtractor")
 _ACCEPTED = (
-    "linear layers with biases, after each of them a LayerNorm or none, and then one of "
+    "linear layers with biases, each followed by a LayerNorm or none, and then by one of "
     f"{', '.join(_ACTIVATIONS)} or none"
 )
 #: Number of observations on which a module is tried, and the largest accepted difference from the
