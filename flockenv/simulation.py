@@ -117,10 +117,10 @@ def simulate(
         For arguments out of range, unknown names of policies, pools that a policy was not made for,
         policies whose actions are not rudders, policies without leaders to steer, boats that do not
         fit the pool, a start that this flock cannot have, a noise_seed without a snapshot, a
-        schedule that changes n_boats or n_leaders, a schedule without a change before the last
-        sample, quantities of another shape or with a name that is taken, rudders that are NaN, and
-        a recording of more than 16 GiB. An error during the run has an attribute ``recording``: the
-        run until then.
+        schedule that changes n_boats or n_leaders, a schedule whose first change is not before the
+        last sample, quantities of another shape or with a name that is taken, rudders that are NaN,
+        and a recording of more than 16 GiB. An error during the run has an attribute ``recording``:
+        the run until then.
     OSError
         If a policy's file cannot be opened.
     TypeError
