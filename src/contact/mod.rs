@@ -11,6 +11,7 @@ mod contact;
 mod depenetration;
 mod detection;
 mod island;
+mod known_gaps;
 mod near_obstacles;
 mod passivity;
 mod predicted_poses;
