@@ -3,11 +3,12 @@
 
 mod biases;
 mod relinearization;
+mod solution;
 
 use super::depenetration::{
     Depenetration, PENETRATION_SLOP, orbital_angular_momentum, smallest_gap,
 };
-use super::passivity::{self, Passivity};
+use super::passivity::Passivity;
 use super::predicted_poses::PredictedPoses;
 use super::skipped_contacts::SkippedContacts;
 use super::solver::ContactSolver;
@@ -15,42 +16,9 @@ use super::warm_start::{CachedImpulse, WarmStartCache};
 use super::{Contact, ContactDetector, ContactProblem, InverseInertia, Statistics};
 use crate::clock::{seconds, ticks};
 use crate::geometry::{HullPose, Pose, Vec2, Velocity};
-use crate::parameters::{FlockParameters, Scheme, Solver};
+use crate::parameters::{FlockParameters, Scheme};
 use relinearization::Relinearization;
-
-/// Reason why a substep was not taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum NotTaken {
-    /// It leaves overlaps, would drive boats, or moves a boat too far: a shorter one has to be tried. Deep overlaps may
-    /// have been undone, but no time has passed.
-    TooLong,
-    /// Its contacts are too much work, and a shorter substep would not help; the motion must be discarded.
-    Exhausted,
-}
-
-/// Reasons for which a substep may be shortened.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Divisibility {
-    /// Contacts would drive boats, or are too much work.
-    pub if_driven: bool,
-    /// Overlaps are left.
-    pub if_overlapping: bool,
-}
-
-/// Outcome of a solve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Solution {
-    /// No gap closes beyond the tolerance.
-    Solved,
-    /// The work budget was spent before a solution was found.
-    Exhausted,
-    /// Contacts overlap at the substep's end by more than the tolerance.
-    Overlapping,
-    /// Skipped contacts overlap at the substep's end by more than the tolerance.
-    Closing,
-    /// Contacts would add energy to boats; the biases are now such that they do not.
-    Driven,
-}
+pub(crate) use solution::{Divisibility, NotTaken};
 
 /// The motion of a substep before its contacts are solved.
 #[derive(Debug, Clone, Copy)]
@@ -242,175 +210,6 @@ impl ContactResolver {
             .predict(poses, velocities, dt, self.detector.hull());
         self.predicted
             .overlaps(&self.detector, &self.contacts, allowed)
-    }
-
-    /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`.
-    ///
-    /// # Errors
-    /// [`NotTaken`]; nothing but the statistics has changed then.
-    pub(crate) fn resolve(
-        &mut self,
-        motion: &Motion,
-        divisibility: Divisibility,
-        statistics: &mut Statistics,
-    ) -> Result<(), NotTaken> {
-        self.solver.reserve_budget(divisibility.if_driven);
-        if self.solver.is_exhausted() {
-            return Err(NotTaken::Exhausted);
-        }
-        let mut is_unsolved = self.settle(motion, divisibility, statistics)? || self.is_deep;
-        let is_promised = self.relinearization.is_on() && motion.before.is_some();
-        if is_promised && !is_unsolved {
-            let tolerance = self.relinearization.tolerance;
-            is_unsolved =
-                self.predicted
-                    .overlaps_unseen(&mut self.detector, &self.contacts, tolerance);
-            if is_unsolved && divisibility.if_overlapping {
-                return Err(NotTaken::TooLong);
-            }
-        }
-        let velocities = &self.solver.velocities;
-        if self.detector.moves_too_far(velocities, motion.dt) {
-            return Err(NotTaken::TooLong);
-        }
-        statistics.unsolved += u64::from(is_unsolved);
-        let impulses = self.solver.impulses.iter();
-        let entries = self.contacts.iter().zip(impulses);
-        self.warm_start_cache
-            .replace(entries.map(|(contact, &impulse)| CachedImpulse::new(contact, impulse)));
-        Ok(())
-    }
-
-    /// Solves until a solution passes the checks; returns whether it leaves overlaps. If a check fails, skipped
-    /// contacts are restored, or the caller takes a shorter substep.
-    fn settle(
-        &mut self,
-        motion: &Motion,
-        divisibility: Divisibility,
-        statistics: &mut Statistics,
-    ) -> Result<bool, NotTaken> {
-        loop {
-            match self.solve_and_check(motion, statistics) {
-                Solution::Solved => return Ok(false),
-                Solution::Closing => self.restore_skipped(statistics),
-                Solution::Exhausted | Solution::Driven if divisibility.if_driven => {
-                    return Err(NotTaken::TooLong);
-                }
-                Solution::Overlapping if divisibility.if_overlapping => {
-                    return Err(NotTaken::TooLong);
-                }
-                Solution::Exhausted => return Err(NotTaken::Exhausted),
-                // With other biases boats move elsewhere, and there skipped contacts were not checked.
-                Solution::Driven if !self.skipped.is_empty() => self.restore_skipped(statistics),
-                Solution::Driven => {
-                    if self.solve(None, motion, statistics) == Solution::Exhausted {
-                        return Err(NotTaken::Exhausted);
-                    }
-                    let is_overlapping = self.leaves_overlaps(motion);
-                    if is_overlapping && divisibility.if_overlapping {
-                        return Err(NotTaken::TooLong);
-                    }
-                    return Ok(is_overlapping);
-                }
-                Solution::Overlapping => return Ok(true),
-            }
-        }
-    }
-
-    /// Adds the skipped contacts to the problem again.
-    fn restore_skipped(&mut self, statistics: &mut Statistics) {
-        statistics.contacts += self.skipped.restore(&mut self.contacts);
-        self.warm_start();
-    }
-
-    /// Solves the contacts that are not skipped, and checks the solution: the gaps at the substep's end, the skipped
-    /// contacts, and the energy.
-    fn solve_and_check(&mut self, motion: &Motion, statistics: &mut Statistics) -> Solution {
-        self.fill_biases(motion);
-        self.solver.reset(motion.free.len(), &self.contacts);
-        let mut solution = self.solve(None, motion, statistics);
-        if solution == Solution::Overlapping && self.look_ahead_along_all(motion) {
-            self.warm_start();
-            self.solver.reset(motion.free.len(), &self.contacts);
-            solution = self.solve(None, motion, statistics);
-        }
-        if self.relinearization.is_on() && solution != Solution::Exhausted {
-            solution = self.relinearize(motion, solution, statistics);
-        }
-        if solution == Solution::Exhausted {
-            return solution;
-        }
-        let tolerance = self.relinearization.tolerance;
-        let (predicted, detector) = (&self.predicted, &self.detector);
-        let velocities = &self.solver.velocities;
-        let skipped = &self.skipped;
-        if !skipped.stay_open(predicted, detector, velocities, motion.dt, tolerance) {
-            return Solution::Closing;
-        }
-        if self.stop_driving(motion) {
-            return Solution::Driven;
-        }
-        solution
-    }
-
-    /// Finds the islands that contacts would drive or turn back, and computes their velocity biases from the present
-    /// gaps alone. Returns whether there are such islands.
-    fn stop_driving(&mut self, motion: &Motion) -> bool {
-        let bias = self.bias(motion);
-        let problem = motion.problem(&self.contacts, &self.biases);
-        if !passivity::may_drive(&problem, &self.solver.impulses, bias) {
-            return false;
-        }
-        let has_obstacles = !self.detector.obstacles.obstacles.is_empty();
-        let passivity = &mut self.passivity;
-        let driven = passivity.driven(&self.solver, &problem, bias, has_obstacles);
-        for &k in &driven {
-            self.biases[k] = bias.of_gap(&self.contacts[k].gap);
-        }
-        !driven.is_empty()
-    }
-
-    /// Solves some islands again, or all: [`Solution::Solved`], [`Solution::Exhausted`], or [`Solution::Overlapping`]
-    /// where the constraints contradict each other. Then the velocities are those of the nearest problem that has a
-    /// solution.
-    fn solve(
-        &mut self,
-        again: Option<&[u32]>,
-        motion: &Motion,
-        statistics: &mut Statistics,
-    ) -> Solution {
-        self.predicted.set_outdated();
-        let Self {
-            contacts,
-            biases,
-            solver,
-            ..
-        } = self;
-        let problem = motion.problem(contacts, biases);
-        let report = match again {
-            Some(islands) => solver.solve_again(&problem, islands),
-            None => solver.solve(&problem),
-        };
-        if solver.is_exhausted() {
-            return Solution::Exhausted;
-        }
-        statistics.count(&report);
-        if report.converged {
-            return Solution::Solved;
-        }
-        // Overlaps that cannot all close within the substep contradict each other. Without them, rest
-        // satisfies every constraint, and impulses stay bounded.
-        biases.iter_mut().for_each(|bias| *bias = bias.max(0.0));
-        let problem = motion.problem(contacts, biases);
-        let is_solved = solver.solve(&problem).converged;
-        if !is_solved && !solver.is_exhausted() {
-            solver.impulses.fill(0.0);
-            solver.solve_as(Solver::GaussSeidel, &problem);
-        }
-        if solver.is_exhausted() {
-            return Solution::Exhausted;
-        }
-        Solution::Overlapping
     }
 
     /// Moves the boats to the end of the solved substep, if the prediction is up to date.

@@ -1,6 +1,7 @@
 //! Solves again if gaps are curved functions of the motion, until no gap overlaps at the substep's end.
 
-use super::{ContactResolver, Motion, Solution};
+use super::solution::Solution;
+use super::{ContactResolver, Motion};
 use crate::contact::Statistics;
 use crate::parameters::FlockParameters;
 use std::hint::select_unpredictable;
