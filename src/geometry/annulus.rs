@@ -7,7 +7,7 @@ use super::{Gap, Hull, HullPose, cross, turned_left};
 pub fn outer_wall_gap(boat: &HullPose, side: f64, hull: Hull, outer_radius: f64) -> Gap {
     let end = boat.end(side, hull.half_length);
     let distance = end.norm_squared().sqrt();
-    // At the very center all directions are equal, and the gap is the whole radius.
+    // At the pool's center every direction leads to the wall equally; the normal is along the axis.
     let normal = if distance > 0.0 {
         end * (-1.0 / distance)
     } else {

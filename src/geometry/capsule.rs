@@ -35,7 +35,8 @@ impl Hull {
         self.radius + self.half_length
     }
 
-    /// Upper bound of the speed of all points of the hull at this velocity, in cm/s.
+    /// Upper bound in cm/s of the speed of the core's points at this velocity. No gap of the hull changes faster, since
+    /// the hull is its core widened by a fixed radius.
     #[inline]
     pub(crate) fn speed(&self, velocity: &Velocity) -> f64 {
         velocity.linear.norm_squared().sqrt() + self.half_length * velocity.angular.abs()
@@ -46,28 +47,28 @@ impl Hull {
         (std::f64::consts::PI * self.radius + 4.0 * self.half_length) * self.radius
     }
 
-    /// Radius of gyration of a hull of even mass, in cm: r/√2 for a disc.
+    /// Radius of gyration of a hull of uniform density, in cm: r/√2 for a disc.
     pub fn gyration_radius(&self) -> f64 {
         let (r, h) = (self.radius, self.half_length);
-        // Two half-discs, moved apart by 2h, and the rectangle between them.
+        // Two half-discs, separated by 2h, and the rectangle between them.
         let discs = std::f64::consts::PI * (0.5 * r * r + h * h) + 8.0 / 3.0 * h * r;
         let rectangle = 4.0 / 3.0 * h * (h * h + r * r) / r;
         (r * r * (discs + rectangle) / self.area()).sqrt()
     }
 }
 
-/// The radius of gyration in cm after a hull is resized: its ratio to the radius of gyration of a hull of even mass
-/// stays the same. For sizes that are not accepted it is unchanged.
+/// Radius of gyration in cm after the hull is resized. It scales with that of a hull of uniform density. If the new size
+/// is invalid, the radius of gyration stays as it is.
 pub fn resized_gyration_radius_cm(
     parameters: &FlockParameters,
     boat_radius_cm: f64,
     boat_shape: f64,
 ) -> f64 {
-    let resized = Hull {
+    let resized_hull = Hull {
         radius: boat_radius_cm,
         half_length: boat_shape * boat_radius_cm,
     };
-    let ratio = resized.gyration_radius() / Hull::new(parameters).gyration_radius();
+    let ratio = resized_hull.gyration_radius() / Hull::new(parameters).gyration_radius();
     if ratio.is_finite() && ratio > 0.0 {
         ratio * parameters.gyration_radius_cm
     } else {
@@ -95,29 +96,30 @@ impl HullPose {
         }
     }
 
-    /// Replaces the content of `into` by the hulls at these poses, bit for bit as from [`Self::new`].
-    pub fn replace_all(into: &mut Vec<Self>, poses: &[Pose]) {
-        into.clear();
-        let (fours, rest) = poses.as_chunks::<4>();
-        for four in fours {
-            let (sin, cos) = sin_cos(f64x4::new(four.each_ref().map(|pose| pose.heading)));
+    /// Replaces `hulls` by the hulls at these poses, equal to the bit to those of [`Self::new`].
+    pub fn replace_all(hulls: &mut Vec<Self>, poses: &[Pose]) {
+        hulls.clear();
+        let (groups, remaining) = poses.as_chunks::<4>();
+        for group in groups {
+            let (sin, cos) = sin_cos(f64x4::new(group.each_ref().map(|pose| pose.heading)));
             let (sin, cos) = (sin.to_array(), cos.to_array());
-            into.extend_from_slice(&std::array::from_fn::<_, 4, _>(|lane| Self {
-                center: four[lane].position,
+            hulls.extend_from_slice(&std::array::from_fn::<_, 4, _>(|lane| Self {
+                center: group[lane].position,
                 axis: Vec2::new(cos[lane], sin[lane]),
             }));
         }
-        into.extend(rest.iter().map(Self::new));
+        hulls.extend(remaining.iter().map(Self::new));
     }
 
-    /// Replaces the hulls of some boats by the hulls at their poses, bit for bit as from [`Self::new`].
+    /// Replaces the hulls of the listed boats by those at their poses, equal to the bit to those of [`Self::new`].
     pub(crate) fn replace_some(hulls: &mut [Self], poses: &[Pose], boats: &[u32]) {
-        for four in boats.chunks(4) {
-            let boat = |lane: usize| four[lane.min(four.len() - 1)] as usize;
-            let headings = std::array::from_fn(|lane| poses[boat(lane)].heading);
+        for group in boats.chunks(4) {
+            // If the last group is incomplete, its last boat fills the other lanes.
+            let boat_in_lane = |lane: usize| group[lane.min(group.len() - 1)] as usize;
+            let headings = std::array::from_fn(|lane| poses[boat_in_lane(lane)].heading);
             let (sin, cos) = sin_cos(f64x4::new(headings));
             let (sin, cos) = (sin.to_array(), cos.to_array());
-            for (lane, &boat) in four.iter().enumerate() {
+            for (lane, &boat) in group.iter().enumerate() {
                 hulls[boat as usize] = Self {
                     center: poses[boat as usize].position,
                     axis: Vec2::new(cos[lane], sin[lane]),
@@ -133,16 +135,17 @@ impl HullPose {
     }
 }
 
-/// Sine and cosine to some 1e-16, the same on every machine: computed without the system's mathematical library, and
-/// without branches. The polynomials on [−π/4, π/4] are those of Cephes (Moshier 1989).
+/// Sine and cosine with errors of about 1e-16. They are the same on every machine, since they do not use the system's
+/// mathematical library. The polynomials on [−π/4, π/4] are those of Cephes (Moshier 1989).
 #[inline]
 fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let number = f64x4::splat;
-    // Adding this rounds to a whole number, which is then in the lowest bits. Subtracting it again gives that number.
+    // Adding this constant rounds to an integer, which is then in the lowest bits. Subtracting the constant gives that
+    // integer as a float.
     let rounding = number(6_755_399_441_055_744.0);
     let shifted = angle * number(std::f64::consts::FRAC_2_PI) + rounding;
     let quarters = shifted - rounding;
-    // π/2 as a sum of parts whose multiples are exact.
+    // π/2 is split into parts whose integer multiples are exact.
     let x = angle
         - quarters * number(1.570_796_310_901_641_8)
         - quarters * number(1.589_325_471_229_585_7e-8)
@@ -163,12 +166,12 @@ fn sin_cos(angle: f64x4) -> (f64x4, f64x4) {
     let cos = cos * z + number(4.166_666_666_666_659_5e-2);
     let cos = number(1.0) - number(0.5) * z + z * z * cos;
     // Odd quarters swap sine and cosine. The second and third flip the sine's sign, the first and second the cosine's.
-    let turn = shifted.to_bits();
+    let quarter_bits = shifted.to_bits();
     let (sin, cos) = (sin.to_bits(), cos.to_bits());
     let (one, two) = (u64x4::splat(1), u64x4::splat(2));
-    let swap = (u64x4::splat(0) - (turn & one)) & (sin ^ cos);
-    let sin_sign = (turn & two) << 62_u32;
-    let cos_sign = ((turn + one) & two) << 62_u32;
+    let swap = (u64x4::splat(0) - (quarter_bits & one)) & (sin ^ cos);
+    let sin_sign = (quarter_bits & two) << 62_u32;
+    let cos_sign = ((quarter_bits + one) & two) << 62_u32;
     (
         f64x4::from_bits(sin ^ swap ^ sin_sign),
         f64x4::from_bits(cos ^ swap ^ cos_sign),

@@ -1,4 +1,4 @@
-//! The second derivative of a gap: how it curves while its bodies keep their velocities.
+//! The second derivative of a gap in time, while its bodies keep their velocities.
 
 use super::{Gap, Hull, HullPose, Velocity, turned_left};
 
@@ -23,25 +23,25 @@ impl Gap {
         second: Option<Moving>,
     ) -> f64 {
         let tangent = turned_left(self.normal);
-        // The share of one side in the speed along the tangent, and in the acceleration along the normal.
-        let share = |(pose, velocity): Moving, along: f64| {
-            let turn = velocity.angular;
+        // What one body adds to the speed along the tangent, and to the acceleration along the normal.
+        let contribution = |(pose, velocity): Moving, along: f64| {
+            let spin = velocity.angular;
             let offset = along * pose.axis.dot(&self.normal);
-            let slide = tangent.dot(&velocity.linear) + turn * offset;
-            (slide, -turn * turn * offset)
+            let slide = tangent.dot(&velocity.linear) + spin * offset;
+            (slide, -spin * spin * offset)
         };
-        let (mut slide, mut acceleration) = share(first, self.along);
+        let (mut slide, mut acceleration) = contribution(first, self.along);
         let is_flank = |along: f64| along.abs() < hull.half_length;
-        let mut normal_turn = is_flank(self.along).then_some(first.1.angular);
+        let mut flank_spin = is_flank(self.along).then_some(first.1.angular);
         if let Some(second) = second {
-            let (its_slide, its_acceleration) = share(second, self.along_j);
-            slide -= its_slide;
-            acceleration -= its_acceleration;
+            let (second_slide, second_acceleration) = contribution(second, self.along_j);
+            slide -= second_slide;
+            acceleration -= second_acceleration;
             if is_flank(self.along_j) {
-                normal_turn = Some(second.1.angular);
+                flank_spin = Some(second.1.angular);
             }
         }
-        let normal_turn = normal_turn.unwrap_or(slide / distance);
-        acceleration + normal_turn * (2.0 * slide - normal_turn * distance)
+        let normal_spin = flank_spin.unwrap_or(slide / distance);
+        acceleration + normal_spin * (2.0 * slide - normal_spin * distance)
     }
 }

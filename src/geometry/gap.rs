@@ -16,7 +16,7 @@ pub struct Gap {
     pub gap: f64,
     /// Unit vector along which the first body is pushed.
     pub normal: Vec2,
-    /// Where the first hull is pushed: the coordinate along its core, from its center to the bow, in cm.
+    /// The coordinate of the touch along the first hull's core, in cm: 0 at its center, positive towards the bow.
     pub along: f64,
     /// The coordinate of the touch along the second hull's core, in cm; 0 at a round wall.
     pub along_j: f64,
@@ -24,8 +24,8 @@ pub struct Gap {
     pub arm_i: f64,
     /// Lever arm of the normal about the second body's center in cm; 0 for a wall.
     pub arm_j: f64,
-    /// Second derivative of the gap by the first body's heading in cm/rad², where it matters: a flank
-    /// on the inner wall; 0 elsewhere.
+    /// Second derivative of the gap by the first body's heading in cm/rad², if its flank touches the inner wall, a disc
+    /// or the end of a straight wall; 0 otherwise.
     pub bend: f64,
 }
 
@@ -36,7 +36,7 @@ pub enum Feature {
     Stern,
     /// Towards the bow.
     Bow,
-    /// At the crossing with another core; the gap is how far they must be moved apart.
+    /// The cores cross; the hulls must move apart by −gap.
     Crossed,
     /// Anywhere along the hull: a disc or the inner wall touches it only once.
     Flank,
@@ -63,53 +63,54 @@ const TOUCHING_CORES: f64 = 1e-9;
 /// A hull with its pose.
 pub type Placed<'a> = (&'a HullPose, Hull);
 
-/// Two hulls, and numbers that their gaps share.
+/// Two hulls, with numbers from which both of their gaps follow.
 struct Pair<'a> {
     a: &'a HullPose,
     b: &'a HullPose,
     hull_a: Hull,
     hull_b: Hull,
-    /// From the first center to the second, and its components along both axes.
-    apart: Vec2,
-    apart_a: f64,
-    apart_b: f64,
+    /// From the first center to the second.
+    offset: Vec2,
+    /// Components of `offset` along both axes.
+    offset_along_a: f64,
+    offset_along_b: f64,
     /// Cosine of the angle between the axes.
     cosine: f64,
 }
 
-/// Two points of two cores.
+/// A point of each core, between which the gap is measured.
 #[derive(Clone, Copy)]
 struct Touch {
     /// Coordinates along the cores, from their centers.
     along_a: f64,
     along_b: f64,
     /// From the second core's point to the first's.
-    between: Vec2,
+    separation: Vec2,
 }
 
 impl<'a> Pair<'a> {
     #[inline]
     fn new((a, hull_a): Placed<'a>, (b, hull_b): Placed<'a>) -> Self {
-        let apart = b.center - a.center;
+        let offset = b.center - a.center;
         Self {
             a,
             b,
             hull_a,
             hull_b,
-            apart,
-            apart_a: apart.dot(&a.axis),
-            apart_b: apart.dot(&b.axis),
+            offset,
+            offset_along_a: offset.dot(&a.axis),
+            offset_along_b: offset.dot(&b.axis),
             cosine: a.axis.dot(&b.axis),
         }
     }
 
-    /// The gap at two points; `None` if they coincide.
+    /// The gap of a touch; `None` if its two points coincide.
     fn gap(&self, touch: &Touch) -> Option<Gap> {
-        let distance = touch.between.norm_squared().sqrt();
+        let distance = touch.separation.norm_squared().sqrt();
         if distance < TOUCHING_CORES {
             return None;
         }
-        let normal = touch.between * (1.0 / distance);
+        let normal = touch.separation * (1.0 / distance);
         Some(Gap {
             gap: distance - (self.hull_a.radius + self.hull_b.radius),
             normal,
@@ -126,78 +127,79 @@ impl<'a> Pair<'a> {
         Touch {
             along_a,
             along_b,
-            between: self.a.axis * along_a - self.b.axis * along_b - self.apart,
+            separation: self.a.axis * along_a - self.b.axis * along_b - self.offset,
         }
     }
 
-    /// Nearest points for an end of hull a. If two ends face each other, both describe the same gap. With
-    /// `only_nearest` such an end is returned only if neither end could slide nearer.
+    /// The touch of an end of core a with the nearest point of core b. With `only_nearest` it is `None` if that point is
+    /// an end of b to which another point of core a is nearer.
     fn end_of_a(&self, side: f64, only_nearest: bool) -> Option<Touch> {
-        let (h, other) = (self.hull_a.half_length, self.hull_b.half_length);
-        let along_b = side * h * self.cosine - self.apart_b;
-        let nearest = along_b.clamp(-other, other);
+        let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
+        let along_b = side * h_a * self.cosine - self.offset_along_b;
+        let nearest = along_b.clamp(-h_b, h_b);
         if only_nearest
-            && along_b.abs() > other
-            && (self.apart_a + nearest * self.cosine) * side < h
+            && along_b.abs() > h_b
+            && (self.offset_along_a + nearest * self.cosine) * side < h_a
         {
             return None;
         }
-        Some(self.touch(side * h, nearest))
+        Some(self.touch(side * h_a, nearest))
     }
 
-    /// Nearest points for an end of hull b, if it faces the side of hull a.
+    /// The touch of an end of core b with the flank of hull a; `None` if the end lies past an end of core a.
     fn end_of_b(&self, side: f64) -> Option<Touch> {
-        let h = self.hull_b.half_length;
-        let along_a = self.apart_a + side * h * self.cosine;
-        (along_a.abs() <= self.hull_a.half_length).then(|| self.touch(along_a, side * h))
+        let h_b = self.hull_b.half_length;
+        let along_a = self.offset_along_a + side * h_b * self.cosine;
+        (along_a.abs() <= self.hull_a.half_length).then(|| self.touch(along_a, side * h_b))
     }
 
-    /// The nearest points of the group of ends on one side of hull a.
+    /// The nearer touch of the two ends, one of each hull, on one side of hull a; `None` if neither faces the other core.
     // Inlined into its callers: otherwise touches would pass through memory.
     #[inline(always)]
     fn nearest_towards(&self, side: f64) -> Option<Touch> {
-        let follows = if self.cosine >= 0.0 { side } else { -side };
-        match (self.end_of_a(side, true), self.end_of_b(follows)) {
+        let side_b = if self.cosine >= 0.0 { side } else { -side };
+        match (self.end_of_a(side, true), self.end_of_b(side_b)) {
             (Some(a), Some(b)) => {
-                let is_b_nearer = b.between.norm_squared() < a.between.norm_squared();
+                let is_b_nearer = b.separation.norm_squared() < a.separation.norm_squared();
                 Some(if is_b_nearer { b } else { a })
             }
             (at_a, at_b) => at_a.or(at_b),
         }
     }
 
-    /// The squared distance of the points of [`Self::nearest_towards`], infinite if no end faces the other core.
+    /// The squared distance of the cores at [`Self::nearest_towards`], infinite if neither end faces the other core.
     #[inline]
-    fn square_towards(&self, side: f64) -> f64 {
-        let square = |touch: Touch| touch.between.norm_squared();
-        let follows = if self.cosine >= 0.0 { side } else { -side };
-        let of_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
-        let of_b = self.end_of_b(follows).map_or(f64::INFINITY, square);
-        smaller(of_a, of_b)
+    fn squared_distance_towards(&self, side: f64) -> f64 {
+        let square = |touch: Touch| touch.separation.norm_squared();
+        let side_b = if self.cosine >= 0.0 { side } else { -side };
+        let square_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
+        let square_b = self.end_of_b(side_b).map_or(f64::INFINITY, square);
+        smaller(square_a, square_b)
     }
 
-    /// Whether the cores cross, or come so near (squared distances of both groups of ends) that it makes no difference.
+    /// Whether the cores cross, or are too near for a normal. `squares` are the squared distances of the cores at both
+    /// groups of ends.
     #[inline]
     fn are_crossed(&self, squares: [f64; 2]) -> bool {
         let lengths = self.hull_a.half_length + self.hull_b.half_length;
         smaller(squares[0], squares[1]) < TOUCHING_CORES * TOUCHING_CORES
-            || (self.apart.norm_squared() <= lengths * lengths && self.cores_cross())
+            || (self.offset.norm_squared() <= lengths * lengths && self.cores_cross())
     }
 
     fn cores_cross(&self) -> bool {
         let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
         let sine = cross(self.a.axis, self.b.axis);
-        let s = cross(self.apart, self.b.axis);
-        let t = cross(self.apart, self.a.axis);
-        // a + s/sine·axis_a = b + t/sine·axis_b with both coordinates within the cores.
+        let s = cross(self.offset, self.b.axis);
+        let t = cross(self.offset, self.a.axis);
+        // The lines meet at a + s/sine·axis_a = b + t/sine·axis_b. The cores do if that point lies within both.
         sine != 0.0 && s.abs() <= h_a * sine.abs() && t.abs() <= h_b * sine.abs()
     }
 }
 
-/// The contacts of two hulls with a gap below `margin`: none, one or two, handed to `found`. The second hull is of any
-/// length above 0 or of the first's shape.
+/// Calls `visit` with each contact of two hulls whose gap is below `margin`: at most two. The second hull must have the
+/// shape of the first, or a core of any length above 0.
 #[inline]
-pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnMut(Feature, Gap)) {
+pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut visit: impl FnMut(Feature, Gap)) {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let reach = hull_a.reach() + hull_b.reach() + margin;
     let distance_squared = (b.center - a.center).norm_squared();
@@ -207,7 +209,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
     let pair = Pair::new(first, second);
     let lengths = hull_a.half_length + hull_b.half_length;
     if distance_squared <= lengths * lengths && pair.cores_cross() {
-        found(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
+        visit(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
         return;
     }
     let farthest = hull_a.radius + hull_b.radius + margin;
@@ -215,13 +217,13 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
         let Some(touch) = pair.nearest_towards(side) else {
             continue;
         };
-        if touch.between.norm_squared() >= farthest * farthest {
+        if touch.separation.norm_squared() >= farthest * farthest {
             continue;
         }
         match pair.gap(&touch) {
-            Some(gap) => found(feature, gap),
+            Some(gap) => visit(feature, gap),
             None => {
-                found(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
+                visit(Feature::Crossed, crossed_gap(a, hull_a, b, hull_b));
                 return;
             }
         }
@@ -231,7 +233,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut found: impl FnM
     }
 }
 
-/// The gap of a known contact at other poses of its hulls.
+/// The gap of the contact at `feature` of the first hull, whatever its size.
 #[inline]
 pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let ((a, hull_a), (b, hull_b)) = (first, second);
@@ -239,7 +241,7 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let Some(side) = feature.side() else {
         return crossed_gap(a, hull_a, b, hull_b);
     };
-    // If no end of the group faces the other hull any more, use the distance of the hull's own end.
+    // If no end of the group faces the other hull any more, use the distance of the first hull's end.
     let touch = pair
         .nearest_towards(side)
         .or_else(|| pair.end_of_a(side, false));
@@ -281,7 +283,7 @@ pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     let pair = Pair::new(first, second);
     let touches = [-1.0, 1.0].map(|side| pair.nearest_towards(side));
     let squares =
-        touches.map(|touch| touch.map_or(f64::INFINITY, |touch| touch.between.norm_squared()));
+        touches.map(|touch| touch.map_or(f64::INFINITY, |touch| touch.separation.norm_squared()));
     if pair.are_crossed(squares) {
         return [EndTouch::from(&crossed_gap(a, hull_a, b, hull_b)); 2];
     }
@@ -291,25 +293,27 @@ pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     })
 }
 
-/// The smaller gap of the two groups of ends, infinite if no end faces the other hull.
+/// The smaller gap of the two groups of ends in cm, infinite if no end faces the other hull.
 #[inline]
 pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
-    let squares = [-1.0, 1.0].map(|side| pair.square_towards(side));
+    let squares = [-1.0, 1.0].map(|side| pair.squared_distance_towards(side));
     if pair.are_crossed(squares) {
         return crossed_gap(a, hull_a, b, hull_b).gap;
     }
     smaller(squares[0], squares[1]).sqrt() - (hull_a.radius + hull_b.radius)
 }
 
-/// The gap of crossed cores: the least distance by which one core's end must be moved across the other's line, plus the
-/// distance that makes the hulls touch. Not inlined, because that would slow down gaps that are not crossed. The
-/// arguments are not tuples, so that they stay in registers: tuples would be stored for each pair, crossed or not.
+/// The gap of crossed cores, which is negative. Its depth is the least distance of an end of one core from the line of
+/// the other, plus both radii.
+// Not inlined, because that would slow down gaps that are not crossed. The arguments are not tuples, so that they stay in
+// registers: tuples would be stored for each pair, crossed or not.
 #[cold]
 fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
     let (h_a, h_b) = (hull_a.half_length, hull_b.half_length);
-    let along = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
+    // `p` and `q` are the points of the cores of a and b between which the gap is measured.
+    let gap_between = |distance: f64, normal, p: Vec2, q: Vec2| Gap {
         gap: distance - (hull_a.radius + hull_b.radius),
         normal,
         along: (p - a.center).dot(&a.axis).clamp(-h_a, h_a),
@@ -323,19 +327,19 @@ fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
         let p = a.end(side, h_a);
         let depth = across_b.dot(&(p - b.center));
         let q = p - across_b * depth;
-        let gap = along(-depth.abs(), across_b * -sign(depth), p, q);
+        let gap = gap_between(-depth.abs(), across_b * -sign(depth), p, q);
         (depth.abs(), gap)
     };
     let end_of_b = |side: f64| {
         let q = b.end(side, h_b);
         let depth = across_a.dot(&(q - a.center));
         let p = q - across_a * depth;
-        let gap = along(-depth.abs(), across_a * sign(depth), p, q);
+        let gap = gap_between(-depth.abs(), across_a * sign(depth), p, q);
         (depth.abs(), gap)
     };
-    let others = [end_of_b(-1.0), end_of_a(1.0), end_of_b(1.0)].into_iter();
-    let least = others.fold(end_of_a(-1.0), |a, b| if b.0 < a.0 { b } else { a });
-    least.1
+    let other_ends = [end_of_b(-1.0), end_of_a(1.0), end_of_b(1.0)].into_iter();
+    let (_, gap) = other_ends.fold(end_of_a(-1.0), |a, b| if b.0 < a.0 { b } else { a });
+    gap
 }
 
 fn sign(value: f64) -> f64 {

@@ -1,5 +1,5 @@
-//! Neighbor list: pairs of boats that may touch soon. It has a skin, and is rebuilt when a boat has moved by half of
-//! it. The list depends only on the centers it was built from, so a snapshot keeps those.
+//! Neighbor list: pairs of boats that may touch soon. The list has a skin, and is rebuilt when a boat has moved by half
+//! of the skin. It follows from the centers at its last build, so a snapshot stores only those.
 
 use super::Vec2;
 
@@ -9,13 +9,13 @@ use super::Vec2;
 pub(crate) struct NeighborList {
     /// Centers the list was built from; empty before the first build.
     reference: Vec<Vec2>,
-    /// Boats by polar angle.
+    /// Boats sorted by polar angle.
     order: Vec<u32>,
-    /// Centers in that order; only in flocks of few boats.
+    /// Centers in that order; unused if cells list the pairs.
     ordered: Vec<Vec2>,
     /// Start of each boat's partners in `partners`, by its index in `order`.
     starts: Vec<u32>,
-    /// Partners earlier in `order`.
+    /// For each boat, the partners that come before it in `order`.
     partners: Vec<u32>,
     /// Center distance within which the list is complete at the reference.
     cutoff: f64,
@@ -44,18 +44,18 @@ impl NeighborList {
         self.cutoff = 0.0;
     }
 
-    /// Makes sure that every pair of centers within `distance` is listed. A new list also has the pairs up to `skin`
-    /// farther apart.
+    /// Ensures that every pair of centers within `distance` is listed. If the list is rebuilt, its cutoff is `distance`
+    /// plus `skin`.
     pub(crate) fn update(
         &mut self,
         centers: impl ExactSizeIterator<Item = Vec2> + Clone,
         distance: f64,
         skin: f64,
     ) {
-        let spare = 0.5 * (self.cutoff - distance);
+        let allowed_motion = 0.5 * (self.cutoff - distance);
         let complete = self.reference.len() == centers.len()
-            && spare >= 0.0
-            && self.is_within(spare, centers.clone());
+            && allowed_motion >= 0.0
+            && self.have_moved_at_most(allowed_motion, centers.clone());
         if !complete {
             self.reference.clear();
             self.reference.extend(centers);
@@ -63,12 +63,12 @@ impl NeighborList {
         }
     }
 
-    /// Whether no center is farther than `spare` from its reference.
-    fn is_within(&self, spare: f64, centers: impl Iterator<Item = Vec2>) -> bool {
+    /// Whether every center lies within `distance` of its reference.
+    fn have_moved_at_most(&self, distance: f64, centers: impl Iterator<Item = Vec2>) -> bool {
         let pairs = centers.zip(&self.reference);
-        // Without a branch for each center: nearly always all are.
+        // No early exit, since nearly always all centers do; this saves a branch for each center.
         pairs.fold(true, |all, (now, then)| {
-            all & ((now - then).norm_squared() <= spare * spare)
+            all & ((now - then).norm_squared() <= distance * distance)
         })
     }
 
@@ -110,12 +110,12 @@ impl NeighborList {
         }
     }
 
-    fn list_all_pairs(&mut self, reach: f64) {
+    fn list_all_pairs(&mut self, squared_cutoff: f64) {
         self.ordered.clear();
         for &boat in &self.order {
             let center = self.reference[boat as usize];
             for (&earlier, other) in self.order.iter().zip(&self.ordered) {
-                if (center - other).norm_squared() < reach {
+                if (center - other).norm_squared() < squared_cutoff {
                     self.partners.push(earlier);
                 }
             }
@@ -125,16 +125,15 @@ impl NeighborList {
     }
 
     fn list_from_cells(&mut self, cutoff: f64) {
-        let reach = cutoff * cutoff;
+        let squared_cutoff = cutoff * cutoff;
         self.grid.sort(&self.reference, &self.order, cutoff);
         for index in 0..self.order.len() {
             let center = self.reference[self.order[index] as usize];
             let start = self.partners.len();
             self.grid.for_each_near(center, |other| {
-                let near = (center - self.reference[self.order[other as usize] as usize])
-                    .norm_squared()
-                    < reach;
-                if (other as usize) < index && near {
+                let other_center = self.reference[self.order[other as usize] as usize];
+                let is_near = (center - other_center).norm_squared() < squared_cutoff;
+                if (other as usize) < index && is_near {
                     self.partners.push(other);
                 }
             });
@@ -148,36 +147,35 @@ impl NeighborList {
     }
 
     fn sort_by_angle(&mut self) {
-        let turns = self.reference.iter().map(turn);
-        let mut keyed: Vec<(f64, u32)> = turns.zip(0..).collect();
+        let keys = self.reference.iter().map(polar_key);
+        let mut keyed: Vec<(f64, u32)> = keys.zip(0..).collect();
         keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.order.clear();
         self.order.extend(keyed.iter().map(|&(_, boat)| boat));
     }
 }
 
-/// A number in [−2, 2] that grows with the polar angle in (−π, π]: the position along a square that stands on its
-/// corner.
-fn turn(center: &Vec2) -> f64 {
-    let length = center.x.abs() + center.y.abs();
-    if length == 0.0 {
+/// A number in [−2, 2] that grows with the polar angle in (−π, π], and takes less time to compute: the position along the
+/// square |x| + |y| = 1.
+fn polar_key(center: &Vec2) -> f64 {
+    let size = center.x.abs() + center.y.abs();
+    if size == 0.0 {
         return 0.0;
     }
-    let across = center.x / length;
-    if center.y < 0.0 {
-        across - 1.0
-    } else {
-        1.0 - across
-    }
+    let x = center.x / size;
+    if center.y < 0.0 { x - 1.0 } else { 1.0 - x }
 }
 
 /// Boats sorted into square cells at least a cutoff wide.
 #[derive(Debug, Clone, Default)]
 struct Grid {
+    /// The corner of the grid at which x and y are smallest.
     low: Vec2,
+    /// Side of a cell in cm.
     cell: f64,
     columns: usize,
     rows: usize,
+    /// Start of each cell in `indices`.
     starts: Vec<u32>,
     /// Indices into the angular order, cell by cell.
     indices: Vec<u32>,
@@ -192,10 +190,10 @@ impl Grid {
         }
         let extent = high - low;
         // In open water boats may drift far apart, so there are at most about four cells per boat.
-        let most = 4.0 * centers.len() as f64;
+        let most_cells = 4.0 * centers.len() as f64;
         self.cell = cutoff
-            .max((extent.x * extent.y / most).sqrt())
-            .max(extent.x.max(extent.y) / most);
+            .max((extent.x * extent.y / most_cells).sqrt())
+            .max(extent.x.max(extent.y) / most_cells);
         self.low = low;
         self.columns = (extent.x / self.cell) as usize + 1;
         self.rows = (extent.y / self.cell) as usize + 1;

@@ -83,8 +83,7 @@ impl Obstacle {
     }
 
     /// Whether the boat, which is pushed along `normal`, lies past an end of this wall where another wall leads on toward
-    /// the boat.
-    /// Such an end has no contact, since that would brake a boat that slides past.
+    /// the boat. Such an end has no contact, since that would brake a boat that slides past.
     fn is_continued(&self, normal: Vec2) -> bool {
         let Self::Wall { pose, joints, .. } = self else {
             return false;
@@ -112,8 +111,8 @@ impl Obstacle {
     /// The point of the obstacle's surface that is nearest to a point; for a disc's center, the center itself.
     pub fn nearest(&self, point: Vec2) -> Vec2 {
         let (core, radius) = self.core(point);
-        let away = (point - core).try_normalize(0.0);
-        away.map_or(point, |away| core + away * radius)
+        let direction = (point - core).try_normalize(0.0);
+        direction.map_or(point, |direction| core + direction * radius)
     }
 
     /// Distance in cm of the obstacle's surface from a point, negative inside a disc.
@@ -122,19 +121,19 @@ impl Obstacle {
         (point - core).norm() - radius
     }
 
-    /// Calls `found` with each contact of a boat's hull whose gap is below `margin`: at most one at a disc, two at a wall.
+    /// Calls `visit` with each contact of a boat's hull whose gap is below `margin`: at most one at a disc, two at a wall.
     pub fn gaps(
         &self,
         boat: &HullPose,
         hull: Hull,
         margin: f64,
-        found: &mut dyn FnMut(Feature, Gap),
+        visit: &mut dyn FnMut(Feature, Gap),
     ) {
         match self {
             Self::Disc { .. } => {
                 let gap = self.gap(Feature::Flank, boat, hull);
                 if gap.gap < margin {
-                    found(Feature::Flank, gap);
+                    visit(Feature::Flank, gap);
                 }
             }
             Self::Wall {
@@ -143,52 +142,71 @@ impl Obstacle {
                 let wall = (pose, wall_hull(*half_length));
                 pair_gaps((boat, hull), wall, margin, |feature, gap| {
                     if feature == Feature::Crossed || !self.is_continued(gap.normal) {
-                        found(feature, beside_wall(feature, gap, hull));
+                        visit(feature, wall_gap(feature, gap, hull));
                     }
                 });
             }
         }
     }
 
-    /// The gap of a known contact at another pose of the boat.
+    /// The gap of the contact at `feature` of the boat's hull, whatever its size.
     pub fn gap(&self, feature: Feature, boat: &HullPose, hull: Hull) -> Gap {
         match self {
             Self::Disc { center, radius } => {
-                let seen = HullPose {
+                let boat_from_disc = HullPose {
                     center: boat.center - center,
                     axis: boat.axis,
                 };
-                inner_wall_gap(&seen, hull, *radius)
+                inner_wall_gap(&boat_from_disc, hull, *radius)
             }
             Self::Wall {
                 pose, half_length, ..
             } => {
                 let wall = (pose, wall_hull(*half_length));
-                beside_wall(feature, pair_gap(feature, (boat, hull), wall), hull)
+                wall_gap(feature, pair_gap(feature, (boat, hull), wall), hull)
             }
         }
     }
 }
 
+/// An end of a straight wall.
+struct WallEnd {
+    position: Vec2,
+    /// Unit vector from the end into the wall.
+    inward: Vec2,
+    /// Index of the wall among the obstacles.
+    wall: usize,
+    /// 0 for the wall's start, 1 for its end.
+    side: usize,
+}
+
 /// Links walls that share an end. If several walls do, a wall is linked to the one that continues it most nearly
 /// straight.
 fn join(obstacles: &mut [Obstacle]) {
-    let mut ends: Vec<(Vec2, Vec2, usize, usize)> = Vec::new();
-    for (number, obstacle) in obstacles.iter().enumerate() {
-        let its_ends = obstacle.ends().into_iter().flatten().enumerate();
-        ends.extend(its_ends.map(|(side, (end, inward))| (end, inward, number, side)));
+    let mut ends: Vec<WallEnd> = Vec::new();
+    for (wall, obstacle) in obstacles.iter().enumerate() {
+        let sides = obstacle.ends().into_iter().flatten().enumerate();
+        ends.extend(sides.map(|(side, (position, inward))| WallEnd {
+            position,
+            inward,
+            wall,
+            side,
+        }));
     }
-    ends.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
-    for (k, &(end, inward, number, side)) in ends.iter().enumerate() {
-        let near = |other: &&(Vec2, Vec2, usize, usize)| (other.0.x - end.x).abs() <= JOINED;
+    // Sorted by x, so that only neighbors in the list can be one point.
+    ends.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
+    for (k, end) in ends.iter().enumerate() {
+        let is_near = |other: &&WallEnd| (other.position.x - end.position.x).abs() <= JOINED;
         let (before, after) = (ends[..k].iter().rev(), ends[k + 1..].iter());
-        let others = before.take_while(near).chain(after.take_while(near));
-        let others = others.filter(|other| (other.0 - end).norm() <= JOINED && other.2 != number);
-        let onward = others
-            .map(|other| other.1)
-            .min_by(|a, b| a.dot(&inward).total_cmp(&b.dot(&inward)));
-        if let Obstacle::Wall { joints, .. } = &mut obstacles[number] {
-            joints[side] = onward;
+        let near_ends = before.take_while(is_near).chain(after.take_while(is_near));
+        let joined_ends = near_ends.filter(|other| {
+            (other.position - end.position).norm() <= JOINED && other.wall != end.wall
+        });
+        let straightest = joined_ends
+            .map(|other| other.inward)
+            .min_by(|a, b| a.dot(&end.inward).total_cmp(&b.dot(&end.inward)));
+        if let Obstacle::Wall { joints, .. } = &mut obstacles[end.wall] {
+            joints[end.side] = straightest;
         }
     }
 }
@@ -201,9 +219,9 @@ fn wall_hull(half_length: f64) -> Hull {
     }
 }
 
-/// The gap to a wall, which has no lever arm. If a wall's end touches the flank, turning the boat either way brings the
-/// flank into it, as at a disc.
-fn beside_wall(feature: Feature, gap: Gap, hull: Hull) -> Gap {
+/// The gap to a straight wall, from that to a hull of its shape. The wall has no lever arm, since it does not turn. If its
+/// end touches the flank, turning the boat either way brings the flank into it, as at a disc.
+fn wall_gap(feature: Feature, gap: Gap, hull: Hull) -> Gap {
     let is_flank = feature != Feature::Crossed && gap.along.abs() < hull.half_length;
     Gap {
         arm_j: 0.0,

@@ -3,7 +3,7 @@
 use super::{Vec2, wrap_angle};
 
 /// The largest position (cm), heading (rad), velocity (cm/s) or angular velocity (rad/s) that a state
-/// may hold: squares and products of such numbers are far from overflowing.
+/// may hold. Squares and products of such numbers do not overflow.
 pub(crate) const LARGEST: f64 = 1e9;
 
 /// Whether the absolute values of all numbers are at most [`LARGEST`]; false for NaN.
@@ -43,20 +43,20 @@ impl Pose {
         self.position.x.is_finite() && self.position.y.is_finite() && self.heading.is_finite()
     }
 
-    /// Whether a flock may hold this pose: nothing beyond [`LARGEST`].
+    /// Whether no component exceeds [`LARGEST`].
     pub(crate) fn is_in_range(&self) -> bool {
         are_in_range([self.position.x, self.position.y, self.heading])
     }
 }
 
-/// Distance in cm of two sets of poses of the same boats: the root mean square over boats of |Δx|² + ρ²Δα², the metric
-/// that contacts minimize in. Whole turns do not count.
+/// Distance in cm between two sets of poses of the same boats: the square root of the mean over boats of
+/// |Δx|² + ρ²Δα², the metric in which contacts change velocities least. Headings are compared modulo whole turns.
 pub fn rms_distance(a: &[Pose], b: &[Pose], gyration_radius_cm: f64) -> f64 {
-    let square = |(a, b): (&Pose, &Pose)| {
-        let turn = gyration_radius_cm * wrap_angle(a.heading - b.heading);
-        (a.position - b.position).norm_squared() + turn * turn
+    let squared_distance = |(a, b): (&Pose, &Pose)| {
+        let arc = gyration_radius_cm * wrap_angle(a.heading - b.heading);
+        (a.position - b.position).norm_squared() + arc * arc
     };
-    let sum: f64 = a.iter().zip(b).map(square).sum();
+    let sum: f64 = a.iter().zip(b).map(squared_distance).sum();
     (sum / a.len() as f64).sqrt()
 }
 
@@ -83,7 +83,7 @@ impl Velocity {
         self.linear.x.is_finite() && self.linear.y.is_finite() && self.angular.is_finite()
     }
 
-    /// Whether a flock may hold this velocity: nothing beyond [`LARGEST`].
+    /// Whether no component exceeds [`LARGEST`].
     pub(crate) fn is_in_range(&self) -> bool {
         are_in_range([self.linear.x, self.linear.y, self.angular])
     }
