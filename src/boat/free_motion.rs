@@ -1,8 +1,8 @@
-//! Free motion of a boat that nothing touches, eqs (8) and (9).
+//! Motion of a boat without contacts, eqs (8) and (9).
 //!
 //! Eq. (9) is grouped as −c1·α̇³ + (c2·s − c3·α̇)(u·ẋ) + c4·η. The printed grouping contradicts the
 //! paper's own description (a stopped boat does not steer, a moving one prefers a nonzero turning
-//! rate) and steers neither way.
+//! rate): with that grouping a boat steers in neither case.
 
 use crate::geometry::{Vec2, Velocity};
 use crate::parameters::FlockParameters;
@@ -51,26 +51,26 @@ impl FreeMotion {
         (axis * drive.preferred_speed - (velocity - drive.water)) * self.c0
     }
 
-    /// Angular acceleration, eq. (9) without noise, at a speed through the water along the heading.
+    /// Angular acceleration, eq. (9) without noise. `along` is the boat's speed along its heading relative to the water.
     #[inline]
     pub fn angular_acceleration(&self, angular: f64, along: f64, rudder: f64) -> f64 {
         -self.c1 * angular * angular * angular + (self.c2 * rudder - self.c3 * angular) * along
     }
 
-    /// Rate at which a small change of the angular velocity decays, in 1/s: eq. (9) linearized, and 0 if the change
-    /// would grow.
+    /// Rate in 1/s at which a small change of the angular velocity decays, from eq. (9) linearized; 0 if the change grows.
     pub(crate) fn turn_damping(&self, angular: f64, along: f64) -> f64 {
         (3.0 * self.c1 * angular * angular + self.c3 * along).max(0.0)
     }
 
-    /// The part of a spin that is left after damping at `rate` for `dt`; 0 if damping would reverse it. Reversed spins
-    /// would alternate, and with an explicit step grow without bound.
+    /// The fraction of a spin that remains after damping at `rate` for `dt`; 0 if damping would reverse the spin. A
+    /// reversed spin would be reversed again in the next step, and could grow without bound.
     #[inline]
     fn damped(rate: f64, dt: f64) -> f64 {
         (1.0 - rate * dt).max(0.0)
     }
 
-    /// Explicit Euler over `dt`: accelerations at the given velocity. Drag and damping take at most the whole velocity.
+    /// The velocity after an explicit Euler step of `dt`. Drag and damping alone may stop a motion, but never
+    /// reverse it.
     #[inline]
     pub(crate) fn explicit(
         &self,
@@ -83,10 +83,10 @@ impl FreeMotion {
         let spin = velocity.angular;
         let rate = self.c1 * spin * spin + self.c3 * along;
         let driven = spin * Self::damped(rate, dt) + self.c2 * drive.rudder * along * dt;
-        let relaxed = (self.c0 * dt).min(1.0);
+        let relaxed_fraction = (self.c0 * dt).min(1.0);
         let preferred = axis * drive.preferred_speed + drive.water;
         Velocity {
-            linear: velocity.linear + (preferred - velocity.linear) * relaxed,
+            linear: velocity.linear + (preferred - velocity.linear) * relaxed_fraction,
             angular: self.limited(driven, spin, along, drive.rudder) + drive.noise,
         }
     }
@@ -97,8 +97,8 @@ impl FreeMotion {
         1.0 / (1.0 + 0.5 * dt * self.c0)
     }
 
-    /// Change of the velocity over `dt` without contacts, with drag centered in the substep. Drag takes at most the
-    /// whole velocity: otherwise it would make a boat back up.
+    /// Change of the velocity over `dt` without contacts, with drag centered in the substep. The fraction by which the
+    /// velocity approaches its preferred value is at most 1: otherwise drag could reverse a boat.
     #[inline]
     pub(crate) fn centered_change(
         &self,
@@ -107,24 +107,24 @@ impl FreeMotion {
         drive: &Drive,
         dt: f64,
     ) -> Vec2 {
-        let relaxed = (self.c0 * dt * self.linear_mobility(dt)).min(1.0);
-        (axis * drive.preferred_speed + drive.water - velocity) * relaxed
+        let relaxed_fraction = (self.c0 * dt * self.linear_mobility(dt)).min(1.0);
+        (axis * drive.preferred_speed + drive.water - velocity) * relaxed_fraction
     }
 
-    /// The spin after a step, limited for a backing boat. Eq. (9) never drives such a boat past its equilibrium spin, so a
-    /// step that overshoots ends at it.
+    /// The spin after a step, limited for a backing boat. Eq. (9) never drives a spin past its equilibrium, so a step that
+    /// overshoots is limited to a bound of the equilibria.
     #[inline]
     fn limited(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
-        let turns_back =
+        let overshoots =
             || (driven - spin) * self.angular_acceleration(driven, along, rudder) < 0.0;
-        if along < 0.0 && turns_back() {
+        if along < 0.0 && overshoots() {
             return self.within_equilibria(driven, spin, along, rudder);
         }
         driven
     }
 
-    /// A spin limited by the boat's present spin or by a bound of the equilibria of eq. (9): the roots of c1·w³ = (c2·s
-    /// − c3·w)·u·ẋ with c1 > 0.
+    /// Limits the magnitude of a spin to the boat's present one, or to an upper bound of the equilibria of eq. (9),
+    /// whichever is larger. Equilibria are the roots w of c1·w³ = (c2·s − c3·w)·u·ẋ with c1 > 0.
     #[cold]
     fn within_equilibria(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let push = along.abs() / self.c1;
@@ -151,8 +151,8 @@ impl FreeMotion {
         dt: f64,
     ) -> FreeVelocity {
         let change = self.centered_change(velocity.linear, axis, drive, dt);
-        let middle = velocity.linear + (change + contact_change) * 0.5;
-        let along = axis.dot(&(middle - drive.water));
+        let mid_velocity = velocity.linear + (change + contact_change) * 0.5;
+        let along = axis.dot(&(mid_velocity - drive.water));
 
         let spin = velocity.angular;
         let half_rate = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);

@@ -11,8 +11,8 @@ pub fn steering_law(misalignment: f64) -> f64 {
     (6.0 * wrap_angle(misalignment) / PI).clamp(-1.0, 1.0)
 }
 
-/// β − α of a boat: how far counter-clockwise it has to turn to head along the target's tangent at
-/// its own polar angle θ. Clockwise motion heads along θ − π/2.
+/// β − α of a boat in rad: how far it has to turn counter-clockwise to head along the target's tangent at
+/// its polar angle θ. The tangent of clockwise motion points along θ − π/2.
 pub fn misalignment(position: Vec2, heading: f64, target: Target) -> f64 {
     let polar_angle = libm::atan2(position.y, position.x);
     wrap_angle(polar_angle - target.sign() * FRAC_PI_2 - heading)
@@ -29,8 +29,9 @@ pub struct Course {
     pub angular: f64,
 }
 
-/// While a boat moves forward, s = clamp(gain·δ, −1, 1), where δ is the misalignment. While it backs, a rudder works in
-/// reverse: s = clamp(−backward_gain·δ + damping·α̇, −1, 1), which also counters the turning that makes it spin.
+/// A steering law for both directions of motion. While a boat moves forward, s = clamp(gain·δ, −1, 1), where δ is the
+/// misalignment. While it backs, a rudder works in reverse: s = clamp(−backward_gain·δ + damping·α̇, −1, 1). The second
+/// term damps the spin of a backing boat.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DampedLaw {
@@ -81,14 +82,14 @@ impl DampedLaw {
         ),
     ];
 
-    /// The tuned law of a pool. The error names `setting` and its `value`, which need the law.
+    /// The tuned law of a pool. `setting` and its `value`, which ask for the law, are named in the error.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if the law has not been tuned in the pool.
     pub fn tuned(setting: &'static str, value: &str, pool: Option<&str>) -> Result<Self> {
         let mut tuned = Self::TUNED.into_iter();
-        let found = tuned.find(|(name, _)| Some(*name) == pool);
-        found.map(|(_, law)| law).ok_or_else(|| {
+        let entry = tuned.find(|(name, _)| Some(*name) == pool);
+        entry.map(|(_, law)| law).ok_or_else(|| {
             let pools = Self::TUNED.map(|(name, _)| name).join(" and ");
             let accepted = format!("the damped law is tuned only in the pools {pools}");
             FlockError::parameter(setting, value, accepted)
@@ -114,7 +115,7 @@ impl DampedLaw {
         })
     }
 
-    /// The rudder in [−1, 1] on a course.
+    /// The rudder command in [−1, 1] of a leader in this state.
     pub fn rudder(&self, course: &Course) -> f64 {
         let misalignment = wrap_angle(course.misalignment);
         let rudder = if course.forward < 0.0 {

@@ -88,7 +88,7 @@ impl PredictedPoses {
 
     /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date, and marks it
     /// outdated. Returns whether it did.
-    pub(super) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
+    pub(super) fn take_poses(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         if self.is_current {
             std::mem::swap(poses, &mut self.poses);
             std::mem::swap(hulls, &mut self.hulls);

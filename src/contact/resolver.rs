@@ -212,9 +212,14 @@ impl ContactResolver {
             .overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Moves the boats to the end of the solved substep, if the prediction is up to date.
-    pub(crate) fn take_end(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
-        self.predicted.take_end(poses, hulls)
+    /// Moves the boats to the end of the solved substep if their poses there are already predicted; returns whether they
+    /// are.
+    pub(crate) fn take_predicted_poses(
+        &mut self,
+        poses: &mut Vec<Pose>,
+        hulls: &mut Vec<HullPose>,
+    ) -> bool {
+        self.predicted.take_poses(poses, hulls)
     }
 
     /// Forgets the impulses, because nothing touched in this substep.

@@ -13,13 +13,14 @@ pub(crate) struct Checkpoint {
     pub poses: Vec<Pose>,
     /// Velocities of all boats.
     pub velocities: Vec<Velocity>,
-    /// Contacts of the last substep that carried an impulse; a checkpoint before an advance holds the others, too.
+    /// Contacts of the last substep that carried an impulse. A checkpoint saved before an advance also holds the others.
     pub warm_start: Vec<CachedImpulse>,
     /// The centers and the distance with which the neighbor list was built.
     pub neighbor_reference: (Vec<Vec2>, f64),
     /// Memory of the leapfrog scheme.
     pub last: LastSubstep,
-    /// Speed of water with inertia in cm/s, which a snapshot stores last and only with inertia.
+    /// Speed in cm/s of water with inertia. A snapshot stores it after the other fields, and only if the water has
+    /// inertia.
     #[serde(skip)]
     pub water_cm_s: f64,
     /// Time in s by which impulses are divided to give forces.
@@ -38,22 +39,24 @@ impl Integrator {
     }
 
     /// Overwrites a checkpoint with the present motion, and reuses its memory.
-    pub(crate) fn save(&self, into: &mut Checkpoint) {
-        into.poses.clone_from(&self.poses);
-        into.velocities.clone_from(&self.velocities);
-        into.last.clone_from(&self.last);
-        into.warm_start.clear();
-        into.warm_start
+    pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.poses.clone_from(&self.poses);
+        checkpoint.velocities.clone_from(&self.velocities);
+        checkpoint.last.clone_from(&self.last);
+        checkpoint.warm_start.clear();
+        checkpoint
+            .warm_start
             .extend_from_slice(self.contacts.warm_start_impulses());
         let neighbors = &self.contacts.detector.neighbors;
-        into.neighbor_reference.0.clear();
-        into.neighbor_reference
+        checkpoint.neighbor_reference.0.clear();
+        checkpoint
+            .neighbor_reference
             .0
             .extend_from_slice(neighbors.reference());
-        into.neighbor_reference.1 = neighbors.cutoff();
-        into.water_cm_s = self.water_cm_s;
-        into.step_length_s = self.step_length_s;
-        into.statistics = self.statistics;
+        checkpoint.neighbor_reference.1 = neighbors.cutoff();
+        checkpoint.water_cm_s = self.water_cm_s;
+        checkpoint.step_length_s = self.step_length_s;
+        checkpoint.statistics = self.statistics;
     }
 
     /// Continues from a checkpoint, bit for bit.

@@ -5,7 +5,7 @@ use super::substep::Substep;
 use crate::clock::seconds;
 use crate::contact::{Divisibility, Motion, NotTaken};
 
-/// A substep whose contacts would drive boats, or take too much work, is cut, but not below this fraction of
+/// A substep is cut if its contacts would add energy to boats or take too much work, but not below this fraction of
 /// `dt_s`.
 const SHORTEST_SHARE: f64 = 1.0 / 16.0;
 /// A substep that leaves overlaps is cut, but not below this fraction of `dt_s`.
@@ -20,7 +20,8 @@ impl Integrator {
         }
     }
 
-    /// Turns free velocities into velocities that respect the contacts of a substep; returns whether there are any.
+    /// Changes velocities from free ones to those that respect the contacts of a substep. Returns whether there are
+    /// contacts.
     ///
     /// # Errors
     /// [`NotTaken`].
@@ -45,7 +46,7 @@ impl Integrator {
             dt,
         };
         contacts.resolve(&motion, divisibility, statistics)?;
-        // Nothing reads the solver's velocities before it solves again.
+        // A swap costs less than a copy, and nothing reads the solver's velocities before it solves again.
         std::mem::swap(&mut self.velocities, &mut contacts.solver.velocities);
         Ok(true)
     }

@@ -10,7 +10,7 @@ use crate::parameters::Scheme;
 /// Speeds below this, in cm/s or rad/s, count as rest. Drag alone never stops a boat: its speed would become so small
 /// that processors take ten times as long for arithmetic with it or its square.
 const REST: f64 = 1e-150;
-/// Time between two checks for boats that can be set to rest.
+/// Time between two calls of [`Integrator::bring_to_rest`].
 const SECOND: Ticks = TICKS_PER_SECOND as Ticks;
 
 impl Integrator {
@@ -31,8 +31,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// Stops boats that are slower than [`REST`]. It is called once per second, so it costs nothing, and at whole
-    /// seconds, so pauses of a run do not change it.
+    /// Stops boats that are slower than [`REST`]. One call per simulated second takes hardly any time. Calls come at whole
+    /// seconds, so that the lengths of a run's advances do not matter.
     #[inline(never)]
     fn bring_to_rest(&mut self) {
         let stop = |speed: f64| if speed.abs() < REST { 0.0 } else { speed };

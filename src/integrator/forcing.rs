@@ -30,7 +30,7 @@ impl Integrator {
             .map_or(speed, |factor| speed * factor)
     }
 
-    /// Rudder of a boat: the command or the law for a leader, the bias for a normal boat.
+    /// Rudder of a boat: a leader's follows from the command or the law, a normal boat's is the turning bias.
     pub(super) fn rudder(&self, boat: usize, steering: Steering) -> f64 {
         if boat >= self.parameters.n_leaders {
             return self.parameters.turning_bias;
@@ -76,9 +76,9 @@ impl Integrator {
         self.fill_water(ahead_s, |state, boat| state.velocities[boat].linear);
     }
 
-    /// Sets the water in `drives` to its state some time after the present velocities, if boats with the given
-    /// velocities drive it. It moves counter-clockwise at −κ·(mean tangential velocity of the boats), capped (Section
-    /// 4.5). Water with inertia approaches that speed exponentially.
+    /// Sets the water's velocity in `drives` to that `ahead_s` after the time of the present velocities. `velocity` gives
+    /// the velocities of the boats that drive the water. It moves counter-clockwise at −κ·(mean tangential velocity of the
+    /// boats), capped (Section 4.5). Water with inertia approaches that speed exponentially.
     pub(super) fn fill_water(&mut self, ahead_s: f64, velocity: impl Fn(&Self, usize) -> Vec2) {
         if self.parameters.current_gain == 0.0 && self.water_cm_s == 0.0 {
             return;
@@ -99,24 +99,24 @@ impl Integrator {
         (-self.parameters.current_gain * sum / self.poses.len() as f64).clamp(-cap, cap)
     }
 
-    /// Speed of the water in cm/s after it has followed the driven speed for a time.
+    /// Speed of the water in cm/s after it has approached the driven speed for a time.
     fn water_after(&self, seconds: f64) -> f64 {
         let relaxation_s = self.parameters.current_relaxation_s;
         if relaxation_s == 0.0 {
             return self.driven_water_cm_s;
         }
-        let followed = -libm::expm1(-seconds / relaxation_s);
-        self.water_cm_s + followed * (self.driven_water_cm_s - self.water_cm_s)
+        let approach = -libm::expm1(-seconds / relaxation_s);
+        self.water_cm_s + approach * (self.driven_water_cm_s - self.water_cm_s)
     }
 
-    /// Moves water with inertia on by a time, after a substep that was taken.
+    /// Advances the speed of water with inertia by a time, after a substep was taken.
     pub(super) fn move_water(&mut self, seconds: f64) {
         if self.parameters.current_relaxation_s > 0.0 {
             self.water_cm_s = self.water_after(seconds);
         }
     }
 
-    /// Takes over the water's speed from a flock with other parameters, if the present ones allow it.
+    /// Takes over the water's speed from a flock with other parameters, if this water has inertia.
     pub(crate) fn keep_water(&mut self, water_cm_s: f64) {
         if self.parameters.current_relaxation_s > 0.0 {
             let cap = self.parameters.current_cap_cm_s;

@@ -2,8 +2,8 @@
 //! contacts persist.
 //!
 //! A kick at time t_n takes the velocity from the middle of the last substep to the middle of the
-//! next; where the two differ in length, phase or rudder, each half of the kick has its own. The first
-//! kick after a state was set is a half one.
+//! next. Each half of the kick has the length, phase and rudder of its substep. The first kick after
+//! a state was set has only its second half.
 
 use super::phase_schedule::Phase;
 use super::state::Integrator;
@@ -12,25 +12,26 @@ use crate::clock::seconds;
 use crate::contact::{InverseInertia, NotTaken};
 use crate::geometry::{Vec2, Velocity};
 
-/// Kicks below this fraction of `dt_s` do not show the force of contacts: impulses that close small overlaps do not
-/// shrink with the kick. The force of the previous kick is used instead.
+/// Kicks below this fraction of `dt_s` do not reveal the force of contacts: impulses that close small overlaps do not
+/// shrink with the kick. The contact force of an earlier kick is used instead.
 const SHORTEST_KICK: f64 = 0.25;
 
 /// One kick and one drift.
 pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotTaken> {
-    let half_ticks = flock.last.length + substep.length;
-    let kick = 0.5 * seconds(half_ticks);
-    let start = 2 * substep.start - flock.last.length.min(2 * substep.start);
-    flock.draw_noise(substep.start, start, 2 * substep.start + substep.length);
+    let kick_half_ticks = flock.last.length + substep.length;
+    let kick = 0.5 * seconds(kick_half_ticks);
+    let start_half_ticks = 2 * substep.start - flock.last.length.min(2 * substep.start);
+    let end_half_ticks = 2 * substep.start + substep.length;
+    flock.draw_noise(substep.start, start_half_ticks, end_half_ticks);
     flock.fill_drives(substep, 0.5 * kick);
     blend_drives(flock, substep);
     center_water(flock, kick);
     centered_velocities(flock, kick);
 
     let dt = seconds(substep.length);
-    let is_touched = flock.solve_contacts(substep)?;
+    let has_contacts = flock.solve_contacts(substep)?;
     let persistent = &mut flock.last.persistent_acceleration;
-    if !is_touched {
+    if !has_contacts {
         persistent.clear();
     } else if kick >= SHORTEST_KICK * flock.parameters.dt_s {
         persistent.clear();
@@ -42,7 +43,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     flock.step_length_s = kick;
     flock.move_water(kick);
     flock.drift(dt);
-    remember(flock, substep);
+    remember_substep(flock, substep);
     Ok(())
 }
 
@@ -57,22 +58,22 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     };
     if flock.last.length > 0 && !(same_steering && last_phase == substep.phase) {
         let steering = last_rudder.as_deref().map_or(Steering::Law, Steering::Held);
-        let past = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
+        let last_share = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
         for boat in 0..flock.drives.len() {
             let (speed, rudder) = (
                 flock.preferred_speed(boat, last_phase),
                 flock.rudder(boat, steering),
             );
             let drive = &mut flock.drives[boat];
-            drive.preferred_speed += past * (speed - drive.preferred_speed);
-            drive.rudder += past * (rudder - drive.rudder);
+            drive.preferred_speed += last_share * (speed - drive.preferred_speed);
+            drive.rudder += last_share * (rudder - drive.rudder);
         }
     }
     flock.last.rudder = last_rudder;
 }
 
-/// Replaces the water's motion by that in the middle of the kick. Computed from velocities half a kick old, it would
-/// make the scheme first order.
+/// Replaces the water's velocity in `drives` by that in the middle of the kick. If it followed from the velocities at the
+/// kick's start, the scheme would be of first order.
 fn center_water(flock: &mut Integrator, kick: f64) {
     flock.fill_water(0.5 * kick, |flock, boat| {
         let (velocity, axis) = (flock.velocities[boat].linear, flock.boats[boat].axis);
@@ -124,16 +125,16 @@ fn centered_velocities(flock: &mut Integrator, kick: f64) {
     }
 }
 
-fn remember(flock: &mut Integrator, substep: &Substep) {
+fn remember_substep(flock: &mut Integrator, substep: &Substep) {
     let last = &mut flock.last;
     last.length = substep.length;
     last.phase = substep.phase.index();
     match substep.steering {
         Steering::Law => last.rudder = None,
         Steering::Held(commands) => {
-            let commanded = last.rudder.get_or_insert_default();
-            commanded.clear();
-            commanded.extend_from_slice(commands);
+            let last_commands = last.rudder.get_or_insert_default();
+            last_commands.clear();
+            last_commands.extend_from_slice(commands);
         }
     }
 }

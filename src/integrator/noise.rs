@@ -6,8 +6,8 @@ use crate::clock::{Ticks, seconds};
 use crate::parameters::Noise;
 
 impl Integrator {
-    /// Fills `noise_increments` with the noise of the interval [from, to] in half ticks. Noise that is drawn per step is
-    /// keyed by the substep's `start`.
+    /// Fills `noise_increments` with the noise of the interval from `from` to `to`, in half ticks. Noise that is drawn once
+    /// per step is keyed by the substep's `start`, in ticks.
     pub(super) fn draw_noise(&mut self, start: Ticks, from: u64, to: u64) {
         let Some(noise) = &mut self.noise else { return };
         let scale = match self.parameters.noise_scheme {

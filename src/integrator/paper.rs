@@ -1,9 +1,9 @@
 //! Steps 1–6 of the paper's appendix, taken literally.
 //!
-//! Poses advance with the *old* velocities. If nothing then overlaps by more than the tolerance, the
-//! step stands and velocities gain dt·a (eq. A.3). If something does, the poses are projected to
-//! linearized gaps ≥ 0 (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step
-//! with a contact loses its accelerations, for all boats at once.
+//! Poses advance with the *old* velocities. If no overlap then exceeds the tolerance, these poses are
+//! kept and velocities gain dt·a (eq. A.3). Otherwise the poses are projected to linearized gaps ≥ 0
+//! (eq. A.4) and *every* boat's velocity becomes displacement/dt (eq. A.5): a step with a contact loses
+//! the accelerations of all boats.
 
 use super::moreau::explicit_velocities;
 use super::state::Integrator;
@@ -11,8 +11,8 @@ use super::substep::Substep;
 use crate::clock::seconds;
 use crate::contact::{Motion, NotTaken};
 
-/// Overlap (cm) that counts as touching at any tolerance: a solver's residual of 1e-10 cm/s leaves that much in a
-/// substep, with a margin for a row of boats.
+/// Overlap in cm that is accepted at any tolerance. A solver's residual of 1e-10 cm/s leaves less in a substep, even in a
+/// row of boats.
 const ROUNDING: f64 = 1e-10;
 
 /// One step of the appendix.
@@ -26,9 +26,9 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
     let (contacts, statistics) = (&mut flock.contacts, &mut flock.statistics);
     let (poses, velocities) = (&mut flock.poses, &flock.velocities);
     // The displacement that minimizes (A.4) is dt times the velocity nearest to the old one.
-    let near = contacts.find(poses, &mut flock.boats, velocities, dt, statistics);
+    let has_contacts = contacts.find(poses, &mut flock.boats, velocities, dt, statistics);
     let allowed = flock.parameters.overlap_tolerance_cm.max(ROUNDING);
-    if near && contacts.overlaps_after(poses, velocities, dt, allowed) {
+    if has_contacts && contacts.overlaps_after(poses, velocities, dt, allowed) {
         let motion = Motion {
             poses,
             hulls: &flock.boats,

@@ -23,8 +23,8 @@ impl Phase {
         self as usize
     }
 
-    /// Whether a time is analyzed, given the time since its phase started and the time until it ends: the second half
-    /// of fw and the first half of the drift after it (Section 4).
+    /// Whether a time lies in the analysis window: the second half of fw and the first half of the drift after it (Section
+    /// 4). `elapsed` is the time since the phase started, `left` the time until it ends.
     fn is_analyzed<T: PartialOrd>(self, elapsed: T, left: T) -> bool {
         match self {
             Self::Forward => elapsed >= left,
@@ -34,18 +34,16 @@ impl Phase {
     }
 }
 
-/// Whether each of some increasing times (s) lies in the analysis window, if only the phase at each is known (slices of
-/// equal length). A phase lasts until the next one starts, the last until the end of the recording.
+/// Whether each of some increasing times in s lies in the analysis window. `phases` holds the phase at each time. A phase
+/// lasts until the first time of the next one, the last phase until the last time.
 pub fn sampled_analysis_window(times_s: &[f64], phases: &[Phase]) -> Vec<bool> {
     let mut analyzed = Vec::with_capacity(times_s.len());
-    for samples in phases.chunk_by(|a, b| a == b) {
+    for same_phase in phases.chunk_by(|a, b| a == b) {
         let start = analyzed.len();
-        let end = (start + samples.len()).min(times_s.len() - 1);
-        analyzed.extend(
-            times_s[start..start + samples.len()]
-                .iter()
-                .map(|time| samples[0].is_analyzed(time - times_s[start], times_s[end] - time)),
-        );
+        let end = start + same_phase.len();
+        let (start_s, end_s) = (times_s[start], times_s[end.min(times_s.len() - 1)]);
+        let is_analyzed = |time: &f64| same_phase[0].is_analyzed(time - start_s, end_s - time);
+        analyzed.extend(times_s[start..end].iter().map(is_analyzed));
     }
     analyzed
 }

@@ -14,7 +14,7 @@ use rand::RngExt;
 pub(crate) struct Integrator {
     pub(crate) parameters: FlockParameters,
     pub(crate) motion: FreeMotion,
-    /// Per-boat factor of the motor's speed; empty where all boats are alike.
+    /// Factor of each boat's preferred speed; empty if all boats are alike.
     pub(super) speed_factors: Vec<f64>,
     pub(crate) poses: Vec<Pose>,
     pub(crate) velocities: Vec<Velocity>,
@@ -31,7 +31,7 @@ pub(crate) struct Integrator {
     pub(crate) last: LastSubstep,
     /// Speed in cm/s of water with inertia at the time of the velocities, counter-clockwise positive; 0 without inertia.
     pub(crate) water_cm_s: f64,
-    /// Speed in cm/s that the water would have after a long time with this substep's velocities.
+    /// Speed in cm/s that the water approaches in this substep; without inertia, its speed.
     pub(super) driven_water_cm_s: f64,
     pub(crate) statistics: Statistics,
     /// Length of the last change of velocity in s. Impulses divided by it are forces.
@@ -79,7 +79,7 @@ impl Integrator {
         self.update_boats();
     }
 
-    /// Continues with the noise of a branch.
+    /// Replaces the noise by that of a branch with this seed.
     pub(crate) fn branch_noise(&mut self, noise_seed: u64) {
         if let Some(noise) = &mut self.noise {
             noise.replace_keys(Stream::BRANCH_NOISE.rng(noise_seed));
@@ -97,9 +97,11 @@ impl Integrator {
         HullPose::replace_all(&mut self.boats, &self.poses);
     }
 
-    /// Moves every boat with its velocity for a time.
+    /// Moves every boat with its velocity for a time. If relinearization has already predicted these poses, they are taken
+    /// over.
     pub(crate) fn drift(&mut self, dt: f64) {
-        if self.contacts.take_end(&mut self.poses, &mut self.boats) {
+        let (poses, hulls) = (&mut self.poses, &mut self.boats);
+        if self.contacts.take_predicted_poses(poses, hulls) {
             return;
         }
         for (pose, velocity) in self.poses.iter_mut().zip(&self.velocities) {
@@ -125,8 +127,8 @@ impl Integrator {
     }
 }
 
-/// Brownian paths whose cells are the intervals of full substeps' noise; in leapfrog these reach from the middle of one
-/// substep to the middle of the next.
+/// Brownian paths whose cells are the intervals of noise in full substeps. In leapfrog such an interval reaches from the
+/// middle of one substep to the middle of the next.
 fn noise_paths(parameters: &FlockParameters, keys: StreamRng) -> BrownianPaths {
     let dt = ticks(parameters.dt_s);
     let shift = if parameters.scheme == Scheme::Leapfrog {
@@ -137,7 +139,7 @@ fn noise_paths(parameters: &FlockParameters, keys: StreamRng) -> BrownianPaths {
     BrownianPaths::from_keys(keys, parameters.n_boats, 2 * dt, shift)
 }
 
-/// Per-boat factors of the preferred speed; empty where all boats are alike.
+/// Factor of each boat's preferred speed; empty if all boats are alike.
 fn speed_factors(parameters: &FlockParameters, seed: u64) -> Vec<f64> {
     let p = parameters;
     if p.speed_spread_cm_s == 0.0 {

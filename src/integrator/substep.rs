@@ -1,4 +1,4 @@
-//! One substep, and what is remembered of the last one.
+//! One substep, and the memory of the last one.
 
 use super::phase_schedule::Phase;
 use crate::clock::Ticks;
@@ -16,7 +16,7 @@ pub enum Steering<'a> {
 /// One substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Substep<'a> {
-    /// When it starts.
+    /// Time at its start.
     pub start: Ticks,
     /// Its length.
     pub length: Ticks,
@@ -32,9 +32,9 @@ pub(crate) struct Substep<'a> {
 pub(crate) struct LastSubstep {
     /// Length of that substep; 0 if there was none since the state was set.
     pub length: Ticks,
-    /// The phase it lay in.
+    /// Index of its phase.
     pub phase: usize,
-    /// The rudders held in it; `None` for the steering law.
+    /// The rudder commands held in it; `None` for the steering law.
     pub rudder: Option<Vec<f64>>,
     /// Linear acceleration of each boat by contacts that are likely to last; empty without such
     /// contacts.
@@ -48,7 +48,7 @@ impl Clone for LastSubstep {
         copy
     }
 
-    // Saved before every advance, so it must not allocate.
+    // Every advance saves the state first, so this must not allocate.
     fn clone_from(&mut self, source: &Self) {
         self.length = source.length;
         self.phase = source.phase;
