@@ -1,8 +1,8 @@
 //! Motion of a boat without contacts, eqs (8) and (9).
 //!
-//! Eq. (9) is grouped as −c1·α̇³ + (c2·s − c3·α̇)(u·ẋ) + c4·η. The printed grouping contradicts the
-//! paper's own description (a stopped boat does not steer, a moving one prefers a nonzero turning
-//! rate): with that grouping a boat steers in neither case.
+//! Eq. (9) is grouped as −c1·α̇³ + (c2·s − c3·α̇)(u·ẋ) + c4·η. With the printed grouping a rudder could
+//! never start a turn. That contradicts the paper's own description: a stopped boat does not steer, a
+//! moving one prefers a nonzero turning rate.
 
 use crate::geometry::{Vec2, Velocity};
 use crate::parameters::FlockParameters;
