@@ -7,9 +7,9 @@ use crate::geometry::Velocity;
 /// One over the effective inertia of a boat in this substep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InverseInertia {
-    /// Per unit mass; 1 where drag is explicit.
+    /// Per unit mass; 1 if drag is explicit.
     pub linear: f64,
-    /// In 1/cm²: 1/ρ² where damping is explicit.
+    /// In 1/cm²; 1/ρ² if damping is explicit.
     pub angular: f64,
 }
 
@@ -50,10 +50,10 @@ impl ContactProblem<'_> {
         }
     }
 
-    /// Gives the boats of some contacts their free velocities.
-    // Not inlined: that would slow down islands that do not need it.
+    /// Resets the velocities of these contacts' boats to the free ones.
+    // Not inlined: inlining slows down islands that do not need it.
     #[inline(never)]
-    pub(crate) fn release(&self, contacts: &[u32], velocities: &mut [Velocity]) {
+    pub(crate) fn reset_velocities(&self, contacts: &[u32], velocities: &mut [Velocity]) {
         for &k in contacts {
             let contact = &self.contacts[k as usize];
             let first = contact.boat as usize;
@@ -70,12 +70,12 @@ impl ContactProblem<'_> {
         let contact = &self.contacts[k];
         let gap = &contact.gap;
         let first = &self.inertia[contact.boat as usize];
-        let own = first.linear + gap.arm_i * gap.arm_i * first.angular;
+        let first_part = first.linear + gap.arm_i * gap.arm_i * first.angular;
         match contact.second() {
-            None => own,
+            None => first_part,
             Some(j) => {
                 let second = &self.inertia[j];
-                own + second.linear + gap.arm_j * gap.arm_j * second.angular
+                first_part + second.linear + gap.arm_j * gap.arm_j * second.angular
             }
         }
     }
@@ -114,7 +114,7 @@ impl ContactProblem<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Velocities after these impulses.
+    /// Fills `velocities` with those after these impulses.
     pub fn velocities(&self, impulses: &[f64], velocities: &mut Vec<Velocity>) {
         velocities.clear();
         velocities.extend_from_slice(self.free);

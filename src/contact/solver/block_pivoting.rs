@@ -1,6 +1,5 @@
-//! The exact solver: block principal pivoting (Júdice and Pires 1994) on each island, warm-started
-//! from the contacts that carried an impulse before, with a descent as the fallback that guarantees an
-//! end.
+//! The exact solver: block principal pivoting (Júdice and Pires 1994) on each island. It is warm-started
+//! with the contacts that carried an impulse before. If pivoting cycles, a descent that always ends takes over.
 
 mod closed_forms;
 mod descent;
@@ -14,10 +13,10 @@ use crate::geometry::Velocity;
 use island_solver::IslandSolver;
 use rows::NONE;
 
-/// Number of rows that the solvers may hold memory for, and how many more per boat. Each solver keeps the memory of its
-/// largest island so far. As islands are numbered differently in each substep, this could add up to many times the rows
-/// of a large flock.
+/// Number of rows for which the solvers may hold memory. Each solver keeps the memory of its largest island so far. As
+/// islands are numbered differently in each substep, this could add up to many times the rows of a large flock.
 const MOST_ROWS_HELD: usize = 1000;
+/// Number of rows by which each boat raises that limit.
 const MOST_ROWS_HELD_A_BOAT: usize = 8;
 
 /// The solvers of islands.
@@ -31,18 +30,19 @@ pub(super) struct BlockPivoting {
     solvers: Vec<IslandSolver>,
     /// Index of each island's solver, or [`NONE`].
     solver_of_island: Vec<u32>,
-    /// Number of solvers that have an island.
+    /// Number of solvers that hold an island.
     used_solvers: usize,
     /// Number of rows that the solvers have memory for.
     rows_held: usize,
     /// Number of multiplications that are still allowed; negative if an island was given up.
     pub budget: i64,
-    /// J·v_free and b, contact by contact.
+    /// J·v_free for each contact: how fast its gap opens at the free velocities.
     rates: Vec<f64>,
+    /// Right-hand side b for each contact.
     rights: Vec<f64>,
     /// The islands that no closed form solves.
     remaining: Vec<u32>,
-    /// Index of each boat in the island that is being built; all [`NONE`] otherwise.
+    /// Scratch space for building an island: each boat's index in the island. All [`NONE`] between builds.
     indices: Vec<u32>,
 }
 
@@ -84,7 +84,8 @@ impl BlockPivoting {
         }
     }
 
-    /// Solves some islands; [`Self::set_free`] comes first. Boats with one or two contacts have their free velocities.
+    /// Solves the islands `which`. Call [`Self::set_free`] first. In islands of one or two contacts, `velocities` must hold
+    /// the free velocities.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
@@ -112,7 +113,7 @@ impl BlockPivoting {
         report
     }
 
-    /// Solves an island without a factor; returns whether that is possible.
+    /// Solves an island without a factor, if possible; returns whether it did.
     fn solve_directly(
         &self,
         problem: &ContactProblem,
@@ -140,7 +141,7 @@ impl BlockPivoting {
         if is_idle {
             contacts.iter().for_each(|&k| impulses[k as usize] = 0.0);
             if contacts.len() > 2 {
-                problem.release(contacts, velocities);
+                problem.reset_velocities(contacts, velocities);
             }
             return true;
         }

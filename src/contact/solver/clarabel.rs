@@ -11,7 +11,7 @@ use crate::geometry::Velocity;
 /// Residual in cm/s that counts as solved here.
 const GOOD: f64 = 1e-3;
 
-/// Solves min ½ dᵀ·M·d over d = v − v_free with −J·d ≤ J·v_free + bound.
+/// Solves min ½ dᵀ·M·d over d = v − v_free with −J·d ≤ J·v_free + bias.
 pub(super) fn solve(
     problem: &ContactProblem,
     impulses: &mut [f64],
@@ -40,9 +40,9 @@ pub(super) fn solve(
         let solution = &solver.solution;
         report.iterations = u64::from(solution.iterations);
         use SolverStatus::{AlmostSolved, Solved};
-        let usable = matches!(solution.status, Solved | AlmostSolved);
+        let is_usable = matches!(solution.status, Solved | AlmostSolved);
         for (impulse, dual) in impulses.iter_mut().zip(&solution.z) {
-            *impulse = if usable { dual.max(0.0) } else { 0.0 };
+            *impulse = if is_usable { dual.max(0.0) } else { 0.0 };
         }
     } else {
         impulses.fill(0.0);

@@ -1,4 +1,4 @@
-//! Projected Gauss–Seidel: one contact after another, until nothing changes. For comparison.
+//! Projected Gauss–Seidel, for comparison: solves one contact after another until the residual is small.
 
 use super::{EXACT, SolveReport};
 use crate::contact::ContactProblem;
@@ -26,8 +26,8 @@ pub(super) fn solve(
     while report.iterations < MOST_SWEEPS && *budget >= 0 {
         *budget -= UPDATE * impulses.len() as i64;
         for (k, impulse) in impulses.iter_mut().enumerate() {
-            let wanted = *impulse - problem.slack(k, velocities) / problem.diagonal(k);
-            let change = wanted.max(0.0) - *impulse;
+            let target = *impulse - problem.slack(k, velocities) / problem.diagonal(k);
+            let change = target.max(0.0) - *impulse;
             if change != 0.0 {
                 *impulse += change;
                 problem.apply(k, change, velocities);

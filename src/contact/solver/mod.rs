@@ -14,7 +14,7 @@ use block_pivoting::BlockPivoting;
 /// Work and quality of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SolveReport {
-    /// Whether the residual meets the solver's bound (1e-10 cm/s for block pivoting). It may not if
+    /// Whether the residual meets the solver's bound (1e-10 cm/s for block pivoting). It may exceed the bound if
     /// the linearized constraints contradict each other.
     pub converged: bool,
     /// Natural residual max|min(A_kk·λ_k, w_k)| in cm/s.
@@ -29,9 +29,10 @@ pub struct SolveReport {
     pub islands: u64,
 }
 
-/// About how many multiplications the contacts of a whole substep may take, and how many more per boat, even if it is
-/// cut into shorter ones. A densely packed flock takes a hundredth of that while it is placed, and less once it moves.
+/// Rough number of multiplications that the contacts of a whole substep may take, even if it is cut into shorter ones. A
+/// densely packed flock takes a hundredth of the budget while it is placed, and less once it moves.
 const MOST_WORK: i64 = 1_000_000_000;
+/// Number of multiplications by which each boat raises the budget.
 const MOST_WORK_A_BOAT: i64 = 500_000;
 
 /// Residual in cm/s that counts as solved.
@@ -42,17 +43,18 @@ pub const EXACT: f64 = 1e-10;
 pub struct ContactSolver {
     kind: Solver,
     islands: Islands,
-    /// The numbers of all islands.
-    all: Vec<u32>,
+    /// Indices of all islands.
+    all_islands: Vec<u32>,
     pivoting: BlockPivoting,
-    /// The work budget of a whole substep, and the part of it that is reserved for later contacts.
+    /// The work budget of a whole substep.
     most_work: i64,
+    /// The part of the remaining budget that is reserved for later contacts.
     reserved: i64,
     /// Work of the earlier substeps.
     work_before: i64,
-    /// Whether a contact is guessed to carry an impulse; afterwards, whether it does.
+    /// Whether each contact carries an impulse: a guess before a solve, the solution after it.
     pub active: Vec<bool>,
-    /// Impulses λ in cm/s (mass 1): a guess for Gauss–Seidel before, the solution after.
+    /// Impulses λ in cm/s (mass 1): a guess before a solve, the solution after it.
     pub impulses: Vec<f64>,
     /// Velocities after contact; scratch once a flock has swapped them with its own.
     pub velocities: Vec<Velocity>,
@@ -64,7 +66,7 @@ impl ContactSolver {
         Self {
             kind,
             islands: Islands::default(),
-            all: Vec::new(),
+            all_islands: Vec::new(),
             pivoting: BlockPivoting::new(1e-13),
             // Unbounded until the first substep sets a budget.
             most_work: 0,
@@ -95,12 +97,12 @@ impl ContactSolver {
     pub fn reset(&mut self, boats: usize, contacts: &[Contact]) {
         debug_assert_eq!(self.active.len(), contacts.len());
         self.islands.find(boats, contacts);
-        self.all.clear();
-        self.all.extend(0..self.islands.count() as u32);
+        self.all_islands.clear();
+        self.all_islands.extend(0..self.islands.count() as u32);
         self.pivoting.reset(boats, self.islands.count());
     }
 
-    /// Sets the work budget of a whole substep.
+    /// Restores the full work budget for a whole substep, if some of it has been used.
     pub(crate) fn refill(&mut self, boats: usize) {
         if self.pivoting.budget + self.reserved != self.most_work {
             self.work_before = self.work();
@@ -115,16 +117,16 @@ impl ContactSolver {
         (self.pivoting.budget, self.reserved) = (budget, 0);
     }
 
-    /// If easier contacts can replace the next ones, reserves most of the budget and leaves a small part for the next
-    /// ones.
-    pub(crate) fn reserve_budget(&mut self, easier_possible: bool) {
+    /// Leaves at most a sixteenth of the full budget for the next contacts and reserves the remainder, if easier contacts
+    /// can replace them. Otherwise makes the whole remaining budget available.
+    pub(crate) fn reserve_budget(&mut self, has_easier: bool) {
         let budget = self.pivoting.budget + self.reserved;
         let spare = (budget - self.most_work / 16).max(0);
-        self.reserved = if easier_possible { spare } else { 0 };
+        self.reserved = if has_easier { spare } else { 0 };
         self.pivoting.budget = budget - self.reserved;
     }
 
-    /// About how many multiplications the contacts of all substeps took, those that failed included.
+    /// Rough number of multiplications spent on the contacts of all substeps, including discarded ones.
     pub(crate) fn work(&self) -> i64 {
         self.work_before + self.most_work - self.pivoting.budget - self.reserved
     }
@@ -149,8 +151,8 @@ impl ContactSolver {
         self.kind == Solver::BlockPivoting
     }
 
-    /// Solves some islands again, with other biases: factors that are kept are used again as far as the active set is
-    /// the same. A solver without islands solves everything.
+    /// Solves the islands `which` again, with other biases. Kept factors are reused as far as the active set stays the
+    /// same. A solver without islands solves the whole problem.
     pub(crate) fn solve_again(&mut self, problem: &ContactProblem, which: &[u32]) -> SolveReport {
         if !self.has_islands() {
             return self.solve(problem);
@@ -158,7 +160,7 @@ impl ContactSolver {
         for &island in which {
             let contacts = self.islands.contacts(island as usize);
             if contacts.len() <= 2 {
-                problem.release(contacts, &mut self.velocities);
+                problem.reset_velocities(contacts, &mut self.velocities);
             }
         }
         let report = self.pivoting.solve(
@@ -183,7 +185,7 @@ impl ContactSolver {
                 velocities.clear();
                 velocities.extend_from_slice(problem.free);
                 let active = &mut self.active;
-                let (islands, all) = (&self.islands, &self.all);
+                let (islands, all) = (&self.islands, &self.all_islands);
                 self.pivoting.set_free(problem);
                 self.pivoting
                     .solve(problem, islands, all, active, impulses, velocities)
@@ -195,9 +197,9 @@ impl ContactSolver {
             Solver::Clarabel => clarabel::solve(problem, impulses, velocities),
         };
         if kind != Solver::BlockPivoting {
-            let carry = self.impulses.iter().map(|&impulse| impulse > 0.0);
+            let are_active = self.impulses.iter().map(|&impulse| impulse > 0.0);
             self.active.clear();
-            self.active.extend(carry);
+            self.active.extend(are_active);
         }
         report.islands = self.islands.count() as u64;
         report

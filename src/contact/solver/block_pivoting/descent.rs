@@ -25,8 +25,8 @@ impl IslandSolver {
         }
     }
 
-    /// Descends from the given impulses, or from zero; returns whether that solves the island. If some contacts push at
-    /// the start, others enter together; if none does, they enter one by one.
+    /// Descends from these impulses; returns whether that solves the island. If some contacts push at the start, the others
+    /// enter together. If none does, contacts enter one by one.
     fn descend_from(
         &mut self,
         mut current: Vec<f64>,
@@ -67,7 +67,7 @@ impl IslandSolver {
         false
     }
 
-    /// Takes impulses and activates the contacts that push; returns whether any does.
+    /// Sets the rows' impulses and activates the contacts that push; returns whether any does.
     fn start_from(&mut self, current: &[f64]) -> bool {
         for (k, &impulse) in current.iter().enumerate() {
             self.rows.rows[k].impulse = impulse;
@@ -88,8 +88,9 @@ impl IslandSolver {
         order[most..].iter().for_each(|&k| pushes[k] = 0.0);
     }
 
-    /// Activates all contacts whose gaps close, or the fastest of them, at most as many as can be independent of each
-    /// other. Contacts that would have to pull leave again at once. In a large island the other contacts are mostly far apart.
+    /// Activates the contacts whose gaps close, the fastest first, and at most as many as can be independent of each
+    /// other. Those that would have to pull leave again at once. In a large island most contacts are far apart, so most
+    /// of those that enter together do not affect each other.
     fn enter_violated(&mut self) {
         let rows = &self.rows.rows;
         let active = rows.iter().filter(|row| row.is_active).count();
@@ -113,8 +114,8 @@ impl IslandSolver {
             .map(|(k, _)| k)
     }
 
-    /// Moves `current` towards the impulses that close all active gaps, and drops contacts whose impulse vanishes
-    /// before that; returns the fraction of the first step that was taken, in (0, 1], or 0 if it could not be taken.
+    /// Moves `current` to the impulses that close all active gaps, and drops contacts whose impulse vanishes on the way.
+    /// Returns the fraction of the first step that was taken, in (0, 1], or 0 if it could not be taken.
     fn approach(
         &mut self,
         current: &mut [f64],
@@ -145,7 +146,7 @@ impl IslandSolver {
         }
     }
 
-    /// The largest fraction of the step from `current` to the new impulses at which none is negative.
+    /// The largest fraction of the step from `current` to the rows' impulses at which no impulse is negative.
     fn feasible_step(&self, current: &[f64]) -> f64 {
         let pairs = self.rows.rows.iter().zip(current);
         pairs

@@ -26,12 +26,12 @@ type Group = [Entry; GROUP];
 /// A row of L.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// Its groups of entries.
+    /// Start and end of its entries among the groups.
     start: u32,
     end: u32,
     /// Number of its entries, without the zeros that fill up its groups.
     count: u32,
-    /// The first row with an entry in this column.
+    /// Parent in the elimination tree: the first later row with an entry in this row's column.
     parent: u32,
     is_factored: bool,
     is_dirty: bool,
@@ -51,13 +51,13 @@ const EMPTY: Node = Node {
     inverse_pivot: 0.0,
 };
 
-/// The active rows on a body so far.
+/// The active rows on a body that an update has visited so far.
 #[derive(Debug, Clone, Copy)]
 struct Chain {
     first: u32,
     /// As in [`Node::before`].
     last: u32,
-    /// Whether the last one has just entered.
+    /// Whether the last row has just entered the active set.
     has_entered: bool,
 }
 
@@ -74,14 +74,13 @@ pub(super) struct Factor {
     groups: Vec<Group>,
     /// Number of groups in use.
     used: usize,
-    /// Whether rows have entered or left since it was brought up to date.
+    /// Whether rows have entered or left the active set since the last update.
     is_stale: bool,
     /// Rough number of multiplications that are still allowed; negative if the update has stopped halfway.
     pub budget: i64,
     active: Vec<u32>,
     chains: Vec<Chain>,
-    /// The row that is being computed. All of it is zero between two computations, and its end beyond the rows is
-    /// always zero.
+    /// The row that is being computed; all zero between two computations. One more number at the end is always zero.
     work: Vec<f64>,
 }
 
@@ -190,21 +189,21 @@ impl Factor {
         let mut pivot = rows[k].diagonal * (1.0 + regularization);
         let [mut a, mut b] = starts;
         let mut count = 0;
-        let own = k as u32;
-        while a.min(b) < own {
+        let row_index = k as u32;
+        while a.min(b) < row_index {
             let column = a.min(b);
             let node = &mut nodes[column as usize];
             let parent = node.parent;
-            let above = parent.min(own);
+            let above = parent.min(row_index);
             node.parent = above;
-            let rest = work[column as usize] - dot(row_of(known, node), work);
-            let value = rest * node.inverse_pivot;
-            work[column as usize] = rest;
-            pivot -= rest * value;
+            let remainder = work[column as usize] - dot(row_of(known, node), work);
+            let value = remainder * node.inverse_pivot;
+            work[column as usize] = remainder;
+            pivot -= remainder * value;
             new[count] = Entry { column, value };
             count += 1;
             // Row k now has this column's first entry, so the row that had it changes, too. (NONE plus 1 is 0.)
-            if parent.wrapping_add(1) > own + 1 {
+            if parent.wrapping_add(1) > row_index + 1 {
                 nodes[parent as usize].is_dirty = true;
             }
             a = if a == column { above } else { a };
@@ -216,7 +215,7 @@ impl Factor {
         self.finish(k, count);
     }
 
-    /// Fills up the entries of a row that has been computed, and clears `work`.
+    /// Pads the entries of a computed row with zeros, and clears `work`.
     fn finish(&mut self, k: usize, count: usize) {
         let start = self.used;
         if count > LONG_ROW {
@@ -262,8 +261,8 @@ impl Factor {
         }
     }
 
-    /// Solves A_FF·y = x for the active rows and stores y in x. Other rows hold zeros, and x has one more entry at the
-    /// end.
+    /// Solves A_FF·y = x for the active rows and stores y in x. Other rows of x must be zero. One more entry at the end
+    /// of x is scratch space.
     pub(super) fn solve(&self, x: &mut [f64]) {
         // Slices of known lengths, so that one bounds check covers a row's node and its number.
         let nodes = self.nodes.as_slice();

@@ -12,9 +12,9 @@ const PATIENCE: u32 = 5;
 /// Islands of more rows than this are swept before the first round; in smaller ones a round costs less than the
 /// sweeps.
 pub(super) const SWEPT_ROWS: usize = 48;
-/// Multiplications per row in each round, and per entry of the factor: rounds that compute few rows still go through
-/// all of them.
+/// Multiplications per row in each round, even if the round recomputes few rows of the factor.
 const ROUND: u64 = 50;
+/// Multiplications per entry of the factor in each round.
 const ENTRY: u64 = 8;
 /// Number of sweeps that guess the active rows.
 const SWEEPS: u32 = 2;
@@ -28,8 +28,9 @@ pub(super) struct IslandSolver {
     is_guess_old: bool,
     /// Right-hand side and solution, row by row.
     solution: Vec<f64>,
-    /// Number of rows with a wrong sign, and the largest slack of an active row in cm/s.
+    /// Number of rows with a wrong sign.
     violations: usize,
+    /// Largest absolute slack of an active row in cm/s.
     pub worst: f64,
 }
 
@@ -85,9 +86,9 @@ impl IslandSolver {
         report.residual = self.worst_residual(regularization, report.residual);
     }
 
-    /// Whether these rows must depend on each other: an island never needs more rows than its boats have degrees of
-    /// freedom, and a round with more fills the whole factor. A regularized problem needs all, since it shares impulses
-    /// among them.
+    /// Whether the rows for which `is_in` holds must be linearly dependent: they are more than the degrees of freedom
+    /// of the island's boats. No solution needs so many, and they would fill the whole factor. False for a regularized
+    /// problem, which shares impulses among all rows, and for small islands.
     fn are_dependent(&self, regularization: f64, is_in: impl Fn(&Row) -> bool) -> bool {
         let (rows, most) = (&self.rows.rows, self.most_active());
         rows.len() > most.max(SWEPT_ROWS)
@@ -100,7 +101,7 @@ impl IslandSolver {
         3 * (self.rows.bodies.len() - 1)
     }
 
-    /// Pivots until no sign is wrong, or leaves it to the descent.
+    /// Pivots until no sign is wrong. If that takes too long, the descent takes over.
     #[inline]
     fn pivot(&mut self, regularization: f64, report: &mut SolveReport) {
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
@@ -159,8 +160,8 @@ impl IslandSolver {
         computed
     }
 
-    /// One step of iterative refinement: removes the slack that rounding left at the active contacts. Returns whether a step
-    /// was needed. A regularized problem keeps its slack, since its contacts are meant to yield.
+    /// One step of iterative refinement: removes the slack that rounding left at the active contacts. Returns whether a
+    /// step was needed. A regularized problem keeps its slack, since its contacts are meant to yield.
     pub(super) fn refine(&mut self, regularization: f64) -> bool {
         if self.worst <= 0.5 * EXACT || regularization > TOLERANCE {
             return false;
@@ -182,8 +183,7 @@ impl IslandSolver {
         (self.violations, self.worst) = self.rows.update();
     }
 
-    /// Subtracts the work of a round, unless it was the last, from the budget; long rows of the factor have been
-    /// subtracted already.
+    /// Subtracts the work of a round from the budget, except that of long rows of the factor: updates subtract that.
     #[cold]
     pub(super) fn charge_round(&mut self) {
         let rows = ROUND * self.rows.rows.len() as u64;

@@ -1,4 +1,4 @@
-//! The contact problem of one island with its own numbering: rows of J, and the boats they join.
+//! The contact problem of one island: rows of J, and the boats that they join, numbered within the island.
 
 use crate::contact::{ContactProblem, InverseInertia};
 use crate::geometry::{Velocity, smaller};
@@ -11,7 +11,7 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Index of the walls among an island's bodies. They are at rest, and no impulse moves them.
 pub(super) const WALLS: u32 = 0;
 
-/// Violation of a row, from its impulse times A_kk (cm/s) and its slack. A regularized problem is meant to yield.
+/// Natural residual of a row in cm/s. `speed` is its impulse times A_kk. A row of a regularized problem may yield.
 #[inline]
 pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
     let compliance = if regularization < TOLERANCE {
@@ -22,8 +22,8 @@ pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
     smaller(speed, slack + compliance * speed).abs()
 }
 
-/// Linear and angular parts of a row of J, or of a velocity.
-pub(super) type Motion = [f64; 3];
+/// Two linear components and the angular one, of a row of J or of a velocity.
+pub(super) type Components = [f64; 3];
 
 /// One row of J and of J·M⁻¹, with its part of the solution. A contact with a wall has the walls as its
 /// second body, so that all rows look alike.
@@ -33,9 +33,10 @@ pub(super) struct Row {
     pub contact: u32,
     /// Its bodies, by their index in the island.
     pub bodies: [u32; 2],
-    /// J, and J·M⁻¹.
-    pub jacobian: [Motion; 2],
-    pub response: [Motion; 2],
+    /// Its row of J, for each body.
+    pub jacobian: [Components; 2],
+    /// Its row of J·M⁻¹, for each body.
+    pub response: [Components; 2],
     /// A_kk.
     pub diagonal: f64,
     /// bias_k.
@@ -53,20 +54,21 @@ pub(super) struct Row {
 /// A boat of an island.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Body {
-    /// Its index in the flock; none for the walls.
+    /// Its index in the flock; [`NONE`] for the walls.
     pub boat: u32,
-    /// Its velocity without contacts, and with contacts.
-    pub free: Motion,
-    pub velocity: Motion,
+    /// Its velocity without contacts.
+    pub free: Components,
+    /// Its velocity with contacts.
+    pub velocity: Components,
 }
 
 #[inline]
-fn dot(a: &Motion, b: &Motion) -> f64 {
+fn dot(a: &Components, b: &Components) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline]
-fn add(velocity: &mut Motion, response: &Motion, impulse: f64) {
+fn add(velocity: &mut Components, response: &Components, impulse: f64) {
     velocity[0] += response[0] * impulse;
     velocity[1] += response[1] * impulse;
     velocity[2] += response[2] * impulse;
@@ -86,7 +88,7 @@ impl Body {
         Self {
             boat,
             free: [free.linear.x, free.linear.y, free.angular],
-            velocity: Motion::default(),
+            velocity: Components::default(),
         }
     }
 }
@@ -94,7 +96,7 @@ impl Body {
 impl Row {
     /// Sets J and J·M⁻¹ on one side; returns that side's part of A_kk.
     #[inline]
-    fn set_side(&mut self, side: usize, jacobian: Motion, inertia: &InverseInertia) -> f64 {
+    fn set_side(&mut self, side: usize, jacobian: Components, inertia: &InverseInertia) -> f64 {
         let [x, y, arm] = jacobian;
         let response = [
             x * inertia.linear,
@@ -170,17 +172,18 @@ impl Rows {
             row.contact = k;
             row.bodies = [first, if sign == 0.0 { WALLS } else { index }];
             let (normal, inertia) = (contact.gap.normal, problem.inertia);
-            let own = [normal.x, normal.y, contact.gap.arm_i];
-            let other = [normal.x, normal.y, contact.gap.arm_j].map(|number| sign * number);
-            row.diagonal = row.set_side(0, own, &inertia[contact.boat as usize])
-                + row.set_side(1, other, &inertia[second]);
+            let first_jacobian = [normal.x, normal.y, contact.gap.arm_i];
+            let second_jacobian =
+                [normal.x, normal.y, contact.gap.arm_j].map(|number| sign * number);
+            row.diagonal = row.set_side(0, first_jacobian, &inertia[contact.boat as usize])
+                + row.set_side(1, second_jacobian, &inertia[second]);
         }
         for body in &self.bodies[1..] {
             indices[body.boat as usize] = NONE;
         }
     }
 
-    /// Index of a boat in the island, which is added if it is new.
+    /// Index of a boat in the island. A boat that is not yet in the island is added.
     fn body(&mut self, boat: u32, problem: &ContactProblem, indices: &mut [u32]) -> u32 {
         let index = &mut indices[boat as usize];
         if *index == NONE {
@@ -191,8 +194,8 @@ impl Rows {
         *index
     }
 
-    /// Guesses the active rows: those that push after sweeps of projected Gauss–Seidel from the present impulses. Most
-    /// changes of one substep are local, so that two sweeps find them.
+    /// Guesses the active rows by sweeps of projected Gauss–Seidel from the present impulses: those that then push. Most
+    /// changes in a substep are local, so that two sweeps find them.
     pub(super) fn sweep(&mut self, sweeps: u32) {
         self.set_velocities();
         let Self { rows, bodies } = self;
@@ -220,8 +223,8 @@ impl Rows {
         }
     }
 
-    /// Brings velocities and slacks up to date with the impulses; returns how many signs are wrong, and the
-    /// largest slack of an active row.
+    /// Recomputes velocities and slacks from the impulses. Returns the number of rows with a wrong sign, and the largest
+    /// absolute slack of an active row.
     pub(super) fn update(&mut self) -> (usize, f64) {
         self.set_velocities();
         let (mut violations, mut worst) = (0, 0.0_f64);
