@@ -15,14 +15,14 @@ pub enum Partner {
     Obstacle(u32),
 }
 
-/// A contact or near-contact, as a constraint on the velocities of one or two boats.
+/// Two bodies that touch or are near each other, as a constraint on the velocities of one or two boats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// The boat that the normal pushes.
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// End of `boat` at which the contact is.
+    /// Part of `boat`'s hull at which the contact is.
     pub feature: Feature,
     /// Gap, normal and lever arms at the pose where the contact was found.
     pub gap: Gap,
@@ -39,13 +39,13 @@ impl Contact {
         }
     }
 
-    /// Whether both contacts join the same two bodies.
+    /// Whether both contacts are between the same two bodies.
     #[inline]
     pub(super) fn is_twin(&self, other: &Self) -> bool {
         (self.boat, self.partner) == (other.boat, other.partner)
     }
 
-    /// The other boat, if the partner is one.
+    /// Index of the other boat, if the partner is a boat.
     #[inline]
     pub fn second(&self) -> Option<usize> {
         match self.partner {
@@ -54,8 +54,8 @@ impl Contact {
         }
     }
 
-    /// Whether the other side has ends. If it has, a contact may pass from one end of the boat to the other although
-    /// the point of contact does not move.
+    /// Whether the partner is a boat or an obstacle, and so may have ends. Then a contact may pass from one end of the boat
+    /// to the other although the point of contact does not move.
     #[inline]
     pub(super) fn has_ends(&self) -> bool {
         matches!(self.partner, Partner::Boat(_) | Partner::Obstacle(_))

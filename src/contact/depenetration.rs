@@ -12,25 +12,26 @@ use crate::parameters::FlockParameters;
 /// Overlaps beyond this, in boat radii (0.01 cm of 5), are undone by moving poses; smaller ones are left
 /// to the velocities.
 pub(super) const PENETRATION_SLOP: f64 = 0.002;
-/// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5): beyond that the linearization
-/// does not hold. A boat turns by at most 1 rad.
+/// The most by which one pass opens a gap or moves a boat, in boat radii (1 cm of 5). Linearized gaps do not hold for
+/// longer steps. A boat turns by at most 1 rad.
 const LARGEST_STEP: f64 = 0.2;
 
 /// Number of passes after which a substep accepts the remaining overlaps.
 const MOST_PASSES: u32 = 8;
 
-/// Function that long work calls now and then; the work ends if it returns false.
+/// Called now and then during long work, which ends if the answer is false.
 pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// A projection of poses, with its scratch space.
+/// Projects poses to open gaps, with its scratch space.
 #[derive(Debug, Clone)]
 pub(super) struct Depenetration {
     pub(super) solver: ContactSolver,
     contacts: Vec<Contact>,
     biases: Vec<f64>,
-    rest: Vec<Velocity>,
+    /// Velocities of boats at rest.
+    rest_velocities: Vec<Velocity>,
     inertia: Vec<InverseInertia>,
-    own_inertia: InverseInertia,
+    boat_inertia: InverseInertia,
     largest_step_cm: f64,
     /// Passes made so far.
     pub passes: u64,
@@ -41,13 +42,13 @@ impl Depenetration {
     pub(super) fn new(parameters: &FlockParameters) -> Self {
         let gyration_radius = parameters.gyration_radius_cm;
         Self {
-            // Regularized, since a dense packing may have no solution; the overlap that remains is then shared evenly.
+            // Regularized, since a dense packing may have no solution. Then the contacts share the remaining overlap.
             solver: ContactSolver::regularized(1e-4),
             contacts: Vec::new(),
             biases: Vec::new(),
-            rest: Vec::new(),
+            rest_velocities: Vec::new(),
             inertia: Vec::new(),
-            own_inertia: InverseInertia {
+            boat_inertia: InverseInertia {
                 linear: 1.0,
                 angular: 1.0 / (gyration_radius * gyration_radius),
             },
@@ -56,9 +57,8 @@ impl Depenetration {
         }
     }
 
-    /// Displaces poses until no overlap exceeds `allowed` (cm, positive), then fills `found` with the contacts nearer
-    /// than `margin`. At least one overlap exceeds `allowed` at first. The contacts include all overlaps, so they show
-    /// whether another pass is needed.
+    /// Displaces poses until no overlap exceeds `allowed` (cm, positive), or for [`MOST_PASSES`]. At least one overlap
+    /// exceeds `allowed` at first. Then fills `contacts` with those nearer than `margin`.
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -66,30 +66,31 @@ impl Depenetration {
         boats: &mut Vec<HullPose>,
         allowed: f64,
         margin: f64,
-        found: &mut Vec<Contact>,
+        contacts: &mut Vec<Contact>,
     ) {
         let wide = wide_margin(detector);
         for _ in 0..MOST_PASSES {
             detector.detect(boats, wide, &mut self.contacts);
             self.displace(poses, boats);
-            // The wide margin decides when the neighbor list is rebuilt, even if no other pass follows. Contacts come
-            // in the list's order, on which the bits of earlier results depend.
+            // The neighbor list is updated for the wide margin even if no pass follows. The order of contacts, and so the
+            // last bits of the results, depends on when the list is rebuilt.
             detector.update(boats, wide);
-            detector.detect(boats, margin.min(wide), found);
-            if smallest_gap(found) >= -allowed || self.solver.is_exhausted() {
+            detector.detect(boats, margin.min(wide), contacts);
+            if smallest_gap(contacts) >= -allowed || self.solver.is_exhausted() {
                 break;
             }
         }
         if margin > wide {
-            detector.detect(boats, margin, found);
+            detector.detect(boats, margin, contacts);
         }
     }
 
-    /// Moves poses once, to open the overlaps of the present contacts.
+    /// Moves poses once, to open the overlaps of `self.contacts`.
     fn displace(&mut self, poses: &mut [Pose], boats: &mut Vec<HullPose>) {
         self.passes += 1;
-        self.rest.resize(poses.len(), Velocity::default());
-        self.inertia.resize(poses.len(), self.own_inertia);
+        self.rest_velocities
+            .resize(poses.len(), Velocity::default());
+        self.inertia.resize(poses.len(), self.boat_inertia);
         let gaps = self.contacts.iter().map(|contact| contact.gap.gap);
         self.biases.clear();
         self.biases
@@ -103,21 +104,22 @@ impl Depenetration {
         let problem = ContactProblem {
             contacts: &self.contacts,
             inertia: &self.inertia,
-            free: &self.rest,
+            free: &self.rest_velocities,
             biases: &self.biases,
         };
         self.solver.solve(&problem);
+        // For a time of 1, velocities are displacements.
         for (pose, step) in poses.iter_mut().zip(&self.solver.velocities) {
-            let steps = (step.linear.norm() / self.largest_step_cm).max(step.angular.abs());
-            if steps.is_finite() {
-                *pose = pose.moved(step, 1.0 / steps.max(1.0));
+            let relative_size = (step.linear.norm() / self.largest_step_cm).max(step.angular.abs());
+            if relative_size.is_finite() {
+                *pose = pose.moved(step, 1.0 / relative_size.max(1.0));
             }
         }
         HullPose::replace_all(boats, poses);
     }
 }
 
-/// Gaps below this, in cm, take part in a pass, so that it pushes no hull into another one.
+/// Contacts with gaps below this, in cm, take part in a pass, so that it pushes no hull into another.
 fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }

@@ -9,14 +9,13 @@ use crate::geometry::{
 use crate::parameters::{FlockParameters, Pool};
 use std::ops::RangeInclusive;
 
-/// If the fastest boat moves by more than this fraction of a radius in a substep, it saves work to skip the contacts
-/// that stay open.
+/// Skipping open contacts saves work in a substep in which the fastest boat moves by more than this fraction of a radius.
 const LONG: f64 = 0.1;
-/// Largest number of pairs per boat in a substep in which boats move by more than half their length. It is enough for
-/// all boats within a few lengths in the densest flock. With more pairs, linearized gaps mean nothing, and memory and
-/// time grow with the square of the number of boats.
+/// Largest number of pairs per boat in a substep in which boats move by more than half their length. It covers all boats
+/// within a few lengths in the densest flock. With more pairs, linearized gaps are meaningless, and memory and time grow
+/// with the square of the number of boats.
 const MOST_PAIRS_A_BOAT: usize = 32;
-/// A substep in which too many boats are within reach is cut, but not below this fraction of `dt_s`.
+/// A substep in which boats reach too many others is cut, but not below this fraction of `dt_s`.
 const SHORTEST_SHARE: f64 = 1e-3;
 
 /// Geometry of a flock: hulls, walls, obstacles and the neighbor list.
@@ -28,11 +27,11 @@ pub struct ContactDetector {
     pub(crate) neighbors: NeighborList,
     pub(super) obstacles: NearObstacles,
     skin: f64,
-    /// A substep in which too many boats are within reach is cut, but not below this length in s.
+    /// A substep in which boats reach too many others is cut, but not below this length in s.
     shortest_s: f64,
     /// Whether detection stopped because boats reach too many others in this substep.
     is_crowded: bool,
-    /// Reach of each boat in cm. Two boats may touch if their gap is smaller than the sum of their reaches.
+    /// Reach of each boat in cm. Two bodies may touch if their gap is smaller than the sum of their reaches.
     reaches: Vec<f64>,
     /// Distance that the fastest boat moves in this substep, in cm.
     pub(super) farthest: f64,
@@ -68,7 +67,7 @@ impl ContactDetector {
         self.hull
     }
 
-    /// The largest of the speeds of hulls at these velocities.
+    /// The largest speed of a hull at these velocities, in cm/s.
     #[inline]
     fn fastest(&self, velocities: &[Velocity]) -> f64 {
         let mut fastest = 0.0;
@@ -82,7 +81,8 @@ impl ContactDetector {
     }
 
     /// Fills `contacts` with everything that boats with these velocities can reach within `dt`, even if contacts speed
-    /// up each boat by the speed of the fastest one. Returns a margin that includes all these contacts.
+    /// up each boat by half the speed of the fastest one. Returns a margin in cm that exceeds all their gaps. If boats
+    /// reach too many others, `contacts` stays empty, and `moves_too_far` is true.
     pub fn detect_moving(
         &mut self,
         boats: &[HullPose],
@@ -108,7 +108,7 @@ impl ContactDetector {
         let margin = self.margin();
         let may_crowd = boats.len() > 2 * MOST_PAIRS_A_BOAT && dt > self.shortest_s;
         self.is_crowded =
-            may_crowd && fastest * dt > self.hull.reach() && self.crowds(boats, margin);
+            may_crowd && fastest * dt > self.hull.reach() && self.reach_too_many(boats, margin);
         if self.is_crowded {
             contacts.clear();
         } else {
@@ -117,15 +117,15 @@ impl ContactDetector {
         margin
     }
 
-    /// Whether boats move so far in this substep that it saves work to skip contacts.
+    /// Whether boats move so far in this substep that skipping contacts saves work.
     pub(super) fn is_far(&self) -> bool {
         self.farthest > LONG * self.hull.radius
     }
 
-    /// Whether too many pairs of boats are nearer than `margin`. The list may also hold farther pairs, from a longer
-    /// substep.
+    /// Whether the neighbor list for `margin` has too many pairs of boats. A list with far too large a cutoff, left by a
+    /// longer substep, is rebuilt first.
     #[cold]
-    fn crowds(&mut self, boats: &[HullPose], margin: f64) -> bool {
+    fn reach_too_many(&mut self, boats: &[HullPose], margin: f64) -> bool {
         if self.neighbors.cutoff() > 2.0 * (2.0 * self.hull.reach() + margin + self.skin) {
             self.neighbors.clear();
         }
@@ -145,7 +145,7 @@ impl ContactDetector {
         self.detect_within_reach(boats, margin, contacts);
     }
 
-    /// As [`Self::detect`], with the reaches that `self.reaches` holds, each at most half the margin.
+    /// As [`Self::detect`], but each boat has its own reach from `self.reaches`, at most half the margin.
     fn detect_within_reach(
         &mut self,
         boats: &[HullPose],
@@ -157,16 +157,16 @@ impl ContactDetector {
         self.detect_listed(boats, margin, contacts);
     }
 
-    /// Adds the contacts of the neighbor list.
+    /// Adds the contacts within reach: with walls, obstacles, and the boats in the neighbor list.
     fn detect_listed(&self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
-        // Only the boat moves, not the wall.
-        let open = self.open_water(0.5 * margin);
+        // Half the margin is the boat's reach; the wall does not move.
+        let open_water = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
         // Slices of one length, so that one bounds check covers both.
         let reaches = &self.reaches[..boats.len()];
         for (boat, partners) in self.neighbors.groups() {
             let (pose, reach) = (&boats[boat as usize], reaches[boat as usize]);
-            if !open.contains(&pose.center.norm_squared()) {
+            if !open_water.contains(&pose.center.norm_squared()) {
                 self.detect_walls(boat, pose, reach, contacts);
             }
             if has_obstacles {
@@ -175,10 +175,15 @@ impl ContactDetector {
             for &partner in partners {
                 let (first, second) = (boat.min(partner), boat.max(partner));
                 let (a, b) = (&boats[first as usize], &boats[second as usize]);
-                let near = reach + reaches[partner as usize];
-                pair_gaps((a, self.hull), (b, self.hull), near, |feature, gap| {
-                    contacts.push(Contact::new(first, Partner::Boat(second), feature, gap));
-                });
+                let pair_reach = reach + reaches[partner as usize];
+                pair_gaps(
+                    (a, self.hull),
+                    (b, self.hull),
+                    pair_reach,
+                    |feature, gap| {
+                        contacts.push(Contact::new(first, Partner::Boat(second), feature, gap));
+                    },
+                );
             }
         }
     }
@@ -192,45 +197,46 @@ impl ContactDetector {
     }
 
     /// Whether boats move too far for one substep of `dt` at these velocities: they reach too many others, or might
-    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot; once it is through,
-    /// no gap shows which side it came from.
+    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot pass through. After it
+    /// has, no gap shows from which side it came.
     pub(crate) fn moves_too_far(&self, velocities: &[Velocity], dt: f64) -> bool {
         let farthest = 0.5 * self.hull.radius;
         self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
     }
 
-    /// Whether a boat moves farther than its reach: then contacts may matter that were not found.
+    /// Whether a boat moves farther than its reach. Then it may meet a body with which no contact was detected.
     pub(super) fn is_outrun(&self, displacements: &[f64]) -> bool {
         let mut pairs = displacements.iter().zip(&self.reaches);
         pairs.any(|(displacement, reach)| displacement > reach)
     }
 
-    /// Whether bodies overlap by more than `allowed` at poses to which boats move by these displacements, found or not.
-    /// Also true if a boat moves so far that the neighbor list may lack what it meets.
+    /// Whether any bodies in the neighbor list overlap by more than `allowed` at the poses in `boats`, even if no contact
+    /// between them was detected. Also true if a boat's displacement is so large that the list may lack a body that it
+    /// meets.
     #[cold]
-    pub(super) fn may_overlap_unseen(
+    pub(super) fn may_overlap_undetected(
         &mut self,
         boats: &[HullPose],
         displacements: &[f64],
         allowed: f64,
     ) -> bool {
-        let listed = 0.5 * self.margin();
+        let listed_displacement = 0.5 * self.margin();
         let mut contacts = Vec::new();
         self.reaches.fill(0.0);
         self.detect_listed(boats, 0.0, &mut contacts);
         contacts.iter().any(|contact| contact.gap.gap < -allowed)
             || displacements
                 .iter()
-                .any(|&displacement| displacement > listed)
+                .any(|&displacement| displacement > listed_displacement)
     }
 
-    /// Distance in cm up to which bodies are listed as neighbors: more than boats reach, even if contacts speed them up.
+    /// Distance in cm up to which two boats are listed as neighbors: the largest possible sum of their reaches.
     fn margin(&self) -> f64 {
         3.0 * self.farthest + 1e-3 * self.hull.radius
     }
 
-    /// Squared distances from the pool's center at which no wall is nearer than `margin`; an empty range if the margins
-    /// of the two walls meet.
+    /// Squared distances of a hull's center from the pool's center, in cm², at which the hull is farther than `margin`
+    /// from both walls. The range is empty if there are none.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
         let square = |distance: f64| distance.max(0.0) * distance;
         let reach = self.hull.reach() + margin;
@@ -240,11 +246,11 @@ impl ContactDetector {
             0.0
         };
         let high = self.pool.outer_radius_cm - reach;
-        // The walls' margins meet in the middle.
+        // A hull for which the pool is too small is never in open water.
         low..=if high < 0.0 { -1.0 } else { square(high) }
     }
 
-    /// Whether a center is between the pool's walls, and in none of the obstacles that were near the boat.
+    /// Whether a boat's center is between the pool's walls, and outside all obstacles that the list has near the boat.
     pub(crate) fn is_in_water(&self, boat: u32, center: Vec2) -> bool {
         let Pool {
             inner_radius_cm: inner,
@@ -255,8 +261,9 @@ impl ContactDetector {
             return false;
         }
         let obstacles = &self.obstacles;
-        let near = obstacles.of(boat).iter();
-        near.map(|&number| &obstacles.obstacles[number as usize])
+        let near_obstacles = obstacles.near_boat(boat).iter();
+        near_obstacles
+            .map(|&number| &obstacles.obstacles[number as usize])
             .all(|obstacle| obstacle.distance(center) >= 0.0)
     }
 
@@ -265,10 +272,11 @@ impl ContactDetector {
         let distance = pose.center.norm_squared().sqrt();
         if distance + self.hull.reach() + margin > outer {
             let ends = if self.hull.half_length > 0.0 { 2 } else { 1 };
-            let free = (outer - self.hull.radius - margin).max(0.0);
+            // An end nearer to the pool's center than this has a gap above the margin.
+            let open_radius = (outer - self.hull.radius - margin).max(0.0);
             for (feature, side) in Feature::ENDS.into_iter().zip([-1.0, 1.0]).take(ends) {
                 let end = pose.end(side, self.hull.half_length);
-                if end.norm_squared() < free * free {
+                if end.norm_squared() < open_radius * open_radius {
                     continue;
                 }
                 let gap = outer_wall_gap(pose, side, self.hull, outer);
@@ -294,7 +302,7 @@ impl ContactDetector {
         margin: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        for &number in self.obstacles.of(boat) {
+        for &number in self.obstacles.near_boat(boat) {
             let obstacle = &self.obstacles.obstacles[number as usize];
             obstacle.gaps(pose, self.hull, margin, &mut |feature, gap| {
                 contacts.push(Contact::new(boat, Partner::Obstacle(number), feature, gap));

@@ -7,7 +7,7 @@ use super::{Contact, Partner};
 pub struct Islands {
     /// Union-find over boats.
     parent: Vec<u32>,
-    /// Island of each island's first boat, and of each contact.
+    /// For the first boat of each island, the island's index; [`NONE`] for other boats.
     island_of_root: Vec<u32>,
     island_of_contact: Vec<u32>,
     /// Start of each island in `members`.
@@ -19,29 +19,29 @@ pub struct Islands {
 const NONE: u32 = u32::MAX;
 
 impl Islands {
-    /// Finds the islands of a flock of `boats` boats, numbered in the order of detection. Two boats at the
-    /// same wall are not joined.
+    /// Groups contacts into islands, numbered in the order of their first contacts. `boats` is the number of boats. A wall
+    /// joins no boats.
     pub fn find(&mut self, boats: usize, contacts: &[Contact]) {
         self.join(boats, contacts);
-        // First the sizes, then the members: a counting sort by island.
+        // A counting sort by island: `starts[island + 1]` first counts the island's contacts.
         self.island_of_root.clear();
         self.island_of_root.resize(boats, NONE);
         self.island_of_contact.resize(contacts.len(), 0);
         self.starts.clear();
         self.starts.push(0);
-        for (contact, own) in contacts.iter().zip(&mut self.island_of_contact) {
+        for (contact, contact_island) in contacts.iter().zip(&mut self.island_of_contact) {
             let root = self.parent[contact.boat as usize];
             let island = &mut self.island_of_root[root as usize];
             if *island == NONE {
                 *island = self.starts.len() as u32 - 1;
                 self.starts.push(0);
             }
-            *own = *island;
+            *contact_island = *island;
             self.starts[*island as usize + 1] += 1;
         }
+        // Then it holds the index of the island's first member, and moves to the island's end as members are added.
         let mut first = 0;
         for start in &mut self.starts[1..] {
-            // Filling has moved every start to its island's end.
             first += std::mem::replace(start, first);
         }
         self.members.resize(contacts.len(), 0);
@@ -63,7 +63,7 @@ impl Islands {
                 join(parent, contact.boat, second);
             }
         }
-        // Parents come before their children.
+        // Parents come before their children, so a parent's own parent is already the first boat.
         for boat in 0..boats {
             parent[boat] = parent[parent[boat] as usize];
         }
@@ -74,7 +74,7 @@ impl Islands {
         self.starts.len().saturating_sub(1)
     }
 
-    /// The contacts of an island.
+    /// Indices of an island's contacts.
     pub fn contacts(&self, island: usize) -> &[u32] {
         let ends = &self.starts[island..island + 2];
         &self.members[ends[0] as usize..ends[1] as usize]
@@ -84,7 +84,7 @@ impl Islands {
 /// Joins the sets of two boats. The root of a set is its first boat.
 #[inline]
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
-    // This happens, for example, if two boats touch twice.
+    // Two boats may touch twice, for example.
     if parent[a as usize] == parent[b as usize] {
         return;
     }
@@ -92,7 +92,7 @@ pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
     parent[a.max(b) as usize] = a.min(b);
 }
 
-/// The first boat of a boat's set.
+/// The first boat of a boat's set. Shortens the path to it on the way.
 pub(crate) fn root(parent: &mut [u32], mut boat: u32) -> u32 {
     loop {
         let above = parent[boat as usize];

@@ -8,7 +8,7 @@ use crate::geometry::{
 };
 
 impl ContactDetector {
-    /// Whether a contact overlaps at other poses by more than `allowed`.
+    /// Whether the two bodies of a contact overlap at other poses by more than `allowed`.
     pub(super) fn overlaps_at(&self, contact: &Contact, boats: &[HullPose], allowed: f64) -> bool {
         let gap = if contact.has_ends() {
             self.smallest_gap_at(contact, boats)
@@ -18,7 +18,8 @@ impl ContactDetector {
         gap < -allowed
     }
 
-    /// The smaller of the two gaps between a contact's boat and its partner, a boat or an obstacle, at other poses.
+    /// The smaller of the two gaps between a contact's boat and its partner at other poses, in cm. The partner is a boat or
+    /// an obstacle.
     #[inline]
     pub(super) fn smallest_gap_at(&self, contact: &Contact, boats: &[HullPose]) -> f64 {
         let boat = &boats[contact.boat as usize];
@@ -31,8 +32,8 @@ impl ContactDetector {
         }
     }
 
-    /// The two touches between a contact's boat and its partner, a boat or an obstacle, at other poses: first that of
-    /// the stern's group of ends, then that of the bow's. Crossed cores count for both.
+    /// The two touches between a contact's boat and its partner at other poses: first that of the stern's group of ends,
+    /// then that of the bow's. The partner is a boat or an obstacle. Crossed cores count for both.
     #[inline]
     pub(super) fn touches_at(&self, contact: &Contact, boats: &[HullPose]) -> [EndTouch; 2] {
         let boat = &boats[contact.boat as usize];
@@ -56,7 +57,7 @@ impl ContactDetector {
         touches
     }
 
-    /// The gap of a known contact at other poses.
+    /// The gap of a contact at other poses, with the same ends of the two hulls.
     // Inlined, as most callers need only the distance.
     #[inline(always)]
     pub(crate) fn gap_at(&self, contact: &Contact, boats: &[HullPose]) -> Gap {
@@ -77,8 +78,8 @@ impl ContactDetector {
         }
     }
 
-    /// The gap of contact k at other poses, at the point to which its touch has moved. If two bodies have one contact, it
-    /// describes both of their touches: the smaller gap counts.
+    /// The gap of contact k at other poses, at the point to which its touch has moved. If two bodies have a single contact,
+    /// the touch with the smaller gap counts.
     pub(crate) fn moved_gap(&self, contacts: &[Contact], k: usize, boats: &[HullPose]) -> Gap {
         let contact = &contacts[k];
         if !contact.has_ends() || contact.feature.side().is_none() {
@@ -105,7 +106,7 @@ impl ContactDetector {
     }
 }
 
-/// Stores a touch by the end of the boat at which it is; a touch between the ends counts for both.
+/// Stores a touch at the index of the boat's end; a touch at neither end counts for both.
 #[inline]
 fn store_touch(touches: &mut [EndTouch; 2], feature: Feature, gap: &Gap) {
     match feature {

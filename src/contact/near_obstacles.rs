@@ -1,18 +1,19 @@
-//! Obstacles that each boat may touch soon: a list that is valid as long as the neighbor list, and is rebuilt with it.
+//! Obstacles that each boat may touch soon. The lists are rebuilt with the neighbor list.
 
 use crate::geometry::{NeighborList, Obstacle};
 
-/// The obstacles of a pool, and for each boat those near it.
+/// The obstacles of a pool, and for each boat a list of those near it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct NearObstacles {
     pub(super) obstacles: Vec<Obstacle>,
-    /// Whether some of them have no thickness.
+    /// Whether some obstacles have no thickness.
     pub(super) has_walls: bool,
     /// Start of each boat's obstacles in `near`.
     starts: Vec<u32>,
+    /// Indices of obstacles, boat by boat.
     near: Vec<u32>,
-    /// The neighbor list's count of builds when these lists were made.
-    build: u64,
+    /// The neighbor list's number of builds when these lists were built.
+    neighbor_builds: u64,
 }
 
 impl NearObstacles {
@@ -28,10 +29,10 @@ impl NearObstacles {
     /// Rebuilds the lists if the neighbor list was rebuilt. Two moving boats are listed within its cutoff. An obstacle
     /// does not move, so half the cutoff is enough for it.
     pub(super) fn update(&mut self, neighbors: &NeighborList) {
-        if self.obstacles.is_empty() || self.build == neighbors.builds() {
+        if self.obstacles.is_empty() || self.neighbor_builds == neighbors.builds() {
             return;
         }
-        self.build = neighbors.builds();
+        self.neighbor_builds = neighbors.builds();
         let reach = 0.5 * neighbors.cutoff();
         self.starts.clear();
         self.near.clear();
@@ -44,8 +45,8 @@ impl NearObstacles {
         }
     }
 
-    /// The obstacles near a boat.
-    pub(super) fn of(&self, boat: u32) -> &[u32] {
+    /// Indices of the obstacles near a boat.
+    pub(super) fn near_boat(&self, boat: u32) -> &[u32] {
         let boat = boat as usize;
         if self.starts.is_empty() {
             return &[];

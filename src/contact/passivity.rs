@@ -1,32 +1,32 @@
 //! Frictionless plastic contacts never add energy to the boats that they join, except when they open an overlap.
 //!
-//! If biases follow from the present gaps alone, every solution obeys this, since rest satisfies the constraints.
-//! Biases may also look ahead: along the curve of a gap whose bodies pushed each other before, for a flank on the inner
-//! wall, or by relinearization. Such biases demand too much if a boat turns far in one substep: the contact then passes
-//! from one end of the hull to the other, and a push at the first end opens nothing.
+//! If biases follow from the present gaps alone, every solution obeys this, since boats at rest satisfy the constraints.
+//! Biases may also look ahead: along the curve of a gap whose bodies pushed each other before, for a flank on a convex
+//! wall, or by relinearization. Such biases demand too much if a boat turns far in one substep. The contact then passes
+//! from one end of the hull to the other, and an impulse at the first end does not open the gap.
 
 use super::ContactProblem;
 use super::solver::ContactSolver;
 use super::velocity_bias::VelocityBias;
 
-/// Fraction of an island's energy that biases along a curve may add. Normally they add a fraction of third order in
-/// dt: in `wide` and `narrow`, free or jammed, below 0.01 at dt = 0.01 to 0.05 s in all but 6 of 1.8 million islands.
+/// Fraction of an island's energy that biases along a curve may add. Normally the fraction is of third order in dt. In
+/// `wide` and `narrow`, free or jammed, at dt = 0.01 to 0.05 s, it exceeded 0.01 in 6 of 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
-/// Whether contacts might drive a boat, checked quickly: an impulse λ at a contact that opens at the speed
-/// −b adds at most −b·λ.
+/// A quick check whether contacts might drive a boat. An impulse λ at a contact whose bias b makes it open, at the
+/// speed −b, adds at most the energy −b·λ.
 pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
     let adds_much = |k: usize| {
         let contact = &problem.contacts[k];
-        let ahead = bias.of_gap(&contact.gap).min(0.0) - problem.biases[k];
+        let added_speed = bias.for_gap(&contact.gap).min(0.0) - problem.biases[k];
         let energy = problem.energy(contact.boat as usize, problem.free);
-        ahead > 0.0 && ahead * impulses[k] > ALLOWED * energy
+        added_speed > 0.0 && added_speed * impulses[k] > ALLOWED * energy
     };
     (0..impulses.len()).any(|k| impulses[k] > 0.0 && adds_much(k))
 }
 
-/// Whether contacts push a boat's flank from opposite sides. With biases that look ahead, each contact would turn the
-/// boat back against the other; a plastic impact stops the turn instead.
+/// Whether contacts push a boat's flank from opposite sides. With biases that look ahead, they would reverse the boat's
+/// turn; a plastic impact only stops it.
 fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> bool {
     let contacts = island.iter().map(|&k| k as usize);
     let pushed = contacts
@@ -43,11 +43,12 @@ fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> boo
 /// Finds the islands whose contacts drive boats.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passivity {
-    counted: Vec<bool>,
+    /// Whether each boat's energy is already counted in its island's.
+    is_counted: Vec<bool>,
 }
 
 impl Passivity {
-    /// The contacts of the islands in which contacts drive boats, or turn one back between obstacles.
+    /// Indices of the contacts of the islands in which contacts drive boats, or reverse a boat's turn between obstacles.
     #[cold]
     pub(super) fn driven(
         &mut self,
@@ -56,8 +57,8 @@ impl Passivity {
         bias: VelocityBias,
         has_obstacles: bool,
     ) -> Vec<usize> {
-        self.counted.clear();
-        self.counted.resize(problem.free.len(), false);
+        self.is_counted.clear();
+        self.is_counted.resize(problem.free.len(), false);
         let islands = (0..solver.islands().count()).map(|island| solver.islands().contacts(island));
         let driven = islands.filter(|island| {
             self.is_driven(island, solver, problem, bias)
@@ -66,7 +67,8 @@ impl Passivity {
         driven.flatten().map(|&k| k as usize).collect()
     }
 
-    /// Whether the contacts of an island (their indices) add more energy to its boats than opening overlaps takes.
+    /// Whether the contacts of an island add more energy to its boats than opening overlaps takes. `island` lists the
+    /// contacts' indices.
     fn is_driven(
         &mut self,
         island: &[u32],
@@ -79,12 +81,12 @@ impl Passivity {
             let contact = &problem.contacts[k as usize];
             let boats = [Some(contact.boat as usize), contact.second()];
             for boat in boats.into_iter().flatten() {
-                if !std::mem::replace(&mut self.counted[boat], true) {
+                if !std::mem::replace(&mut self.is_counted[boat], true) {
                     before += problem.energy(boat, problem.free);
                     after += problem.energy(boat, &solver.velocities);
                 }
             }
-            before += solver.impulses[k as usize] * (-bias.of_gap(&contact.gap)).max(0.0);
+            before += solver.impulses[k as usize] * (-bias.for_gap(&contact.gap)).max(0.0);
         }
         after > (1.0 + ALLOWED) * before
     }

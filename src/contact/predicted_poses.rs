@@ -12,10 +12,11 @@ pub(super) struct PredictedPoses {
     hulls: Vec<HullPose>,
     /// Whether these poses follow from the velocities of the last solve.
     is_current: bool,
-    /// Largest motion of each boat's hull, in cm.
+    /// Upper bound in cm of how far each boat's core moves.
     displacements: Vec<f64>,
-    /// Boats whose prediction is repeated, and for each boat whether it is one of them.
+    /// Boats whose prediction is repeated.
     listed: Vec<u32>,
+    /// Whether each boat is in `listed`; all false between calls.
     is_listed: Vec<bool>,
 }
 
@@ -66,9 +67,9 @@ impl PredictedPoses {
         self.is_current = true;
     }
 
-    /// Whether a boat is pushed farther than contacts were looked for, and overlaps another body by more than the tolerance,
-    /// and by more than `contacts` do before.
-    pub(super) fn overlaps_unseen(
+    /// Whether a boat moves beyond its reach, and bodies then overlap by more than the tolerance and than any of `contacts`
+    /// does at the substep's start.
+    pub(super) fn overlaps_undetected(
         &self,
         detector: &mut ContactDetector,
         contacts: &[Contact],
@@ -77,7 +78,7 @@ impl PredictedPoses {
         debug_assert!(self.is_current);
         detector.is_outrun(&self.displacements) && {
             let allowed = tolerance.max(-smallest_gap(contacts));
-            detector.may_overlap_unseen(&self.hulls, &self.displacements, allowed)
+            detector.may_overlap_undetected(&self.hulls, &self.displacements, allowed)
         }
     }
 
@@ -86,8 +87,8 @@ impl PredictedPoses {
         self.is_current = false;
     }
 
-    /// Swaps the predicted poses and hulls with those at the substep's start, if the prediction is up to date, and marks it
-    /// outdated. Returns whether it did.
+    /// If the prediction is up to date, swaps the predicted poses and hulls with those at the substep's start, and
+    /// marks the prediction as outdated. Returns whether it was up to date.
     pub(super) fn take_poses(&mut self, poses: &mut Vec<Pose>, hulls: &mut Vec<HullPose>) -> bool {
         if self.is_current {
             std::mem::swap(poses, &mut self.poses);
@@ -96,7 +97,7 @@ impl PredictedPoses {
         std::mem::take(&mut self.is_current)
     }
 
-    /// Whether one of these contacts overlaps by more than `allowed` at the predicted poses.
+    /// Whether the two bodies of any contact overlap by more than `allowed` at the predicted poses.
     pub(super) fn overlaps(
         &self,
         detector: &ContactDetector,
@@ -107,28 +108,28 @@ impl PredictedPoses {
         pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 
-    /// As [`Self::overlaps`], for the contacts that their boats move far enough to close.
+    /// As [`Self::overlaps`], but ignores contacts that their boats move too little to close.
     pub(super) fn closing_overlaps(
         &self,
         detector: &ContactDetector,
         contacts: &[Contact],
         allowed: f64,
     ) -> bool {
-        // Most contacts are too far to close, so twins are looked for last.
+        // Most contacts are too far apart to close, so the check for a twin comes second.
         let mut last: Option<&Contact> = None;
         contacts.iter().any(|contact| {
-            if contact.gap.gap > self.displacements(contact) {
+            if contact.gap.gap > self.summed_displacement(contact) {
                 return false;
             }
-            let is_known = last.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
+            let is_checked = last.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
             last = Some(contact);
-            !is_known && detector.overlaps_at(contact, &self.hulls, allowed)
+            !is_checked && detector.overlaps_at(contact, &self.hulls, allowed)
         })
     }
 
     /// Sum of the displacements of a contact's boats, in cm.
     #[inline]
-    fn displacements(&self, contact: &Contact) -> f64 {
+    fn summed_displacement(&self, contact: &Contact) -> f64 {
         let displacement = |boat: usize| self.displacements[boat];
         displacement(contact.boat as usize) + contact.second().map_or(0.0, displacement)
     }
@@ -138,13 +139,13 @@ impl PredictedPoses {
     #[inline]
     pub(super) fn may_close(&self, contacts: &[Contact], k: usize) -> bool {
         let contact = &contacts[k];
-        let displacements = self.displacements(contact);
-        contact.gap.gap <= displacements
+        let displacement = self.summed_displacement(contact);
+        contact.gap.gap <= displacement
             || contact.has_ends()
                 && first_of_two(contacts, k).is_some_and(|first| {
                     contacts[first..first + 2]
                         .iter()
-                        .any(|twin| twin.gap.gap <= displacements)
+                        .any(|twin| twin.gap.gap <= displacement)
                 })
     }
 
@@ -153,16 +154,16 @@ impl PredictedPoses {
         self.is_current
     }
 
-    /// The gap of contact k at the point to which its touch has moved; infinite if the bodies do not touch there any more.
-    /// If two bodies have one contact, the smaller gap of their touches counts. `pair` caches the index of the first of two
-    /// contacts, and the gaps of both.
+    /// The predicted gap of contact k in cm, at the point to which its touch has moved; infinite if no end faces the
+    /// other hull there any more. If two bodies have a single contact, the smaller gap of their touches counts.
+    /// `twin_gaps` caches the index of the first of two twin contacts, and the gaps of both.
     #[inline]
     pub(super) fn gap(
         &self,
         detector: &ContactDetector,
         contacts: &[Contact],
         k: usize,
-        pair: &mut Option<(usize, [f64; 2])>,
+        twin_gaps: &mut Option<(usize, [f64; 2])>,
     ) -> f64 {
         let contact = &contacts[k];
         if !contact.has_ends() || contact.feature.side().is_none() {
@@ -171,8 +172,8 @@ impl PredictedPoses {
         let Some(first) = first_of_two(contacts, k) else {
             return detector.smallest_gap_at(contact, &self.hulls);
         };
-        let gaps = match *pair {
-            Some((known, gaps)) if known == first => gaps,
+        let gaps = match *twin_gaps {
+            Some((cached, gaps)) if cached == first => gaps,
             _ => {
                 let touches = detector.touches_at(contact, &self.hulls);
                 let [stern, bow] = [touches[0].gap, touches[1].gap];
@@ -183,7 +184,7 @@ impl PredictedPoses {
                 }
             }
         };
-        *pair = Some((first, gaps));
+        *twin_gaps = Some((first, gaps));
         gaps[k - first]
     }
 }

@@ -1,5 +1,5 @@
-//! From free velocities to velocities that respect the contacts: detection, warm start, solution,
-//! relinearization, and the fallback if constraints contradict each other.
+//! Holds the contacts of a flock from substep to substep: finds them, guesses their impulses, and solves them for
+//! velocities that respect them.
 
 mod biases;
 mod relinearization;
@@ -27,9 +27,9 @@ pub(crate) struct Motion<'a> {
     pub poses: &'a [Pose],
     /// The hulls at these poses.
     pub hulls: &'a [HullPose],
-    /// Velocities before the substep; `None` where gaps are taken as linear.
+    /// Velocities before the substep; `None` if gaps count as linear.
     pub before: Option<&'a [Velocity]>,
-    /// Velocities without contacts.
+    /// Velocities after the substep without contacts.
     pub free: &'a [Velocity],
     /// Effective inertia.
     pub inertia: &'a [InverseInertia],
@@ -53,16 +53,16 @@ impl<'a> Motion<'a> {
 pub(crate) struct ContactResolver {
     /// Geometry of the flock and its pool.
     pub(crate) detector: ContactDetector,
-    /// Impulses of the contacts found last, in cm/s. Its velocities hold only until the substep takes them.
+    /// Holds the impulses of the contacts found last, in cm/s, and the solved velocities until the substep takes them.
     pub(crate) solver: ContactSolver,
     /// The contacts found last.
     pub(crate) contacts: Vec<Contact>,
     /// Contacts that are skipped as long as the solution keeps them open.
     skipped: SkippedContacts,
     biases: Vec<f64>,
-    /// Whether each contact carried an impulse in the substep before.
+    /// Whether each contact carried an impulse in the previous substep.
     persistent: Vec<bool>,
-    /// Contacts that carried an impulse, in the order of detection.
+    /// Contacts and impulses of the previous substep.
     warm_start_cache: WarmStartCache,
     depenetration: Box<Depenetration>,
     passivity: Passivity,
@@ -70,7 +70,7 @@ pub(crate) struct ContactResolver {
     relinearization: Relinearization,
     /// Overlaps beyond this (cm) are undone by moving poses.
     penetration_slop: f64,
-    /// Whether moving poses has left overlaps beyond that.
+    /// Whether overlaps beyond the slop remain after poses were moved.
     is_deep: bool,
     /// Length of a whole substep in s. An overlap has to open within this time, however short a substep is.
     whole_substep_s: f64,
@@ -119,7 +119,7 @@ impl ContactResolver {
         self.warm_start_cache.replace(impulses.iter().copied());
     }
 
-    /// Clears contacts, impulses and the neighbor list, after poses were set from outside.
+    /// Clears contacts, impulses and the neighbor list. Needed after poses were set from outside.
     pub(crate) fn forget(&mut self) {
         self.contacts.clear();
         self.solver.impulses.clear();
@@ -142,10 +142,10 @@ impl ContactResolver {
         let margin = self
             .detector
             .detect_moving(boats, velocities, dt, &mut self.contacts);
-        let smallest = smallest_gap(&self.contacts).min(0.0);
+        let deepest = smallest_gap(&self.contacts).min(0.0);
         self.is_deep = false;
-        statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-smallest);
-        if smallest < -self.penetration_slop {
+        statistics.worst_overlap_cm = statistics.worst_overlap_cm.max(-deepest);
+        if deepest < -self.penetration_slop {
             self.depenetrate(poses, boats, velocities, margin, statistics);
             self.is_deep = smallest_gap(&self.contacts) < -self.penetration_slop;
         }
@@ -160,7 +160,7 @@ impl ContactResolver {
         !self.contacts.is_empty()
     }
 
-    /// Undoes deep overlaps, and finds the contacts nearer than `margin` again.
+    /// Undoes deep overlaps by moving poses, and then finds the contacts nearer than `margin` again.
     fn depenetrate(
         &mut self,
         poses: &mut [Pose],
@@ -171,8 +171,8 @@ impl ContactResolver {
     ) {
         let depenetration = &mut self.depenetration;
         depenetration.solver.share_budget(&self.solver);
-        let passes = depenetration.passes;
-        let angular_momentum = orbital_angular_momentum(poses, velocities);
+        let passes_before = depenetration.passes;
+        let momentum_before = orbital_angular_momentum(poses, velocities);
         depenetration.open_overlaps(
             &mut self.detector,
             poses,
@@ -182,12 +182,12 @@ impl ContactResolver {
             &mut self.contacts,
         );
         self.solver.share_budget(&depenetration.solver);
-        statistics.depenetration_passes += depenetration.passes - passes;
+        statistics.depenetration_passes += depenetration.passes - passes_before;
         statistics.displaced_angular_momentum_cm2_s +=
-            (orbital_angular_momentum(poses, velocities) - angular_momentum).abs();
+            (orbital_angular_momentum(poses, velocities) - momentum_before).abs();
     }
 
-    /// Guesses that the contacts that carried an impulse in the last substep do so again.
+    /// Guesses that the impulses of the previous substep recur.
     fn warm_start(&mut self) {
         self.warm_start_cache
             .lookup(&self.contacts, &mut self.solver.impulses);
@@ -197,8 +197,7 @@ impl ContactResolver {
         self.solver.active.clone_from(&self.persistent);
     }
 
-    /// Whether one of the contacts found last overlaps by more than `allowed` after boats move with these velocities for
-    /// `dt`.
+    /// Whether any contact found last overlaps by more than `allowed` after boats move with these velocities for `dt`.
     pub(crate) fn overlaps_after(
         &mut self,
         poses: &[Pose],
@@ -222,30 +221,30 @@ impl ContactResolver {
         self.predicted.take_poses(poses, hulls)
     }
 
-    /// Forgets the impulses, because nothing touched in this substep.
+    /// Forgets the impulses. For substeps without contacts.
     pub(crate) fn clear_warm_start(&mut self) {
         self.warm_start_cache.clear();
         self.solver.impulses.fill(0.0);
     }
 
-    /// Adds to each boat the linear acceleration from contacts that carried an impulse both in this kick, of length
+    /// Adds to each boat's entry the linear acceleration by contacts that carried an impulse both in this kick, of length
     /// `dt`, and in the one before. Such contacts are likely to persist.
     pub(crate) fn add_persistent_acceleration(
         &self,
         inertia: &[InverseInertia],
         dt: f64,
-        sums: &mut [Vec2],
+        accelerations: &mut [Vec2],
     ) {
         for (k, contact) in self.contacts.iter().enumerate() {
             let impulse = self.solver.impulses[k];
             if !self.persistent[k] || impulse <= 0.0 {
                 continue;
             }
-            let push = contact.gap.normal * (impulse / dt);
+            let force = contact.gap.normal * (impulse / dt);
             let first = contact.boat as usize;
-            sums[first] += push * inertia[first].linear;
+            accelerations[first] += force * inertia[first].linear;
             if let Some(second) = contact.second() {
-                sums[second] -= push * inertia[second].linear;
+                accelerations[second] -= force * inertia[second].linear;
             }
         }
     }

@@ -1,13 +1,13 @@
-//! Skipped contacts: boats would not close them at their free velocities. They are left out of the contact problem as
-//! long as its solution does not close them either.
+//! Skipped contacts: those that boats would not close at their free velocities. They are left out of the contact problem
+//! as long as its solution does not close them either.
 
 use super::predicted_poses::PredictedPoses;
 use super::{Contact, ContactDetector, Partner};
 use crate::geometry::Velocity;
 
-/// Contacts rarely move a boat farther than this fraction of the fastest boat's displacement. With a larger fraction,
+/// Impulses rarely displace a boat by more than this fraction of the fastest boat's displacement. With a larger fraction,
 /// fewer contacts are skipped; with a smaller one, more have to be restored.
-const ADDED: f64 = 0.125;
+const PUSHED_SHARE: f64 = 0.125;
 
 /// The contacts that are skipped.
 #[derive(Debug, Clone, Default)]
@@ -26,9 +26,8 @@ impl SkippedContacts {
         self.contacts.is_empty()
     }
 
-    /// Skips the contacts that boats with these velocities do not close within `dt`. The normal of the nearer touch
-    /// separates two bodies: along it their cores approach no faster than their centers do, plus what turning adds at
-    /// their ends. Both touches of a pair are kept or skipped together, since closing one moves the other.
+    /// Moves the contacts that boats with these velocities do not close within `dt` from `contacts` to the skipped
+    /// ones. Both touches of two bodies are kept or skipped together, since closing one moves the other.
     pub(super) fn skip_open(
         &mut self,
         detector: &ContactDetector,
@@ -36,7 +35,7 @@ impl SkippedContacts {
         dt: f64,
         contacts: &mut Vec<Contact>,
     ) {
-        let added = ADDED * (detector.farthest + 1e-3 * detector.hull().radius);
+        let push_cm = PUSHED_SHARE * (detector.farthest + 1e-3 * detector.hull().radius);
         let (mut kept, mut next) = (0, 0);
         while next < contacts.len() {
             let touches = &contacts[next..(next + 2).min(contacts.len())];
@@ -44,9 +43,9 @@ impl SkippedContacts {
                 [first, second] if first.is_twin(second) => 2,
                 _ => 1,
             };
-            let stays = may_close(detector, &touches[..count], velocities, dt, added);
+            let is_kept = may_close(detector, &touches[..count], velocities, dt, push_cm);
             for _ in 0..count {
-                if stays {
+                if is_kept {
                     contacts[kept] = contacts[next];
                     kept += 1;
                 } else {
@@ -68,12 +67,11 @@ impl SkippedContacts {
         allowed: f64,
     ) -> bool {
         let stays_open = |touches: &[Contact]| {
-            // Where one wall continues another, the nearer touch may be missing, so it cannot be judged from the
-            // touches.
+            // If one wall continues another, the nearer touch may be missing, so the other touch proves nothing.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
-            let is_far = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
-            debug_assert!(!is_far || !predicted.overlaps(detector, touches, allowed));
-            is_far || !predicted.overlaps(detector, touches, allowed)
+            let cannot_close = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
+            debug_assert!(!cannot_close || !predicted.overlaps(detector, touches, allowed));
+            cannot_close || !predicted.overlaps(detector, touches, allowed)
         };
         self.is_empty()
             || predicted.is_current() && self.contacts.chunk_by(Contact::is_twin).all(stays_open)
@@ -87,17 +85,17 @@ impl SkippedContacts {
     }
 }
 
-/// Whether boats with these velocities may close the one or two touches of two bodies within `dt`, with some margin for
-/// the effect of others.
+/// Whether boats with these velocities may close the one or two touches of two bodies within `dt`, if other contacts
+/// displace each boat by up to `push_cm`.
 #[inline]
 fn may_close(
     detector: &ContactDetector,
     touches: &[Contact],
     velocities: &[Velocity],
     dt: f64,
-    added: f64,
+    push_cm: f64,
 ) -> bool {
-    let may_close = |contact: &Contact| may_touch_close(detector, contact, velocities, dt, added);
+    let may_close = |contact: &Contact| may_close_touch(detector, contact, velocities, dt, push_cm);
     match touches {
         // At the outer wall, which curves around the boat, one end's normal says nothing about the other end.
         [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
@@ -106,25 +104,26 @@ fn may_close(
     }
 }
 
-/// As [`may_close`], from the nearer touch alone.
+/// As [`may_close`], from the nearer touch alone. Its normal separates the two bodies: along it their cores approach no
+/// faster than their centers do, plus what turning adds at their ends.
 #[inline]
-fn may_touch_close(
+fn may_close_touch(
     detector: &ContactDetector,
     contact: &Contact,
     velocities: &[Velocity],
     dt: f64,
-    added: f64,
+    push_cm: f64,
 ) -> bool {
     let hull = detector.hull();
     let gap = &contact.gap;
     let first = &velocities[contact.boat as usize];
-    let (linear, spin, added) = match contact.second() {
+    let (linear, spin, push_cm) = match contact.second() {
         Some(second) => {
             let second = &velocities[second];
             let spin = first.angular.abs() + second.angular.abs();
-            (first.linear - second.linear, spin, 2.0 * added)
+            (first.linear - second.linear, spin, 2.0 * push_cm)
         }
-        None => (first.linear, first.angular.abs(), added),
+        None => (first.linear, first.angular.abs(), push_cm),
     };
     let swing = hull.half_length * spin * dt;
     let curve = if contact.partner == Partner::OuterWall {
@@ -133,5 +132,5 @@ fn may_touch_close(
     } else {
         0.0
     };
-    gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + added
+    gap.gap < 0.0 || gap.gap + gap.normal.dot(&linear) * dt < swing + curve + push_cm
 }

@@ -3,7 +3,7 @@
 use super::solver::SolveReport;
 use crate::parameters::{Value, named_fields};
 
-/// Running statistics since the flock was made or reset; a snapshot holds them.
+/// Running statistics since the flock was created or reset; snapshots store them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// Substeps taken.
@@ -21,12 +21,12 @@ pub struct Statistics {
     /// Most numbers that the Cholesky factors of one solve held.
     pub most_factor_entries: u64,
     /// Substeps that left overlaps deeper than the tolerance. Either moving poses could not undo deep overlaps, or the
-    /// substep could not be halved any more although constraints contradicted each other, relinearization did not converge,
-    /// or a boat was pushed into one that was not looked for. Velocities are then those of the nearest problem that can be
-    /// solved.
+    /// substep could not be halved any further although constraints contradicted each other, relinearization did not
+    /// converge, or a boat was pushed into a body beyond its reach. Velocities are then those of the nearest problem that
+    /// can be solved.
     pub unsolved: u64,
-    /// Halvings of substeps: they left overlaps deeper than the tolerance, contacts would have driven boats, or a boat
-    /// moved too far.
+    /// Halvings of substeps that left overlaps deeper than the tolerance, whose contacts would have added energy to boats,
+    /// or in which a boat moved too far.
     pub halved_substeps: u64,
     /// Passes that moved deeply overlapping hulls apart.
     pub depenetration_passes: u64,

@@ -22,34 +22,36 @@ pub(super) fn distance(a: TouchPosition, b: TouchPosition) -> f64 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
 }
 
-/// The number of the first of the two contacts of a pair to which contact k belongs; `None` if it is the only one.
+/// Index of the first of the two contacts between the bodies of contact k; `None` if contact k is their only one.
 #[inline]
 pub(super) fn first_of_two(contacts: &[Contact], k: usize) -> Option<usize> {
     let is_twin = |other: Option<&Contact>| other.is_some_and(|other| contacts[k].is_twin(other));
-    if is_twin(k.checked_sub(1).and_then(|before| contacts.get(before))) {
+    let previous = k.checked_sub(1).and_then(|index| contacts.get(index));
+    if is_twin(previous) {
         Some(k - 1)
     } else {
         is_twin(contacts.get(k + 1)).then_some(k)
     }
 }
 
-/// The number of the other contact of the pair to which contact k belongs, if there is one.
+/// Index of the other contact between the bodies of contact k, if there is one.
 #[inline]
 pub(super) fn twin(contacts: &[Contact], k: usize) -> Option<usize> {
     first_of_two(contacts, k).map(|first| 2 * first + 1 - k)
 }
 
-/// Whether the touches of a pair at other poses belong to its two contacts in reverse order: the order with the smaller
-/// change of positions and gaps. A missing touch has no position, so the remaining one goes to the nearer contact.
+/// Whether the touches of two bodies at other poses belong to their two contacts in reverse order. The order with the
+/// smaller change of positions and gaps counts. A missing touch has no position, so the other one goes to the nearer
+/// contact.
 #[inline]
 pub(super) fn are_swapped(touches: &[EndTouch; 2], contacts: &[Contact]) -> bool {
-    let moved = |touch: usize, contact: usize| {
+    let change = |touch: usize, contact: usize| {
         let EndTouch { gap, along } = touches[touch];
         if gap == f64::INFINITY {
             return 0.0;
         }
-        let known = &contacts[contact].gap;
-        distance(along, position(known)) + (gap - known.gap).abs()
+        let before = &contacts[contact].gap;
+        distance(along, position(before)) + (gap - before.gap).abs()
     };
-    moved(1, 0) + moved(0, 1) < moved(0, 0) + moved(1, 1)
+    change(1, 0) + change(0, 1) < change(0, 0) + change(1, 1)
 }

@@ -1,4 +1,4 @@
-//! Contacts that carried an impulse in the last substep: the guess for the next one.
+//! Impulses of the last substep's contacts, which guess those of the next substep.
 
 use super::touches::{TouchPosition, distance, position};
 use super::{Contact, Partner};
@@ -10,9 +10,9 @@ pub(crate) struct CachedImpulse {
     pub boat: u32,
     /// The other side.
     pub partner: Partner,
-    /// Where the touch was, along both cores.
+    /// Position of the touch along both cores.
     position: TouchPosition,
-    /// In cm/s; 0 for none.
+    /// In cm/s; 0 if the contact carried none.
     pub impulse: f64,
 }
 
@@ -27,7 +27,7 @@ impl CachedImpulse {
         }
     }
 
-    /// Whether all its numbers are finite.
+    /// Whether its impulse and position are finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.impulse.is_finite() && self.position.iter().all(|along| along.is_finite())
     }
@@ -37,10 +37,11 @@ impl CachedImpulse {
         (self.boat == contact.boat) && self.partner == contact.partner
     }
 
-    /// Whether the impulse was nearer to the first contact than to the second.
+    /// Whether the impulse was nearer to `contact` than to `other`.
     #[inline]
-    fn is_nearer(&self, one: &Contact, other: &Contact) -> bool {
-        distance(position(&one.gap), self.position) < distance(position(&other.gap), self.position)
+    fn is_nearer(&self, contact: &Contact, other: &Contact) -> bool {
+        let distance_to = |contact: &Contact| distance(position(&contact.gap), self.position);
+        distance_to(contact) < distance_to(other)
     }
 }
 
@@ -50,14 +51,14 @@ pub(super) struct WarmStartCache {
     /// Entries in the order of detection, with the contacts of a pair one after the other. Contacts without an impulse
     /// may be missing.
     entries: Vec<CachedImpulse>,
-    /// Index of each boat's last entry.
-    of_boat: Vec<u32>,
-    /// For each entry, the index of the previous entry of the same boat.
-    before: Vec<u32>,
+    /// Index of each boat's last entry, or [`NONE`].
+    last_of_boat: Vec<u32>,
+    /// For each entry, the index of the previous entry of the same boat, or [`NONE`].
+    previous: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
-/// Number of entries that a lookup may skip, because their contacts are gone.
+/// Number of entries that a lookup tests before it searches among all entries of a boat.
 const AHEAD: usize = 4;
 
 impl WarmStartCache {
@@ -79,24 +80,25 @@ impl WarmStartCache {
 
     /// The impulse that each contact carried, or 0. Each impulse goes to the nearest contact of the same two bodies.
     ///
-    /// Contacts mostly come in the order of the last substep, a few gone and a few new.
+    /// Contacts mostly come in the order of the last substep, with a few gone and a few new. So each lookup starts
+    /// after the entries of the contact before.
     pub(super) fn lookup(&mut self, contacts: &[Contact], impulses: &mut Vec<f64>) {
         impulses.clear();
         impulses.resize(contacts.len(), 0.0);
         if self.entries.is_empty() {
             return;
         }
-        let (mut next, mut is_indexed, mut k) = (0, false, 0);
+        let (mut next_entry, mut is_indexed, mut k) = (0, false, 0);
         while let Some(contact) = contacts.get(k) {
-            let last = self.entries.len().min(next + AHEAD);
-            let mut start = next;
+            let last = self.entries.len().min(next_entry + AHEAD);
+            let mut start = next_entry;
             while start < last && !self.entries[start].has_same_bodies(contact) {
                 start += 1;
             }
             let entries = if start < last {
                 let count = self.count_from(start, contact);
-                next = start + count;
-                &self.entries[start..next]
+                next_entry = start + count;
+                &self.entries[start..next_entry]
             } else {
                 if !is_indexed {
                     self.index();
@@ -127,12 +129,12 @@ impl WarmStartCache {
     #[inline(never)]
     fn index(&mut self) {
         let boats = self.entries.iter().map(|entry| entry.boat as usize + 1);
-        self.of_boat.clear();
-        self.of_boat.resize(boats.max().unwrap_or(0), NONE);
-        self.before.clear();
+        self.last_of_boat.clear();
+        self.last_of_boat.resize(boats.max().unwrap_or(0), NONE);
+        self.previous.clear();
         for (index, entry) in self.entries.iter().enumerate() {
-            let last = &mut self.of_boat[entry.boat as usize];
-            self.before.push(std::mem::replace(last, index as u32));
+            let last = &mut self.last_of_boat[entry.boat as usize];
+            self.previous.push(std::mem::replace(last, index as u32));
         }
     }
 
@@ -140,7 +142,7 @@ impl WarmStartCache {
     #[inline(never)]
     fn search(&self, contact: &Contact) -> &[CachedImpulse] {
         let mut index = self
-            .of_boat
+            .last_of_boat
             .get(contact.boat as usize)
             .copied()
             .unwrap_or(NONE);
@@ -151,7 +153,7 @@ impl WarmStartCache {
             } else if first.is_some() {
                 break;
             }
-            index = self.before[index as usize];
+            index = self.previous[index as usize];
         }
         first.map_or(&[], |first| {
             &self.entries[first..first + self.count_from(first, contact)]

@@ -1,4 +1,4 @@
-//! The biases of a substep's contacts: what their gaps may close before anything is solved.
+//! The biases of a substep's contacts before the first solve.
 
 use super::{ContactResolver, Motion};
 use crate::contact::touches::twin;
@@ -7,14 +7,14 @@ use crate::contact::{Contact, ContactDetector, Partner};
 use crate::geometry::{HullPose, Obstacle, Velocity};
 
 impl ContactResolver {
-    /// Computes the biases of all contacts. Where two bodies pushed each other in the substep before, velocities hardly
-    /// change, and biases look ahead along the curve of a gap that closes. Gaps count as linear at an impact, where
-    /// velocities jump.
+    /// Computes the biases of all contacts. If two bodies pushed each other in the substep before, their velocities hardly
+    /// change, and the bias looks ahead along the curve of a closing gap. Velocities jump at an impact, so the gap of a new
+    /// contact counts as linear.
     pub(super) fn fill_biases(&mut self, motion: &Motion) {
         let (bias, contacts) = (self.bias(motion), self.contacts.as_slice());
         let linear = |contact: &Contact| {
             let spin = motion.free[contact.boat as usize].angular;
-            bias.of_gap(&contact.gap) + bias.of_flank(&contact.gap, spin)
+            bias.for_gap(&contact.gap) + bias.for_flank(&contact.gap, spin)
         };
         let before = self.velocities_before(motion);
         self.biases.clear();
@@ -29,14 +29,14 @@ impl ContactResolver {
             } else {
                 0.0
             };
-            linear(contact) + bias.of_curve(&contact.gap, curve)
+            linear(contact) + bias.for_curve(&contact.gap, curve)
         });
         self.biases.extend(looking_ahead);
     }
 
-    /// Computes the biases of all contacts again, and looks ahead also along curves that open a gap. A closed ring of boats
-    /// under way has no other solution: its gaps at the wall close, and those between boats open. Returns whether gaps may
-    /// count as curved; if not, the biases stay as they are.
+    /// Computes the biases of all contacts again, and also looks ahead along curves that open a gap. Without that, a closed
+    /// ring of moving boats has no solution: its gaps at the wall close, and those between boats open. Returns whether gaps
+    /// may count as curved. If not, the biases stay as they are.
     #[cold]
     pub(super) fn look_ahead_along_all(&mut self, motion: &Motion) -> bool {
         let Some(before) = self.velocities_before(motion) else {
@@ -49,21 +49,21 @@ impl ContactResolver {
                 && let Some(curve) =
                     second_derivative(&self.detector, contact, motion.hulls, before)
             {
-                self.biases[k] = bias.of_gap(&contact.gap) + bias.of_curve(&contact.gap, curve);
+                self.biases[k] = bias.for_gap(&contact.gap) + bias.for_curve(&contact.gap, curve);
             }
         }
         true
     }
 
-    /// The velocities before the substep, if gaps may count as curved. They may not if the fastest boat would move by more
-    /// than its radius, since these velocities then say nothing of the substep's end.
+    /// The velocities before the substep; `None` if gaps count as linear. They do if the fastest boat would move by more
+    /// than its radius, since the velocities at the substep's end then differ too much.
     fn velocities_before<'a>(&self, motion: &Motion<'a>) -> Option<&'a [Velocity]> {
-        let is_far = self.detector.farthest > self.detector.hull().radius;
-        let is_on = self.relinearization.is_on() && !is_far;
-        motion.before.filter(|_| is_on)
+        let is_too_far = self.detector.farthest > self.detector.hull().radius;
+        let is_curved = self.relinearization.is_on() && !is_too_far;
+        motion.before.filter(|_| is_curved)
     }
 
-    /// How the biases of this motion follow from gaps.
+    /// The rule by which biases follow from gaps in this substep.
     pub(super) fn bias(&self, motion: &Motion) -> VelocityBias {
         VelocityBias {
             dt: motion.dt,
@@ -73,15 +73,16 @@ impl ContactResolver {
     }
 }
 
-/// Whether the two bodies of a contact pushed each other in the substep before. `persistent` says it of each contact.
+/// Whether the two bodies of contact k pushed each other in the substep before. `persistent` tells whether each contact
+/// did.
 #[inline]
 fn have_pushed(persistent: &[bool], contacts: &[Contact], k: usize) -> bool {
     persistent[k] || twin(contacts, k).is_some_and(|k| persistent[k])
 }
 
-/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities, or 0 if it is positive: looking
-/// ahead along a curve that opens a gap spares no solve, and after an impact it would let boats approach further.
-/// Therefore it is 0 at walls inside the pool, too.
+/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities, or 0 if it is positive. Looking
+/// ahead along a curve that opens a gap saves no solve, and after an impact it would let boats approach further. It is
+/// also 0 at the inner wall and obstacles, whose gaps mostly open along their curves.
 #[inline]
 fn closing_curve(
     detector: &ContactDetector,
@@ -100,7 +101,7 @@ fn closing_curve(
 
 /// Second derivative of a contact's gap in cm/s² while its boats keep these velocities; `None` at a straight wall, where a
 /// touch may come from the wall beside it. Meaningless for crossed cores, whose overlap is too deep for it to count.
-// Always, since it is also called where speed does not matter.
+// `inline` alone does not suffice, since this is also called from a cold function.
 #[inline(always)]
 fn second_derivative(
     detector: &ContactDetector,

@@ -1,4 +1,4 @@
-//! Solves again if gaps are curved functions of the motion, until no gap overlaps at the substep's end.
+//! Repeats solves, since gaps are curved functions of the motion, until no gap overlaps at the substep's end.
 
 use super::solution::Solution;
 use super::{ContactResolver, Motion};
@@ -14,13 +14,13 @@ const MOST_PASSES: u32 = 20;
 pub(super) struct Relinearization {
     /// Deepest overlap in cm that a substep may leave; infinite: gaps are linearized once.
     pub(super) tolerance: f64,
-    /// Whether the first solve of the last substep left overlaps. That of the next one then probably does, too.
+    /// Whether the first solve of the last substep left overlaps. Then that of the next substep probably does, too.
     had_overlaps: bool,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
-    /// By contact: its gap at the substep's end in cm, plus the overlap that a shortened substep may leave. Infinite if
-    /// it is beyond the slop, cannot close, or its touch is gone. Valid only for contacts of islands that the last check
-    /// looked at.
+    /// For each contact, its gap at the substep's end in cm, plus the overlap that a shortened substep may leave. Infinite
+    /// if the overlap is beyond the slop, the gap cannot close, or the touch is gone. Valid only in islands that the last
+    /// check visited.
     end_gaps: Vec<f64>,
 }
 
@@ -42,9 +42,9 @@ impl Relinearization {
 }
 
 impl ContactResolver {
-    /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance. The gaps are
-    /// evaluated where the last solve moves the boats, and the next solve has biases for which they open to zero. The
-    /// normals, along which forces act, and the factor stay those of the substep's start. `first` is the outcome of the
+    /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance. Each pass evaluates gaps
+    /// at the poses to which the last solve moves the boats, and chooses biases for which these gaps open to zero. The
+    /// factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome of the
     /// first solve.
     pub(super) fn relinearize(
         &mut self,
@@ -57,32 +57,35 @@ impl ContactResolver {
         if first == Solution::Solved && !self.may_overlap(dt) {
             return first;
         }
-        let mut left = std::mem::take(&mut self.relinearization.overlapping);
-        left.clear();
-        left.extend(0..self.solver.islands().count() as u32);
+        let mut overlapping = std::mem::take(&mut self.relinearization.overlapping);
+        overlapping.clear();
+        overlapping.extend(0..self.solver.islands().count() as u32);
         let (mut solution, mut passes) = (first, 0);
-        while self.is_overlapping(&mut left, dt) {
+        while self.is_overlapping(&mut overlapping, dt) {
             if passes == MOST_PASSES || solution != Solution::Solved {
                 solution = Solution::Overlapping;
                 break;
             }
             passes += 1;
-            self.aim_at_end_gaps(&left, dt);
-            solution = self.solve(Some(&left), motion, statistics);
+            self.aim_at_end_gaps(&overlapping, dt);
+            solution = self.solve(Some(&overlapping), motion, statistics);
             match solution {
                 Solution::Exhausted => break,
-                Solution::Solved if self.solver.has_islands() => self.predict_again(&left, motion),
+                Solution::Solved if self.solver.has_islands() => {
+                    self.predict_again(&overlapping, motion)
+                }
                 _ => self.predict(motion),
             }
         }
-        self.relinearization.overlapping = left;
+        self.relinearization.overlapping = overlapping;
         self.relinearization.had_overlaps = passes > 0 || solution != Solution::Solved;
         solution
     }
 
-    /// Whether the first solve may leave overlaps deeper than the tolerance. A look at all contacts at once takes less time
-    /// than one island after another, which are needed only if something overlaps. It finds a little too much, so that
-    /// rounding decides nothing: what was seen in the last substep must not alter this one.
+    /// Whether the first solve may leave overlaps deeper than the tolerance. Checking all contacts at once takes less
+    /// time than checking island by island, which is needed only if a contact overlaps. `had_overlaps` saves this
+    /// check, but must not change results. So the check here is slightly stricter than the check by island, whatever
+    /// rounding does.
     fn may_overlap(&self, dt: f64) -> bool {
         let is_whole = dt >= self.whole_substep_s;
         let allowed = (1.0 - 1e-9) * self.relinearization.tolerance;
@@ -93,13 +96,13 @@ impl ContactResolver {
                 .closing_overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Computes biases for which the gaps of some islands at the substep's end open to zero. The biases of the others stay
-    /// those that they were solved with: the check for driven boats needs them.
+    /// Computes biases for which the gaps of these islands open to zero at the substep's end. The other islands keep the
+    /// biases with which they were solved: the check for driven boats needs those.
     fn aim_at_end_gaps(&mut self, islands: &[u32], dt: f64) {
-        let found = self.solver.islands();
+        let all_islands = self.solver.islands();
         let contacts = islands
             .iter()
-            .flat_map(|&island| found.contacts(island as usize));
+            .flat_map(|&island| all_islands.contacts(island as usize));
         for &k in contacts {
             let (k, end_gap) = (k as usize, self.relinearization.end_gaps[k as usize]);
             if end_gap < f64::INFINITY {
@@ -109,20 +112,20 @@ impl ContactResolver {
         }
     }
 
-    /// Predicts where the last solve moves all boats.
+    /// Predicts the poses to which the last solve moves all boats.
     fn predict(&mut self, motion: &Motion) {
         let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
         self.predicted
             .predict(motion.poses, velocities, motion.dt, hull);
     }
 
-    /// Predicts where the last solve moves the boats of some islands; the others stay where they are predicted.
+    /// Predicts the poses to which the last solve moves the boats of these islands; the others keep their predicted poses.
     fn predict_again(&mut self, islands: &[u32], motion: &Motion) {
         let (velocities, hull) = (&self.solver.velocities, self.detector.hull());
-        let found = self.solver.islands();
+        let all_islands = self.solver.islands();
         let islands = islands
             .iter()
-            .map(|&island| found.contacts(island as usize));
+            .map(|&island| all_islands.contacts(island as usize));
         let contacts = &self.contacts;
         self.predicted
             .move_islands(contacts, islands, motion.poses, velocities, motion.dt, hull);
@@ -135,19 +138,19 @@ impl ContactResolver {
         self.is_overlapping(&mut islands, motion.dt)
     }
 
-    /// Whether gaps at the substep's end overlap by more than the tolerance. Removes the other islands from `islands`; a
-    /// solver without islands keeps all.
+    /// Whether gaps of these islands overlap by more than the tolerance at the substep's end. Keeps only the overlapping
+    /// islands in `islands`, or all for a solver without islands.
     fn is_overlapping(&mut self, islands: &mut Vec<u32>, dt: f64) -> bool {
         let tolerance = self.relinearization.tolerance;
-        let left_over = 1.0 - dt / dt.max(self.whole_substep_s);
+        let left_fraction = 1.0 - dt / dt.max(self.whole_substep_s);
         let has_islands = self.solver.has_islands();
         let mut end_gaps = std::mem::take(&mut self.relinearization.end_gaps);
         end_gaps.resize(self.contacts.len(), f64::INFINITY);
         let (mut deepest, mut kept) = (0.0, 0);
-        // `Vec::retain` would call a closure for each island, and most islands are a single contact.
+        // Not `Vec::retain`: its closure call for each island would take long, since most islands are a single contact.
         for index in 0..islands.len() {
             let island = islands[index];
-            let overlap = self.deepest_end_overlap(island, left_over, &mut end_gaps);
+            let overlap = self.deepest_end_overlap(island, left_fraction, &mut end_gaps);
             if overlap > deepest {
                 deepest = overlap;
             }
@@ -161,24 +164,25 @@ impl ContactResolver {
         deepest > tolerance
     }
 
-    /// Notes the gaps of an island at the substep's end. Returns the deepest overlap in cm. A shortened substep need not
-    /// close an earlier overlap fully: it may leave the fraction `left_over` of it.
+    /// Stores the gaps of an island's contacts at the substep's end, and returns the deepest overlap in cm. A shortened
+    /// substep need not undo an earlier overlap fully: it may leave the fraction `left_fraction` of it.
     #[inline]
-    fn deepest_end_overlap(&self, island: u32, left_over: f64, end_gaps: &mut [f64]) -> f64 {
+    fn deepest_end_overlap(&self, island: u32, left_fraction: f64, end_gaps: &mut [f64]) -> f64 {
         let (detector, contacts) = (&self.detector, self.contacts.as_slice());
-        let (mut deepest, mut pair) = (0.0, None);
+        let (mut deepest, mut twin_gaps) = (0.0, None);
         for &k in self.solver.islands().contacts(island as usize) {
             let k = k as usize;
-            let gap = contacts[k].gap.gap.min(0.0);
+            let start_gap = contacts[k].gap.gap.min(0.0);
             end_gaps[k] = f64::INFINITY;
-            if gap >= -self.penetration_slop && self.predicted.may_close(contacts, k) {
-                let end_gap = self.predicted.gap(detector, contacts, k, &mut pair);
-                let is_deep = gap < -self.relinearization.tolerance;
-                let overlap = select_unpredictable(is_deep, left_over * gap, 0.0) - end_gap;
+            if start_gap >= -self.penetration_slop && self.predicted.may_close(contacts, k) {
+                let end_gap = self.predicted.gap(detector, contacts, k, &mut twin_gaps);
+                let is_deep = start_gap < -self.relinearization.tolerance;
+                let overlap =
+                    select_unpredictable(is_deep, left_fraction * start_gap, 0.0) - end_gap;
                 if overlap > deepest {
                     deepest = overlap;
                 }
-                end_gaps[k] = end_gap - left_over * gap;
+                end_gaps[k] = end_gap - left_fraction * start_gap;
             }
         }
         deepest

@@ -8,19 +8,19 @@ use crate::parameters::Solver;
 /// Reason why a substep was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotTaken {
-    /// It leaves overlaps, would drive boats, or moves a boat too far: a shorter one has to be tried. Deep overlaps may
-    /// have been undone, but no time has passed.
+    /// The substep leaves overlaps, its contacts would add energy to boats, or a boat moves too far. A shorter substep has
+    /// to be tried. Poses may have been moved to undo deep overlaps, but no time has passed.
     TooLong,
-    /// Its contacts are too much work, and a shorter substep would not help; the motion must be discarded.
+    /// The contacts are too much work, and the substep must not be shortened any further. The motion must be discarded.
     Exhausted,
 }
 
 /// Reasons for which a substep may be shortened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Divisibility {
-    /// Contacts would drive boats, or are too much work.
+    /// Contacts would add energy to boats, or are too much work.
     pub if_driven: bool,
-    /// Overlaps are left.
+    /// Overlaps remain at the substep's end.
     pub if_overlapping: bool,
 }
 
@@ -35,15 +35,15 @@ pub(super) enum Solution {
     Overlapping,
     /// Skipped contacts overlap at the substep's end by more than the tolerance.
     Closing,
-    /// Contacts would add energy to boats; the biases are now such that they do not.
+    /// Contacts would add energy to boats. The biases have been changed so that the next solve adds none.
     Driven,
 }
 
 impl ContactResolver {
-    /// Solves the contacts found last for free velocities and effective inertia; the result is in `solver`.
+    /// Solves the contacts found last. `solver` then holds the impulses and velocities.
     ///
     /// # Errors
-    /// [`NotTaken`]; nothing but the statistics has changed then.
+    /// [`NotTaken`]. Then the warm start is that of the substep before.
     pub(crate) fn resolve(
         &mut self,
         motion: &Motion,
@@ -54,13 +54,14 @@ impl ContactResolver {
         if self.solver.is_exhausted() {
             return Err(NotTaken::Exhausted);
         }
-        let mut is_unsolved = self.settle(motion, divisibility, statistics)? || self.is_deep;
-        let is_promised = self.relinearization.is_on() && motion.before.is_some();
-        if is_promised && !is_unsolved {
+        let leaves_overlaps = self.solve_until_accepted(motion, divisibility, statistics)?;
+        let mut is_unsolved = leaves_overlaps || self.is_deep;
+        let limits_overlaps = self.relinearization.is_on() && motion.before.is_some();
+        if limits_overlaps && !is_unsolved {
             let tolerance = self.relinearization.tolerance;
             is_unsolved =
                 self.predicted
-                    .overlaps_unseen(&mut self.detector, &self.contacts, tolerance);
+                    .overlaps_undetected(&mut self.detector, &self.contacts, tolerance);
             if is_unsolved && divisibility.if_overlapping {
                 return Err(NotTaken::TooLong);
             }
@@ -77,9 +78,9 @@ impl ContactResolver {
         Ok(())
     }
 
-    /// Solves until a solution passes the checks; returns whether it leaves overlaps. If a check fails, skipped
-    /// contacts are restored, or the caller takes a shorter substep.
-    fn settle(
+    /// Solves until a solution passes the checks, or no further attempt can help. Returns whether overlaps remain. If a
+    /// check fails, skipped contacts are restored, or the caller takes a shorter substep.
+    fn solve_until_accepted(
         &mut self,
         motion: &Motion,
         divisibility: Divisibility,
@@ -96,7 +97,7 @@ impl ContactResolver {
                     return Err(NotTaken::TooLong);
                 }
                 Solution::Exhausted => return Err(NotTaken::Exhausted),
-                // With other biases boats move elsewhere, and there skipped contacts were not checked.
+                // With other biases boats move elsewhere, so the skipped contacts have to be checked again.
                 Solution::Driven if !self.skipped.is_empty() => self.restore_skipped(statistics),
                 Solution::Driven => {
                     if self.solve(None, motion, statistics) == Solution::Exhausted {
@@ -149,8 +150,8 @@ impl ContactResolver {
         solution
     }
 
-    /// Finds the islands that contacts would drive or turn back, and computes their velocity biases from the present
-    /// gaps alone. Returns whether there are such islands.
+    /// Finds the islands whose contacts would add energy to boats or reverse a boat's turn, and recomputes their velocity
+    /// biases from the present gaps alone. Returns whether there are such islands.
     fn stop_driving(&mut self, motion: &Motion) -> bool {
         let bias = self.bias(motion);
         let problem = motion.problem(&self.contacts, &self.biases);
@@ -161,17 +162,17 @@ impl ContactResolver {
         let passivity = &mut self.passivity;
         let driven = passivity.driven(&self.solver, &problem, bias, has_obstacles);
         for &k in &driven {
-            self.biases[k] = bias.of_gap(&self.contacts[k].gap);
+            self.biases[k] = bias.for_gap(&self.contacts[k].gap);
         }
         !driven.is_empty()
     }
 
-    /// Solves some islands again, or all: [`Solution::Solved`], [`Solution::Exhausted`], or [`Solution::Overlapping`]
-    /// where the constraints contradict each other. Then the velocities are those of the nearest problem that has a
-    /// solution.
+    /// Solves all islands, or the listed ones again. Returns [`Solution::Solved`] or [`Solution::Exhausted`]. If
+    /// constraints contradict each other, it returns [`Solution::Overlapping`] and the velocities of the nearest
+    /// problem that has a solution.
     pub(super) fn solve(
         &mut self,
-        again: Option<&[u32]>,
+        islands: Option<&[u32]>,
         motion: &Motion,
         statistics: &mut Statistics,
     ) -> Solution {
@@ -183,7 +184,7 @@ impl ContactResolver {
             ..
         } = self;
         let problem = motion.problem(contacts, biases);
-        let report = match again {
+        let report = match islands {
             Some(islands) => solver.solve_again(&problem, islands),
             None => solver.solve(&problem),
         };
@@ -194,8 +195,8 @@ impl ContactResolver {
         if report.converged {
             return Solution::Solved;
         }
-        // Overlaps that cannot all close within the substep contradict each other. Without them, rest
-        // satisfies every constraint, and impulses stay bounded.
+        // The overlaps cannot all be undone within the substep. If none has to be, boats at rest satisfy every
+        // constraint, and impulses stay bounded.
         biases.iter_mut().for_each(|bias| *bias = bias.max(0.0));
         let problem = motion.problem(contacts, biases);
         let is_solved = solver.solve(&problem).converged;
