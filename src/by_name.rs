@@ -1,5 +1,5 @@
-//! States by name: a missing field or number takes its default, and an error names an unknown one. So a stored state
-//! can still be read after parameters, options, reward terms, blocks and quantities are added.
+//! States by name: a missing field or number takes its default, and an error names an unknown one. So a build that has
+//! more parameters, options, reward terms, blocks or quantities can still read the states of an older build.
 
 use crate::sealed_bytes::refused;
 use serde::de::{DeserializeOwned, Deserializer, MapAccess, Visitor};
@@ -9,10 +9,10 @@ use std::marker::PhantomData;
 
 /// A struct stored as its fields by name.
 pub(crate) trait ByName: Default {
-    /// Its name in messages.
+    /// The struct's name in error messages.
     const NAME: &'static str;
 
-    /// Reads the value of a field; returns whether there is a field of that name.
+    /// Sets the field `name` to the next of the `values`; returns whether there is a field of that name.
     fn read<'de, A: MapAccess<'de>>(
         &mut self,
         name: &str,
@@ -20,9 +20,10 @@ pub(crate) trait ByName: Default {
     ) -> Result<bool, A::Error>;
 }
 
-struct Fields<T>(PhantomData<T>);
+/// Visits a map of fields and makes a struct of them.
+struct FieldsVisitor<T>(PhantomData<T>);
 
-impl<'de, T: ByName> Visitor<'de> for Fields<T> {
+impl<'de, T: ByName> Visitor<'de> for FieldsVisitor<T> {
     type Value = T;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -30,37 +31,39 @@ impl<'de, T: ByName> Visitor<'de> for Fields<T> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut values: A) -> Result<T, A::Error> {
-        let mut of = T::default();
+        let mut state = T::default();
         while let Some(name) = values.next_key::<String>()? {
-            if !of.read(&name, &mut values)? {
+            if !state.read(&name, &mut values)? {
                 return Err(unknown(&name, T::NAME));
             }
         }
-        Ok(of)
+        Ok(state)
     }
 }
 
 /// Deserializes a struct from its fields by name.
-pub(crate) fn fields<'de, T: ByName, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
-    from.deserialize_map(Fields(PhantomData))
+pub(crate) fn fields<'de, T: ByName, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    deserializer.deserialize_map(FieldsVisitor(PhantomData))
 }
 
 /// Serializes pairs of a name and a value as a map.
 pub(crate) fn write<S: Serializer, T: Serialize>(
     values: impl IntoIterator<Item = (&'static str, T)>,
-    to: S,
+    serializer: S,
 ) -> Result<S::Ok, S::Error> {
-    to.collect_map(values)
+    serializer.collect_map(values)
 }
 
-/// Reads values that [`write`] wrote; `put` returns whether it knows the name.
+/// Reads values that [`write`] wrote, and passes each with its name to `set`.
+///
+/// `set` returns false for a name that it does not know, which is an error. `table` names the values in its message.
 pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
-    from: D,
-    of: &str,
-    mut put: impl FnMut(&str, T) -> bool,
+    deserializer: D,
+    table: &str,
+    mut set: impl FnMut(&str, T) -> bool,
 ) -> Result<(), D::Error> {
-    struct Values<T>(PhantomData<T>);
-    impl<'de, T: DeserializeOwned> Visitor<'de> for Values<T> {
+    struct ValuesVisitor<T>(PhantomData<T>);
+    impl<'de, T: DeserializeOwned> Visitor<'de> for ValuesVisitor<T> {
         type Value = Vec<(String, T)>;
 
         fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -68,23 +71,25 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
         }
 
         fn visit_map<A: MapAccess<'de>>(self, mut values: A) -> Result<Self::Value, A::Error> {
-            let mut found = Vec::new();
+            let mut entries = Vec::new();
             while let Some(entry) = values.next_entry()? {
-                found.push(entry);
+                entries.push(entry);
             }
-            Ok(found)
+            Ok(entries)
         }
     }
-    let values: Vec<(String, T)> = from.deserialize_map(Values(PhantomData))?;
-    let mut values = values.into_iter();
-    match values.find_map(|(name, value)| (!put(&name, value)).then_some(name)) {
-        Some(name) => Err(unknown(&name, of)),
-        None => Ok(()),
+    let entries: Vec<(String, T)> = deserializer.deserialize_map(ValuesVisitor(PhantomData))?;
+    for (name, value) in entries {
+        if !set(&name, value) {
+            return Err(unknown(&name, table));
+        }
     }
+    Ok(())
 }
 
-fn unknown<E: serde::de::Error>(name: &str, of: &str) -> E {
+/// The error for a stored name that this build does not know.
+fn unknown<E: serde::de::Error>(name: &str, table: &str) -> E {
     refused(format!(
-        "this version of flockenv does not know {name:?} among {of}"
+        "this version of flockenv does not know {name:?} among {table}"
     ))
 }

@@ -23,13 +23,13 @@ pub fn seconds(ticks: Ticks) -> f64 {
 
 /// Number of steps in a duration (s). The duration must be a whole number of steps.
 ///
-/// `rate_hz`: steps per second; `steps`: their name in the message.
+/// `rate_hz` is the number of steps per second. `field` and `steps` name the duration and the steps in the message.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] if `duration_s` is not a whole number of steps. It names the nearest durations that are.
 pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &str) -> Result<u32> {
-    let refuse = |but: String| {
-        let accepted = format!("a whole number of {steps} of {} s{but}", 1.0 / rate_hz);
+    let refuse = |hint: String| {
+        let accepted = format!("a whole number of {steps} of {} s{hint}", 1.0 / rate_hz);
         Err(FlockError::parameter(field, duration_s, accepted))
     };
     let count = duration_s * rate_hz;
@@ -37,14 +37,14 @@ pub fn whole_steps(field: &'static str, duration_s: f64, rate_hz: f64, steps: &s
         return refuse(", at most 1e9 of them".to_owned());
     }
     // A duration far below one step rounds to 0 steps, but is not a whole number of them.
-    let whole = count.round().max(1.0);
-    if (count - whole).abs() > 1e-9 * whole {
-        let [below, above] = [count.floor().max(1.0), count.ceil()].map(|n| n / rate_hz);
-        return refuse(if below == above {
-            format!(": {above} s is nearest")
+    let rounded = count.round().max(1.0);
+    if (count - rounded).abs() > 1e-9 * rounded {
+        let [below_s, above_s] = [count.floor().max(1.0), count.ceil()].map(|n| n / rate_hz);
+        return refuse(if below_s == above_s {
+            format!(": {above_s} s is nearest")
         } else {
-            format!(": {below} and {above} s are nearest")
+            format!(": {below_s} and {above_s} s are nearest")
         });
     }
-    Ok(whole as u32)
+    Ok(rounded as u32)
 }

@@ -1,6 +1,6 @@
-//! Errors, in physical words. Nothing here knows of Python; `python::error` converts them.
+//! Errors that the simulator reports. Nothing here knows of Python; `python::error` converts them.
 
-/// Every error that the simulator reports. No input reaches a panic.
+/// Every error that the simulator reports. No input from a user causes a panic.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FlockError {
     /// A parameter, option or argument lies outside the accepted range.
@@ -8,12 +8,12 @@ pub enum FlockError {
     Parameter {
         /// The field's public name, unit included.
         field: &'static str,
-        /// The given value.
+        /// The refused value.
         value: String,
         /// The accepted values.
         accepted: String,
     },
-    /// A value is of another kind than its field.
+    /// A value has the wrong type for its field.
     #[error("{field} must be {accepted}")]
     Kind {
         /// The field's public name.
@@ -45,24 +45,24 @@ pub enum FlockError {
     /// A state given by the user holds overlapping hulls.
     #[error("{what} overlap by {overlap_cm} cm; move them apart or pass allow_overlap=True")]
     Overlap {
-        /// The boats (or boat and wall).
+        /// The overlapping hulls: two boats, or a boat and a wall.
         what: String,
         /// Depth of the overlap in cm.
         overlap_cm: f64,
     },
-    /// Snapshot bytes that this flock cannot continue from.
+    /// Bytes of a snapshot from which this flock or environment cannot continue.
     #[error("snapshot not restored: {0}")]
     Snapshot(String),
     /// An environment was stepped before a reset or after the end of its episode.
     #[error("{0}")]
     Episode(String),
-    /// The motion left the accepted range of states; the flock is as it was before the call.
+    /// The motion left the accepted range of states; the flock has the state from before the call.
     #[error("{0}")]
     Solver(String),
-    /// Long work was stopped by a signal; nothing has changed.
+    /// A long computation was stopped by a signal.
     #[error("interrupted")]
     Interrupted,
-    /// An object is at work in another thread.
+    /// Another thread is using an object.
     #[error("{0} is in use in another thread: each thread needs one of its own")]
     InUse(&'static str),
 }
@@ -82,23 +82,23 @@ impl FlockError {
         }
     }
 
-    /// The same error for one flock of a batch, with the number of others that failed.
+    /// Adds to this error which flock of a batch failed, and how many further flocks did.
     #[cold]
-    pub(crate) fn of_flock(self, flock: usize, more: usize) -> Self {
-        let others = match more {
+    pub(crate) fn with_flock(self, flock: usize, further_flocks: usize) -> Self {
+        let others = match further_flocks {
             0 => String::new(),
             1 => " and 1 other".to_owned(),
-            more => format!(" and {more} others"),
+            count => format!(" and {count} others"),
         };
         Self::Solver(format!(
             "flock {flock}{others}: {self}; its episode is over, the other flocks go on"
         ))
     }
 
-    /// Refuses a value as [`Self::parameter`] does, unless it is accepted.
+    /// Refuses a value if `is_accepted` is false.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
+    /// The [`FlockError::Parameter`] that [`Self::parameter`] makes.
     #[inline]
     pub(crate) fn unless(
         is_accepted: bool,
@@ -112,35 +112,36 @@ impl FlockError {
         Err(Self::parameter(field, value, accepted))
     }
 
-    /// Refuses bytes or their content, with a reason, unless a condition holds.
+    /// Refuses stored bytes, or their content, if `fits` is false.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`].
-    pub(crate) fn unless_fitting(fits: bool, why: &str) -> Result<()> {
+    /// [`FlockError::Snapshot`] with the reason.
+    pub(crate) fn unless_fitting(fits: bool, reason: &str) -> Result<()> {
         fits.then_some(())
-            .ok_or_else(|| Self::Snapshot(why.to_owned()))
+            .ok_or_else(|| Self::Snapshot(reason.to_owned()))
     }
 }
 
-/// A text in which very long numbers have an exponent, such as 1e300.
+/// Rewrites numbers of more than 20 digits in a text with an exponent, such as 1e300.
 fn readable(text: &str) -> String {
     const MOST_DIGITS: usize = 20;
-    let (mut written, mut rest) = (String::new(), text);
-    while let Some(start) = rest.find(|letter: char| letter.is_ascii_digit()) {
-        let (before, from) = rest.split_at(start);
-        let is_over = |letter: char| !letter.is_ascii_digit() && letter != '.';
-        let (digits, after) = from.split_at(from.find(is_over).unwrap_or(from.len()));
-        written += before;
+    let (mut output, mut remaining) = (String::new(), text);
+    while let Some(start) = remaining.find(|letter: char| letter.is_ascii_digit()) {
+        let (before, from_digit) = remaining.split_at(start);
+        let is_past_number = |letter: char| !letter.is_ascii_digit() && letter != '.';
+        let end = from_digit.find(is_past_number).unwrap_or(from_digit.len());
+        let (digits, after) = from_digit.split_at(end);
+        output += before;
         match digits.parse::<f64>() {
-            // The full length is not known here.
+            // A number that is cut off by '…' has an unknown magnitude.
             Ok(number) if digits.len() > MOST_DIGITS && !after.starts_with('…') => {
-                written += &format!("{number:e}");
+                output += &format!("{number:e}");
             }
-            _ => written += digits,
+            _ => output += digits,
         }
-        rest = after;
+        remaining = after;
     }
-    written + rest
+    output + remaining
 }
 
 /// Shorthand for results with a [`FlockError`].

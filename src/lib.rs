@@ -21,15 +21,16 @@
 //! # Ok::<(), flockenv::FlockError>(())
 //! ```
 //!
-//! The folder `examples` has self-propelled rods in a dish, a custom steering law, and a batch of environments.
+//! The folder `examples` shows self-propelled rods in a dish, a custom steering law, and a batch of environments.
 //!
 //! # Flow
 //! [`parameters`] → [`geometry`] → [`boat`] → [`contact`] → [`integrator`] → [`flock`] → [`environment`] →
 //! policy (Python). Measurements are in [`analysis`], pictures in `draw`.
 //!
 //! # Features
-//! `draw` has pictures of flocks, `clarabel` a third contact solver to check the others against, and `python` the
-//! bindings together with both.
+//! - `draw`: pictures of flocks
+//! - `clarabel`: a third contact solver, to check the others against
+//! - `python`: the Python bindings; turns on both other features
 //!
 //! # Units
 //! | quantity | unit |

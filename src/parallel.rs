@@ -6,9 +6,9 @@ use std::process::id;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// Number of the process to which rayon's own threads belong.
+/// Id of the process to which rayon's own threads belong.
 static FIRST_PROCESS: OnceLock<u32> = OnceLock::new();
-/// Threads of a forked child, with the number of that process.
+/// Id of a forked child process, and the thread pool made for it.
 static FORKED: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
 
 /// Records that rayon's own threads belong to this process. Other code may start them before the first [`map`].
@@ -17,11 +17,13 @@ pub(crate) fn note_process() {
     FIRST_PROCESS.get_or_init(id);
 }
 
-/// Maps items in order. The caller takes part, since waking a thread, or being woken, takes about as long as some
-/// control steps. Each thread has a block of the items. The block is the same at every call, so that it stays in the
-/// thread's cache. A thread that is done helps with the ends of other blocks.
+/// Applies `work` to the items, in parallel; returns the results in the order of the items.
+///
+/// The calling thread works, too, since waking a thread takes about as long as some control steps. Each thread has a
+/// block of the items. The block is the same at every call, so that it stays in the thread's cache. A thread that has
+/// finished its own block takes items from the ends of other blocks.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    // WebAssembly has neither threads nor processes, and asking for a process's number would end the program.
+    // WebAssembly has neither threads nor processes, and asking for the process id would end the program.
     if cfg!(target_family = "wasm") {
         return items.into_iter().map(work).collect();
     }
@@ -31,64 +33,78 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync 
     if threads <= 1 || (is_fork && pool.is_none()) {
         return items.into_iter().map(work).collect();
     }
-    let size = items.len().div_ceil(threads);
     let mut results: Vec<_> = items.iter().map(|_| None).collect();
-    let mut pairs = items.into_iter().zip(&mut results);
-    let blocks: Vec<Mutex<VecDeque<_>>> = (0..threads)
-        .map(|_| Mutex::new(pairs.by_ref().take(size).collect()))
-        .collect();
-    let take = |block: usize, is_own: bool| {
-        let mut block = blocks[block].lock().unwrap_or_else(PoisonError::into_inner);
-        if is_own {
-            block.pop_front()
-        } else {
-            block.pop_back()
-        }
-    };
-    let take_all = |own: usize| {
+    let blocks = split(items, &mut results, threads);
+    let work_from = |own_block: usize| {
         for step in 0..threads {
-            while let Some((item, result)) = take((own + step) % threads, step == 0) {
+            let block = &blocks[(own_block + step) % threads];
+            let is_own = step == 0;
+            while let Some((item, result)) = take(block, is_own) {
                 *result = Some(work(item));
             }
         }
     };
     let helpers = AtomicUsize::new(0);
     match pool {
-        Some(pool) => pool.in_place_scope(|scope| share(scope, threads, &take_all, &helpers)),
-        None => rayon::in_place_scope(|scope| share(scope, threads, &take_all, &helpers)),
+        Some(pool) => pool.in_place_scope(|scope| spawn(scope, threads, &work_from, &helpers)),
+        None => rayon::in_place_scope(|scope| spawn(scope, threads, &work_from, &helpers)),
     }
     results.into_iter().flatten().collect()
+}
+
+/// Items of one thread, each with the slot for its result.
+type Block<'a, T, R> = Mutex<VecDeque<(T, &'a mut Option<R>)>>;
+
+/// Splits items and the slots for their results into equal blocks; the last ones may be shorter.
+fn split<T, R>(items: Vec<T>, results: &mut [Option<R>], blocks: usize) -> Vec<Block<'_, T, R>> {
+    let size = items.len().div_ceil(blocks);
+    let mut pairs = items.into_iter().zip(results);
+    (0..blocks)
+        .map(|_| Mutex::new(pairs.by_ref().take(size).collect()))
+        .collect()
+}
+
+/// Takes the first item of the thread's own block, or the last one of another thread's.
+fn take<'a, T, R>(block: &Block<'a, T, R>, is_own: bool) -> Option<(T, &'a mut Option<R>)> {
+    let mut items = block.lock().unwrap_or_else(PoisonError::into_inner);
+    if is_own {
+        items.pop_front()
+    } else {
+        items.pop_back()
+    }
 }
 
 /// How often a thread yields while it waits for another's last item, before it sleeps.
 const MOST_YIELDS: u32 = 1000;
 
-/// Does part 0 of some work on this thread and the other parts on other threads. `helpers` counts the other threads
-/// that are at work.
-fn share<'scope>(
+/// Calls `work(0)` on this thread, and `work(1)` to `work(threads - 1)` on other threads. `helpers` counts the other
+/// threads that are now at work.
+fn spawn<'scope>(
     scope: &Scope<'scope>,
-    parts: usize,
+    threads: usize,
     work: &'scope (impl Fn(usize) + Sync),
     helpers: &'scope AtomicUsize,
 ) {
-    for part in 1..parts {
+    for thread in 1..threads {
         scope.spawn(move |_| {
             helpers.fetch_add(1, Ordering::AcqRel);
-            work(part);
+            work(thread);
             helpers.fetch_sub(1, Ordering::AcqRel);
         });
     }
     work(0);
-    // Waiting is cheaper than sleeping: another thread finishes its last item sooner than this thread would be woken.
-    let mut patience = MOST_YIELDS;
-    while helpers.load(Ordering::Acquire) > 0 && patience > 0 {
+    // Yielding is cheaper than sleeping: another thread finishes its last item sooner than this thread would be woken.
+    let mut yields_left = MOST_YIELDS;
+    while helpers.load(Ordering::Acquire) > 0 && yields_left > 0 {
         std::thread::yield_now();
-        patience -= 1;
+        yields_left -= 1;
     }
 }
 
-/// A fork copies no threads: the child would wait forever for its parent's threads. The child never drops the parent's
-/// pool, since that would wait, too.
+/// The thread pool of this forked process, which is made at the first call; `None` if no thread can be started.
+///
+/// A fork copies no threads, so with its parent's pool the child would wait forever. It never drops that pool, since
+/// dropping would wait, too.
 fn pool_of_fork() -> Option<&'static ThreadPool> {
     let mut forked = FORKED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((process, pool)) = *forked

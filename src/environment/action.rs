@@ -13,10 +13,10 @@ named_choice! {
     pub enum ActionMode ("action_mode") {
         /// The rudder itself.
         Rudder = "rudder",
-        /// Any heading: its angle outward of the target's tangent over π. The damped law steers to it.
+        /// Any heading, as its angle outward of the target's tangent over π. The damped law steers to it.
         Heading = "heading",
-        /// A heading about the tangent: its angle outward over [`LARGEST_LEAN`]. The pool's tuned law steers to it, and 0
-        /// is that law itself.
+        /// A heading about the target's tangent, as its angle outward over [`LARGEST_LEAN`]. The pool's tuned law steers
+        /// to it, so the action 0 is that law itself.
         Lean = "lean",
     }
 }
@@ -36,7 +36,7 @@ impl ActionMode {
         }
     }
 
-    /// Heading that an action in [−1, 1] asks for: its angle in rad outward of the target's tangent; 0 for a rudder.
+    /// Angle in rad, outward of the target's tangent, of the heading that an action in [−1, 1] asks for; 0 for a rudder.
     pub fn angle(self, action: f64) -> f64 {
         match self {
             Self::Rudder => 0.0,
@@ -46,10 +46,10 @@ impl ActionMode {
     }
 }
 
-/// Checks an action: a rudder, or the number of a level if there are levels.
+/// Checks an action: a number, or the number of a level if actions are discrete.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] for NaN and for levels that do not exist. Rudders beyond ±1 are accepted: they are clipped.
+/// [`FlockError::Parameter`] for NaN and for levels that do not exist. Numbers beyond ±1 are accepted and clipped.
 pub(super) fn check(action: f64, levels: Option<usize>) -> Result<()> {
     if let Some(levels) = levels {
         let is_level = action >= 0.0 && action < levels as f64 && action.fract() == 0.0;
@@ -60,10 +60,10 @@ pub(super) fn check(action: f64, levels: Option<usize>) -> Result<()> {
     FlockError::unless(!action.is_nan(), "action", action, accepted)
 }
 
-/// The rudder of a checked action, in [−1, 1].
+/// The value in [−1, 1] of a checked action: the action clipped, or the value of its level.
 pub(super) fn command(action: f64, levels: Option<usize>) -> f64 {
     match levels {
-        // Levels i and n - 1 - i are exactly opposite, so that a mirrored task is the same task.
+        // Levels i and n - 1 - i have exactly opposite values, so that a mirrored task is the same task.
         Some(levels) => {
             let highest = (levels - 1) as f64;
             (2.0 * action - highest) / highest

@@ -1,5 +1,5 @@
-//! Many environments stepped in parallel. The bits of an environment depend neither on its batch nor on the number of
-//! threads.
+//! Many environments stepped in parallel. The results of an environment are the same to the bit in every batch and with
+//! every number of threads.
 
 use super::flock_env::StoredEnv;
 use super::observation::ObservationLayout;
@@ -10,9 +10,10 @@ use crate::parallel;
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
+/// First bytes of a stored batch.
 const MAGIC: Magic = *b"flocken4";
 
-/// Output of a step: one row per leader, flock after flock, and one flag per flock.
+/// Output of a step. Leaders have one row each, flock after flock; flocks have one flag each.
 #[derive(Debug)]
 pub struct BatchRows<'a> {
     /// Observations, `rows × observation size`.
@@ -28,11 +29,12 @@ pub struct BatchRows<'a> {
 pub struct EnvBatch {
     settings: EnvSettings,
     envs: Vec<FlockEnv>,
+    /// Number of leaders in all flocks together.
     rows: usize,
 }
 
 /// One flock's part of a step: its environment, its actions and its rows of the output.
-struct Share<'a> {
+struct FlockStep<'a> {
     env: &'a mut FlockEnv,
     actions: Option<&'a [f64]>,
     observations: &'a mut [f32],
@@ -43,22 +45,22 @@ struct Share<'a> {
 }
 
 impl EnvBatch {
-    /// One environment for each set of parameters. They must be reset before a step.
+    /// A batch with one environment for each set of parameters. All must be reset before a step.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for settings or parameters that are not accepted.
-    pub fn new(settings: EnvSettings, members: Vec<FlockParameters>) -> Result<Self> {
-        FlockError::unless(!members.is_empty(), "num_envs", 0, "at least 1")?;
-        for parameters in &members {
+    pub fn new(settings: EnvSettings, flocks: Vec<FlockParameters>) -> Result<Self> {
+        FlockError::unless(!flocks.is_empty(), "num_envs", 0, "at least 1")?;
+        for parameters in &flocks {
             parameters.check()?;
             settings.check(parameters)?;
         }
-        let leaders = members.iter().map(|parameters| parameters.n_leaders);
+        let leaders = flocks.iter().map(|parameters| parameters.n_leaders);
         settings.reward.check_leaders(leaders.max().unwrap_or(0))?;
-        check_memory(&settings, &members)?;
+        check_memory(&settings, &flocks)?;
         Ok(Self {
-            rows: members.iter().map(|p| p.n_leaders).sum(),
-            envs: members
+            rows: flocks.iter().map(|parameters| parameters.n_leaders).sum(),
+            envs: flocks
                 .into_iter()
                 .map(|parameters| FlockEnv::new(&settings, parameters))
                 .collect(),
@@ -76,7 +78,7 @@ impl EnvBatch {
         &self.envs
     }
 
-    /// Leaders of all flocks together.
+    /// Number of rows: the leaders of all flocks together.
     pub fn rows(&self) -> usize {
         self.rows
     }
@@ -86,7 +88,7 @@ impl EnvBatch {
         self.settings.observation.size()
     }
 
-    /// Checks actions, and that every environment is ready: a step moves all flocks or none.
+    /// Checks the actions, and that every environment is ready, so that a step moves all flocks or none.
     ///
     /// # Errors
     /// [`FlockError::Shape`], [`FlockError::Parameter`] or [`FlockError::Episode`].
@@ -108,16 +110,17 @@ impl EnvBatch {
             .try_for_each(|env| env.check_ready(self.settings.autoreset_mode))
     }
 
-    /// Takes one decision in every flock and holds it over the control steps until the next one. A flock whose next
-    /// episode is due starts it instead. Without actions the leaders follow the steering law at every substep.
+    /// Takes one decision in every flock and holds its actions over the control steps until the next decision. A flock
+    /// whose next episode is due starts that episode instead. Without actions the leaders follow the steering law at
+    /// every substep.
     ///
     /// # Errors
-    /// Those of [`Self::check_step`], before anything moves; [`FlockError::Solver`] and [`FlockError::Placement`] of
-    /// one flock, after the others have moved. Its episode has ended, the others continue, and the rewards of this step
-    /// are lost.
+    /// Those of [`Self::check_step`], before any flock moves. [`FlockError::Solver`] and [`FlockError::Placement`] of a
+    /// flock, after the other flocks have moved: the episode of that flock has ended, and the rewards of this step are
+    /// lost.
     ///
     /// # Panics
-    /// If the rows have other lengths than the batch.
+    /// If the output does not have one row per leader and one flag per flock.
     pub fn step(&mut self, actions: Option<&[f64]>, out: BatchRows) -> Result<()> {
         self.step_while(&|| true, actions, out)
     }
@@ -138,49 +141,47 @@ impl EnvBatch {
     ) -> Result<()> {
         self.check_step(actions)?;
         let settings = &self.settings;
-        let shares = shares(&mut self.envs, settings.observation.size(), actions, out);
-        let step = |share: Share| {
-            if share.checks_interrupt && !keep_going() {
+        let flocks = split(&mut self.envs, settings.observation.size(), actions, out);
+        let step = |flock: FlockStep| {
+            if flock.checks_interrupt && !keep_going() {
                 return Err(FlockError::Interrupted);
             }
-            let (actions, observations) = (share.actions, share.observations);
-            *share.truncated =
-                share
-                    .env
-                    .step(keep_going, settings, actions, observations, share.rewards)?;
+            let (env, actions) = (flock.env, flock.actions);
+            let (observations, rewards) = (flock.observations, flock.rewards);
+            *flock.truncated = env.step(keep_going, settings, actions, observations, rewards)?;
             Ok(())
         };
-        let moved: Vec<Result<()>> = parallel::map(shares, step);
-        if moved.contains(&Err(FlockError::Interrupted)) {
+        let results: Vec<Result<()>> = parallel::map(flocks, step);
+        if results.contains(&Err(FlockError::Interrupted)) {
             // Some flocks have moved and others have not: all must be reset.
             self.envs.iter_mut().for_each(FlockEnv::abandon);
             return Err(FlockError::Interrupted);
         }
-        let is_alone = moved.len() == 1;
-        let failed = moved.into_iter().enumerate();
-        let mut failed = failed.filter_map(|(flock, outcome)| Some((flock, outcome.err()?)));
-        match (failed.next(), failed.count()) {
+        let is_single_flock = results.len() == 1;
+        let numbered = results.into_iter().enumerate();
+        let mut errors = numbered.filter_map(|(flock, result)| Some((flock, result.err()?)));
+        match (errors.next(), errors.count()) {
             (None, _) => Ok(()),
-            (Some((_, error)), _) if is_alone => Err(error),
-            (Some((flock, error)), more) => Err(error.of_flock(flock, more)),
+            (Some((_, error)), _) if is_single_flock => Err(error),
+            (Some((flock, error)), further_flocks) => Err(error.with_flock(flock, further_flocks)),
         }
     }
 
-    /// Adds one number per row to the rewards of the last step, on top of the settings' weighted terms.
+    /// Adds one number per row to the rewards of the last step, besides the weighted terms of the settings.
     ///
     /// # Panics
     /// If the numbers of rewards and rows differ.
     pub fn add_rewards(&mut self, rewards: &[f64]) {
-        assert_eq!(rewards.len(), self.rows, "one reward a leader");
-        let mut rest = rewards;
+        assert_eq!(rewards.len(), self.rows, "one reward per leader");
+        let mut remaining = rewards;
         for env in &mut self.envs {
-            let own = rest.split_off(..env.parameters().n_leaders);
-            env.add_rewards(own.unwrap_or_default());
+            let rows = remaining.split_off(..env.parameters().n_leaders);
+            env.add_rewards(rows.unwrap_or_default());
         }
     }
 
-    /// Starts new episodes. There is one request per flock; `None` leaves a flock unchanged. If a request cannot be met,
-    /// nothing changes.
+    /// Starts new episodes. There is one request per flock; `None` leaves a flock unchanged. If any request fails, no
+    /// flock changes.
     ///
     /// # Errors
     /// The first error of a request; [`FlockError::Shape`] if the numbers of requests and flocks differ.
@@ -188,7 +189,8 @@ impl EnvBatch {
         self.reset_while(&|| true, requests)
     }
 
-    /// As [`Self::reset`], but calls `keep_going` now and then, since large flocks take seconds to place.
+    /// As [`Self::reset`], but calls `keep_going` now and then to ask whether to continue, since large flocks take
+    /// seconds to place.
     ///
     /// # Errors
     /// As for [`Self::reset`]; [`FlockError::Interrupted`] if `keep_going` returned false.
@@ -214,10 +216,11 @@ impl EnvBatch {
         let pairs: Vec<_> = self.envs.iter().zip(requests).collect();
         let prepared: Result<Vec<_>> = parallel::map(pairs, prepare).into_iter().collect();
         let size = settings.observation.size();
-        for (env, next) in self.envs.iter_mut().zip(prepared?) {
-            if let Some(next) = next {
-                let mut unread = vec![0.0; size * env.parameters().n_leaders];
-                env.start(next, &mut unread);
+        for (env, prepared) in self.envs.iter_mut().zip(prepared?) {
+            if let Some(prepared) = prepared {
+                // The caller reads the first observations with `observe`.
+                let mut observations = vec![0.0; size * env.parameters().n_leaders];
+                env.start(prepared, &mut observations);
             }
         }
         Ok(())
@@ -226,36 +229,37 @@ impl EnvBatch {
     /// Sets options of the future episodes of some flocks; options that are `None` stay as they were.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for options that a flock cannot have, or no such flock; nothing has changed then.
+    /// [`FlockError::Parameter`] for options that a flock cannot have, and for flocks that do not exist; nothing has
+    /// changed then.
     pub fn set_upcoming(&mut self, flocks: &[usize], options: &Upcoming) -> Result<()> {
-        let merged = |&flock: &usize| {
+        let merge = |&flock: &usize| {
             let accepted = format!("below {}", self.envs.len());
-            let none = || FlockError::parameter("flock", flock, accepted);
-            let env = self.envs.get(flock).ok_or_else(none)?;
+            let unknown = || FlockError::parameter("flock", flock, accepted);
+            let env = self.envs.get(flock).ok_or_else(unknown)?;
             let mut upcoming = env.upcoming().clone();
             upcoming.target = options.target.clone().or(upcoming.target);
             upcoming.bw_s = options.bw_s.or(upcoming.bw_s);
             env.check_upcoming(&self.settings, &upcoming)?;
             Ok(upcoming)
         };
-        let checked: Vec<_> = flocks.iter().map(merged).collect::<Result<_>>()?;
-        for (&flock, upcoming) in flocks.iter().zip(checked) {
+        let merged: Vec<_> = flocks.iter().map(merge).collect::<Result<_>>()?;
+        for (&flock, upcoming) in flocks.iter().zip(merged) {
             self.envs[flock].set_upcoming(upcoming);
         }
         Ok(())
     }
 
-    /// Writes the observations as they are now, zeros before the first reset.
+    /// Writes the leaders' present observations; zeros before the first reset.
     ///
     /// # Panics
     /// If `out` has another length than `rows × observation size`.
     pub fn observe(&mut self, out: &mut [f32]) {
         let size = self.observation_size();
         assert_eq!(out.len(), self.rows * size, "one row per leader");
-        let mut rest = out;
+        let mut remaining = out;
         for env in &mut self.envs {
-            let own = rest.split_off_mut(..env.parameters().n_leaders * size);
-            env.observe(own.unwrap_or_default());
+            let rows = remaining.split_off_mut(..env.parameters().n_leaders * size);
+            env.observe(rows.unwrap_or_default());
         }
     }
 
@@ -269,31 +273,31 @@ impl EnvBatch {
     /// If `out` has another length than `rows × size of the layout`.
     pub fn observe_in(&self, layout: ObservationLayout, out: &mut [f32]) -> Result<()> {
         assert_eq!(out.len(), self.rows * layout.size(), "one row per leader");
-        let mut rest = out;
+        let mut remaining = out;
         for env in &self.envs {
-            let own = rest.split_off_mut(..env.parameters().n_leaders * layout.size());
-            env.observe_in(layout, own.unwrap_or_default())?;
+            let rows = remaining.split_off_mut(..env.parameters().n_leaders * layout.size());
+            env.observe_in(layout, rows.unwrap_or_default())?;
         }
         Ok(())
     }
 
-    /// The whole batch as bytes: settings, parameters and state.
+    /// The batch as bytes: settings, parameters and state.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let members: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
+        let parameters: Vec<_> = self.envs.iter().map(FlockEnv::parameters).collect();
         let states: Vec<_> = self.envs.iter().map(FlockEnv::stored).collect();
-        seal(&MAGIC, &(&self.settings, members, states))
+        seal(&MAGIC, &(&self.settings, parameters, states))
     }
 
-    /// A batch from its bytes.
+    /// Restores a batch from its bytes.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged batch.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let (settings, members, states): (EnvSettings, Vec<_>, Vec<StoredEnv>) =
+        let (settings, parameters, states): (EnvSettings, Vec<_>, Vec<StoredEnv>) =
             unseal(&MAGIC, bytes)?;
-        let mut batch = Self::new(settings, members)?;
-        let is_whole = states.len() == batch.envs.len();
-        FlockError::unless_fitting(is_whole, "a part of the batch is missing")?;
+        let mut batch = Self::new(settings, parameters)?;
+        let is_complete = states.len() == batch.envs.len();
+        FlockError::unless_fitting(is_complete, "a part of the batch is missing")?;
         for (env, stored) in batch.envs.iter_mut().zip(states) {
             *env = env.restored(&batch.settings, stored)?;
         }
@@ -306,75 +310,77 @@ impl EnvBatch {
     /// [`FlockError::Snapshot`]; the batch is unchanged then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let restored = Self::from_bytes(bytes)?;
-        let [own, other] =
+        let [current_parameters, stored_parameters] =
             [&*self, &restored].map(|batch| batch.envs.iter().map(FlockEnv::parameters));
-        let is_same = restored.settings == self.settings && own.eq(other);
+        let is_same =
+            restored.settings == self.settings && current_parameters.eq(stored_parameters);
         FlockError::unless_fitting(is_same, "the state's environment has other options")?;
         *self = restored;
         Ok(())
     }
 }
 
-/// A step of the batch can be interrupted after this many flocks, and within a long step of one flock.
+/// A step of the batch asks `keep_going` once per this many flocks. A long step of one flock asks it, too.
 const FLOCKS_BETWEEN_CHECKS: usize = 16;
 
-/// Batches beyond this many bytes (16 GiB) are taken for a mistake.
+/// Larger batches (more than 16 GiB) are taken for a mistake.
 const MOST_BYTES: u64 = 16 << 30;
-/// Upper bounds of the bytes of a flock without its boats, and of a boat with its contacts.
-const BYTES_A_FLOCK: u64 = 16 << 10;
-const BYTES_A_BOAT: u64 = 2 << 10;
+/// Upper bound of the bytes of a flock without its boats.
+const BYTES_PER_FLOCK: u64 = 16 << 10;
+/// Upper bound of the bytes of a boat with its contacts.
+const BYTES_PER_BOAT: u64 = 2 << 10;
 
-/// Refuses a batch for which memory would run out.
-fn check_memory(settings: &EnvSettings, members: &[FlockParameters]) -> Result<()> {
+/// Refuses a batch that would not fit in memory.
+fn check_memory(settings: &EnvSettings, flocks: &[FlockParameters]) -> Result<()> {
     // Observations are also held by the caller and, at the end of an episode, by the environment.
-    let bytes_a_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
-    let bytes: u64 = members
-        .iter()
-        .map(|p| {
-            let (boats, leaders) = (p.n_boats as u64, p.n_leaders as u64);
-            BYTES_A_FLOCK + BYTES_A_BOAT * boats + bytes_a_leader * leaders
-        })
-        .sum();
+    let bytes_per_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
+    let bytes_of_flock = |parameters: &FlockParameters| {
+        let (boats, leaders) = (parameters.n_boats as u64, parameters.n_leaders as u64);
+        BYTES_PER_FLOCK + BYTES_PER_BOAT * boats + bytes_per_leader * leaders
+    };
+    let bytes: u64 = flocks.iter().map(bytes_of_flock).sum();
     let mut memory: Vec<u8> = Vec::new();
     if bytes <= MOST_BYTES && memory.try_reserve_exact(bytes as usize).is_ok() {
         return Ok(());
     }
     Err(FlockError::parameter(
         "num_envs",
-        members.len(),
+        flocks.len(),
         format!(
-            "{bytes} bytes do not fit; at most {MOST_BYTES} bytes, and the memory there is: fewer \
-             flocks or fewer boats"
+            "{bytes} bytes do not fit: use fewer flocks or boats, for at most {MOST_BYTES} bytes \
+             and the free memory"
         ),
     ))
 }
 
-/// Splits actions and rows into one share per flock.
-fn shares<'a>(
+/// Splits actions and output into the parts of the flocks.
+fn split<'a>(
     envs: &'a mut [FlockEnv],
-    size: usize,
+    observation_size: usize,
     mut actions: Option<&'a [f64]>,
     out: BatchRows<'a>,
-) -> Vec<Share<'a>> {
+) -> Vec<FlockStep<'a>> {
     let (mut observations, mut rewards) = (out.observations, out.rewards);
     let rows: usize = envs.iter().map(|env| env.parameters().n_leaders).sum();
-    assert_eq!(observations.len(), rows * size, "one row per leader");
-    assert_eq!(rewards.len(), rows, "one reward a leader");
-    assert_eq!(out.truncated.len(), envs.len(), "one flag a flock");
+    let observation_count = rows * observation_size;
+    assert_eq!(observations.len(), observation_count, "one row per leader");
+    assert_eq!(rewards.len(), rows, "one reward per leader");
+    assert_eq!(out.truncated.len(), envs.len(), "one flag per flock");
     let mut number = 0_usize;
-    let share = |(env, truncated): (&'a mut FlockEnv, _)| {
+    let part = |(env, truncated): (&'a mut FlockEnv, _)| {
         number += 1;
         let leaders = env.parameters().n_leaders;
-        Share {
-            actions: actions.as_mut().and_then(|rest| rest.split_off(..leaders)),
-            observations: observations
-                .split_off_mut(..leaders * size)
-                .unwrap_or_default(),
+        let observations = observations.split_off_mut(..leaders * observation_size);
+        FlockStep {
+            actions: actions
+                .as_mut()
+                .and_then(|actions| actions.split_off(..leaders)),
+            observations: observations.unwrap_or_default(),
             rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
             checks_interrupt: number.is_multiple_of(FLOCKS_BETWEEN_CHECKS),
             env,
         }
     };
-    envs.iter_mut().zip(out.truncated).map(share).collect()
+    envs.iter_mut().zip(out.truncated).map(part).collect()
 }
