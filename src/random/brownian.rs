@@ -1,6 +1,6 @@
 //! Brownian paths that can be read at any time, from keyed normal draws.
 //!
-//! The noise is keyed, not consumed: a draw is a function of (seed, boat, time). So two policies or two control rates
+//! A draw is a function of (seed, boat, time), not the next number of a generator. So two policies or two control rates
 //! get the same noise if the seed is the same, and a snapshot holds no generator.
 
 use super::normal::{Ziggurat, scramble};
@@ -23,19 +23,19 @@ impl KeyedNormals {
         }
     }
 
-    /// N(0, 1) of each boat for (cell, node).
+    /// A standard normal draw for each boat, keyed by (cell, node).
     #[inline]
     fn draws(&self, cell: u64, node: u64) -> impl Iterator<Item = f64> {
-        let word = scramble(scramble(cell).wrapping_add(node));
-        let words = self.keys.iter().map(move |key| key.wrapping_add(word));
+        let node_key = scramble(scramble(cell).wrapping_add(node));
+        let words = self.keys.iter().map(move |key| key.wrapping_add(node_key));
         words.map(|word| self.ziggurat.normal(scramble(word)))
     }
 }
 
-/// Number of times that a cell is halved. Within the smallest parts, each time has its own draw.
+/// Number of times that a cell is halved. In the smallest parts, the leaves, each time has its own draw.
 const HALVINGS: u32 = 10;
 
-/// A Brownian path per boat, readable at any time: the same path however the time axis is cut.
+/// A Brownian path per boat. A path can be read at any time, and does not depend on when it was read before.
 ///
 /// Time is counted in half ticks. The axis is divided in cells of one full substep; the increment
 /// over a whole cell is one draw. Within a cell the path follows from Brownian bridges: bisection down to leaves of
@@ -53,9 +53,9 @@ pub struct BrownianPaths {
     shift: u64,
     /// Where the last increment ended: most increments start there.
     last: Reading,
-    /// Scratch: the paths at both ends of an interval, one value per boat.
-    low: Vec<f64>,
-    high: Vec<f64>,
+    /// Scratch memory: the paths at the start and the end of a bridge, one value per boat.
+    path_at_start: Vec<f64>,
+    path_at_end: Vec<f64>,
 }
 
 /// The paths at a point within a cell.
@@ -73,7 +73,7 @@ struct Reading {
 const HALF_TICK_S: f64 = 0.5e-9;
 
 impl BrownianPaths {
-    /// Paths of a seed for `boats` boats. Cells are `cell_length` half ticks long, and the first starts `shift` half
+    /// The paths of `boats` boats for a seed. Cells are `cell_length` half ticks long, and the first starts `shift` half
     /// ticks before time 0.
     pub fn new(seed: u64, boats: usize, cell_length: u64, shift: u64) -> Self {
         Self::from_keys(Stream::NOISE.rng(seed), boats, cell_length, shift)
@@ -91,12 +91,12 @@ impl BrownianPaths {
                 path: zeros.clone(),
                 whole: zeros.clone(),
             },
-            low: zeros.clone(),
-            high: zeros,
+            path_at_start: zeros.clone(),
+            path_at_end: zeros,
         }
     }
 
-    /// Changes to other paths in the same cells.
+    /// Replaces the paths by those of other keys, with the same cells.
     pub(crate) fn replace_keys(&mut self, keys: StreamRng) {
         let boats = self.normals.keys.len();
         *self = Self::from_keys(keys, boats, self.cell_length, self.shift);
@@ -109,29 +109,24 @@ impl BrownianPaths {
         increments.fill(0.0);
         for cell in first..=last {
             let start = cell * self.cell_length;
-            let a = from.max(start) - start;
-            let b = to.min(start + self.cell_length) - start;
-            if a > 0 {
-                self.read(cell, a);
+            let from_offset = from.max(start) - start;
+            let to_offset = to.min(start + self.cell_length) - start;
+            if from_offset > 0 {
+                self.read(cell, from_offset);
                 add(increments, -1.0, &self.last.path);
             }
-            if b < self.cell_length {
-                self.read(cell, b);
+            if to_offset < self.cell_length {
+                self.read(cell, to_offset);
                 add(increments, 1.0, &self.last.path);
-            } else if a > 0 {
+            } else if from_offset > 0 {
                 add(increments, 1.0, &self.last.whole);
             } else {
-                let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
-                let draws = self.normals.draws(cell, 0);
-                increments
-                    .iter_mut()
-                    .zip(draws)
-                    .for_each(|(sum, draw)| *sum += scale * draw);
+                self.add_whole(cell, increments);
             }
         }
     }
 
-    /// Draws keyed by a time, for noise that is drawn step by step.
+    /// Writes standard normal draws keyed by a time, one per boat, for noise that is drawn step by step.
     pub(crate) fn step_draws(&mut self, time: u64, draws: &mut [f64]) {
         let normals = self.normals.draws(time, 0);
         draws
@@ -140,7 +135,15 @@ impl BrownianPaths {
             .for_each(|(draw, normal)| *draw = normal);
     }
 
-    /// Draws the increments over a whole cell.
+    /// Adds the increments over a whole cell, without a reading.
+    fn add_whole(&self, cell: u64, increments: &mut [f64]) {
+        let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
+        let draws = self.normals.draws(cell, 0);
+        let sums = increments.iter_mut().zip(draws);
+        sums.for_each(|(sum, draw)| *sum += scale * draw);
+    }
+
+    /// Sets `last.whole` to the increments over a whole cell.
     fn draw_whole(&mut self, cell: u64) {
         let scale = (self.cell_length as f64 * HALF_TICK_S).sqrt();
         let draws = self.normals.draws(cell, 0);
@@ -150,41 +153,42 @@ impl BrownianPaths {
 
     /// Sets `last` to the paths at `offset` half ticks into a cell, strictly inside of it.
     fn read(&mut self, cell: u64, offset: u64) {
-        let known = self.last.point.replace((cell, offset));
-        if known == Some((cell, offset)) {
+        let previous = self.last.point.replace((cell, offset));
+        if previous == Some((cell, offset)) {
             return;
         }
-        if known.is_none_or(|(known, _)| known != cell) {
+        if previous.is_none_or(|(previous_cell, _)| previous_cell != cell) {
             self.draw_whole(cell);
         }
         let Reading { path, whole, .. } = &mut self.last;
-        let (low, high) = (&mut self.low, &mut self.high);
-        low.fill(0.0);
-        high.copy_from_slice(whole);
+        let (at_start, at_end) = (&mut self.path_at_start, &mut self.path_at_end);
+        at_start.fill(0.0);
+        at_end.copy_from_slice(whole);
         let (mut start, mut end, mut node) = (0, self.cell_length, 1_u64);
         loop {
-            // Keys of the bisection's nodes come first, then keys of times.
-            let (middle, key) = if node < 1 << HALVINGS {
+            // Keys below 2^HALVINGS belong to nodes of the bisection, larger keys to times within leaves.
+            let (point, key) = if node < 1 << HALVINGS {
                 (start + (end - start) / 2, node)
             } else {
                 (offset, (1 << HALVINGS) + offset)
             };
-            let (left, right) = ((middle - start) as f64, (end - middle) as f64);
-            let (to_low, to_high) = (right / (left + right), left / (left + right));
-            let spread = (left * to_low * HALF_TICK_S).sqrt();
-            let ends = low.iter().zip(&*high).zip(self.normals.draws(cell, key));
-            for (path, ((low, high), draw)) in path.iter_mut().zip(ends) {
-                *path = low * to_low + high * to_high + spread * draw;
+            let (left, right) = ((point - start) as f64, (end - point) as f64);
+            let (start_weight, end_weight) = (right / (left + right), left / (left + right));
+            let deviation = (left * start_weight * HALF_TICK_S).sqrt();
+            let draws = self.normals.draws(cell, key);
+            let ends = at_start.iter().zip(&*at_end).zip(draws);
+            for (path, ((at_start, at_end), draw)) in path.iter_mut().zip(ends) {
+                *path = at_start * start_weight + at_end * end_weight + deviation * draw;
             }
-            if middle == offset {
+            if point == offset {
                 return;
             }
-            if offset > middle {
-                (start, node) = (middle, 2 * node + 1);
-                low.copy_from_slice(path);
+            if offset > point {
+                (start, node) = (point, 2 * node + 1);
+                at_start.copy_from_slice(path);
             } else {
-                (end, node) = (middle, 2 * node);
-                high.copy_from_slice(path);
+                (end, node) = (point, 2 * node);
+                at_end.copy_from_slice(path);
             }
         }
     }

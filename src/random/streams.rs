@@ -18,9 +18,9 @@ impl Stream {
     pub(crate) const PLACEMENT: Self = Self("placement");
     /// η of eq. (9).
     pub(crate) const NOISE: Self = Self("noise");
-    /// η of eq. (9) in a branch: never the noise of a flock with that seed.
+    /// η of eq. (9) after a restore with another noise seed, so that it differs from the noise of a flock of that seed.
     pub(crate) const BRANCH_NOISE: Self = Self("branch-noise");
-    /// Tracking drop-outs of the observation.
+    /// Boats that the camera loses in a frame.
     pub(crate) const SENSING: Self = Self("sensing");
     /// Per-boat differences of speed.
     pub(crate) const SPEED_SPREAD: Self = Self("speed-spread");
@@ -28,7 +28,7 @@ impl Stream {
     pub(crate) const EPISODE: Self = Self("episode");
     /// Seeds of an environment's episodes after the first.
     pub(crate) const EPISODE_SEEDS: Self = Self("episode-seeds");
-    /// Offsets that a training tries in its branches.
+    /// Random choices in the branches of a training: offsets, the flock to continue from, and targets.
     pub(crate) const TRAINING: Self = Self("training");
 
     /// The generator of this stream for a seed, at its start.
