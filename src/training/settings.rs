@@ -43,15 +43,18 @@ declare_fields! {
     ridge: f64 = 0.1, "", Range::Within(1e-6, 1e6, "1e-6 to 1e6"), "chosen";
 }
 
-/// Lengths of a training's periods, in decisions.
+/// Lengths of a training's periods, as numbers of decisions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decisions {
-    /// Number of decisions in a branch, in a hold, in the part of a hold over which features are averaged, in all
-    /// holds, and before the order counts.
+    /// Decisions in `branch_s`.
     pub branch: usize,
+    /// Decisions in `hold_s`.
     pub hold: usize,
+    /// Decisions in `seen_s`.
     pub seen: usize,
+    /// Decisions in `trial_s`.
     pub trial: usize,
+    /// Decisions in `blind_s`.
     pub blind: usize,
 }
 
@@ -80,7 +83,7 @@ impl BranchSettings {
         }
     }
 
-    /// Checks the settings for flocks with these parameters, which are checked, too.
+    /// Checks the settings together with the parameters of the flocks.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] names the first that is not accepted.
@@ -104,9 +107,9 @@ impl BranchSettings {
         let accepted = "at most branch_s";
         FlockError::unless(hold <= branch, "hold_s", self.hold_s, accepted)?;
         FlockError::unless(seen <= hold, "seen_s", self.seen_s, "at most hold_s")?;
-        let is_whole = trial > 0 && trial <= branch && trial.is_multiple_of(hold);
+        let is_whole_holds = trial > 0 && trial <= branch && trial.is_multiple_of(hold);
         let accepted = "a whole number of holds, at most branch_s";
-        FlockError::unless(is_whole, "trial_s", self.trial_s, accepted)?;
+        FlockError::unless(is_whole_holds, "trial_s", self.trial_s, accepted)?;
         FlockError::unless(
             blind < branch,
             "blind_s",
@@ -119,28 +122,29 @@ impl BranchSettings {
         self.env_settings().check(parameters)
     }
 
-    /// The numbers of decisions.
+    /// The lengths of the periods in decisions.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for times that are not whole numbers of decisions.
     pub(super) fn decisions(&self) -> Result<Decisions> {
-        let rate = 1.0 / self.decision_period_s;
-        let whole =
-            |name, time_s| whole_steps(name, time_s, rate, "decisions").map(|steps| steps as usize);
+        let rate_hz = 1.0 / self.decision_period_s;
+        let count = |name, time_s| {
+            whole_steps(name, time_s, rate_hz, "decisions").map(|count| count as usize)
+        };
         Ok(Decisions {
-            branch: whole("branch_s", self.branch_s)?,
-            hold: whole("hold_s", self.hold_s)?,
-            seen: whole("seen_s", self.seen_s)?,
-            trial: whole("trial_s", self.trial_s)?,
+            branch: count("branch_s", self.branch_s)?,
+            hold: count("hold_s", self.hold_s)?,
+            seen: count("seen_s", self.seen_s)?,
+            trial: count("trial_s", self.trial_s)?,
             blind: if self.blind_s == 0.0 {
                 0
             } else {
-                whole("blind_s", self.blind_s)?
+                count("blind_s", self.blind_s)?
             },
         })
     }
 
-    /// The environment in which a branch is an episode, rewarded with the order alone.
+    /// Settings of the environment in which a branch is one episode and the order is the only reward.
     pub(super) fn env_settings(&self) -> EnvSettings {
         EnvSettings {
             episode_s: Some(self.branch_s),
@@ -156,19 +160,19 @@ impl BranchSettings {
         }
     }
 
-    /// Simulated time of a round in hours.
+    /// Simulated time of a round in hours, summed over all flocks.
     pub(super) fn round_hours(&self) -> f64 {
         2.0 * self.pairs as f64 * self.branch_s / 3600.0
     }
 
-    /// Rounds of the whole training.
+    /// Number of rounds in the training.
     pub(super) fn rounds(&self) -> usize {
-        (self.flock_hours / self.round_hours() - 1e-9)
-            .ceil()
-            .max(1.0) as usize
+        // Without the small number, rounding errors could add a round.
+        let rounds = self.flock_hours / self.round_hours() - 1e-9;
+        rounds.ceil().max(1.0) as usize
     }
 
-    /// Branches of an episode.
+    /// Number of branches in an episode.
     pub(super) fn branches(&self) -> usize {
         (self.episode_s / self.branch_s) as usize
     }

@@ -1,8 +1,8 @@
-//! A training, round after round.
+//! The training: rounds of branches, and a step of the weights after each round.
 
 use super::BranchSettings;
 use super::branch::{Outcome, Pair, Task};
-use super::regression::{Features, Matrix, SIZE, add_square, dot, product, ridge};
+use super::regression::{Features, Matrix, SIZE, add_square, dot, product, solve_ridge};
 use crate::boat::DampedLaw;
 use crate::contact::KeepGoing;
 use crate::environment::{ActionMode, LARGEST_LEAN};
@@ -12,63 +12,86 @@ use crate::parameters::FlockParameters;
 use crate::policies::LeaningLaw;
 use crate::sealed_bytes::{Magic, seal, unseal};
 
+/// First bytes of a stored training.
 const MAGIC: Magic = *b"flocktr2";
 
-/// State of a training between two rounds.
+/// State of a training between two rounds. In the sums, a factor `memory` per round makes earlier rounds count less.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
-struct Memory {
-    /// Weights before the first round and after each.
+struct TrainingState {
+    /// Weights before the first round and after each round.
     weights: Vec<Features>,
     /// Mean order of each round.
     orders: Vec<f64>,
-    /// Sums of squares of the tried offsets times features, and of their products with the differences; earlier rounds
-    /// count less.
-    tried: Matrix,
-    differences: Features,
-    /// Sum of the features' squares, and the number of rounds in it, where earlier rounds count less.
-    features: Matrix,
+    /// Sum of x xᵀ over branches, where x are the regressors.
+    regressor_squares: Matrix,
+    /// Sum of x·y over branches, where y is the order difference.
+    regressor_products: Features,
+    /// Sum over rounds of the mean g gᵀ, where g are the action slopes of an offset.
+    slope_squares: Matrix,
+    /// Number of rounds in `slope_squares`; earlier rounds count less here, too.
     rounds: f64,
-    /// Branches in which a flock left an overlap deeper than the tolerance, and the deepest of all, in cm.
+    /// Number of branches in which a flock left an overlap deeper than the tolerance.
     unsolved: u64,
+    /// Deepest overlap of any branch in cm.
     worst_overlap_cm: f64,
+    /// The pairs before their next branches.
     pairs: Vec<Pair>,
 }
 
-impl Memory {
-    /// Whether this state fits a training of so many pairs, with so many branches in an episode.
+impl TrainingState {
+    /// Whether a stored state has finite numbers and fits a training with these numbers of pairs and of branches in an
+    /// episode.
     fn fits(&self, pairs: usize, branches: usize) -> bool {
         let sums = self
-            .tried
+            .regressor_squares
             .iter()
-            .chain(&self.features)
-            .chain([&self.differences]);
+            .chain(&self.slope_squares)
+            .chain([&self.regressor_products]);
         let numbers = sums.chain(&self.weights).flatten().chain(&self.orders);
-        let mut all = numbers.chain([&self.rounds, &self.worst_overlap_cm]);
-        all.all(|number| number.is_finite())
+        let mut numbers = numbers.chain([&self.rounds, &self.worst_overlap_cm]);
+        numbers.all(|number| number.is_finite())
             && self.weights.len() == self.orders.len() + 1
             && self.pairs.len() == pairs
             && self
                 .pairs
                 .iter()
-                .all(|pair| (1..=branches).contains(&pair.left))
+                .all(|pair| (1..=branches).contains(&pair.branches_left))
+    }
+
+    /// The weights after a step along the natural gradient.
+    ///
+    /// The gradient of the order comes from the regression. `step` times the remaining fraction of the training is the
+    /// root mean square of the change of the actions.
+    fn stepped_weights(&self, settings: &BranchSettings) -> Features {
+        let products = &self.regressor_products;
+        let gradient = solve_ridge(&self.regressor_squares, settings.ridge, products);
+        let change = product(&self.slope_squares, &gradient);
+        let mean_square_change = dot(&gradient, &change) / self.rounds;
+        let finished_rounds = self.orders.len();
+        let remaining = 1.0 - finished_rounds as f64 / settings.rounds() as f64;
+        let rms_change = mean_square_change.max(0.0).sqrt() + 1e-12;
+        let rate = settings.step * remaining.max(0.0) / rms_change;
+        let weights = &self.weights[finished_rounds];
+        std::array::from_fn(|k| weights[k] + rate * gradient[k])
     }
 }
 
 /// Trains leaders whose leans or rudders are linear in the lean features.
 ///
-/// In a round each pair of flocks goes through a branch: from one state, with one noise, and with opposite offsets of
-/// the leaders' actions. The difference of their orders is regressed on the offsets times the features. The result says
-/// how much each weight raises the order, and the weights take a step in that direction.
+/// In a round each pair of flocks runs one branch: both flocks start from the same state with the same noise, and their
+/// leaders add opposite offsets to their actions. The difference of their orders is regressed on the offsets times the
+/// action slopes. The coefficients say how much each weight raises the order, and the weights take a step in that
+/// direction.
 #[derive(Debug, Clone)]
 pub struct Trainer {
     task: Task,
-    memory: Memory,
-    /// Finished branches of the current round.
-    under_way: Vec<(Outcome, Pair)>,
+    state: TrainingState,
+    /// Finished branches of the current round, with each pair's next state.
+    finished: Vec<(Outcome, Pair)>,
 }
 
 impl Trainer {
-    /// A training at its start. The seed decides the offsets; its flocks have consecutive seeds from the first one on.
+    /// A training at its start. `seed` decides the offsets; the flocks have consecutive seeds from `first_seed` on.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
@@ -88,22 +111,21 @@ impl Trainer {
             first_seed,
         };
         let pairs = (0..task.settings.pairs).map(|number| task.pair(number));
-        let memory = Memory {
+        let state = TrainingState {
             weights: vec![[0.0; SIZE]],
             orders: Vec::new(),
-            tried: [[0.0; SIZE]; SIZE],
-            differences: [0.0; SIZE],
-            features: [[0.0; SIZE]; SIZE],
+            regressor_squares: [[0.0; SIZE]; SIZE],
+            regressor_products: [0.0; SIZE],
+            slope_squares: [[0.0; SIZE]; SIZE],
             rounds: 0.0,
             unsolved: 0,
             worst_overlap_cm: 0.0,
             pairs: pairs.collect(),
         };
-        let under_way = Vec::new();
         let trainer = Self {
             task,
-            memory,
-            under_way,
+            state,
+            finished: Vec::new(),
         };
         trainer.law()?;
         Ok(trainer)
@@ -119,43 +141,44 @@ impl Trainer {
         &self.task.parameters
     }
 
-    /// Simulated time of all flocks together until now and at the end, in hours.
+    /// Simulated time in hours, summed over all flocks: until now, and at the end of the training.
     pub fn flock_hours(&self) -> (f64, f64) {
         let settings = &self.task.settings;
-        let part = self.under_way.len() as f64 / settings.pairs as f64;
-        let hours = settings.round_hours();
+        let fraction = self.finished.len() as f64 / settings.pairs as f64;
+        let round_hours = settings.round_hours();
         (
-            hours * (self.memory.orders.len() as f64 + part),
-            hours * settings.rounds() as f64,
+            round_hours * (self.state.orders.len() as f64 + fraction),
+            round_hours * settings.rounds() as f64,
         )
     }
 
     /// Whether the training has ended.
     pub fn has_ended(&self) -> bool {
-        self.memory.orders.len() >= self.task.settings.rounds()
+        self.state.orders.len() >= self.task.settings.rounds()
     }
 
-    /// Flock-hours and mean order of each round.
+    /// For each round, the flock-hours at its end and its mean order.
     pub fn curve(&self) -> impl Iterator<Item = (f64, f64)> {
-        let hours = self.task.settings.round_hours();
+        let round_hours = self.task.settings.round_hours();
         (1..)
-            .zip(&self.memory.orders)
-            .map(move |(round, &order)| (hours * f64::from(round), order))
+            .zip(&self.state.orders)
+            .map(move |(round, &order)| (round_hours * f64::from(round), order))
     }
 
-    /// Number of branches in whole rounds, of those in which a flock left an overlap deeper than the tolerance, and the
-    /// deepest overlap in cm.
+    /// Three numbers about the branches of whole rounds: how many there were, in how many a flock left an overlap deeper
+    /// than the tolerance, and the deepest overlap in cm.
     pub fn overlaps(&self) -> (u64, u64, f64) {
-        let branches = self.memory.orders.len() * self.task.settings.pairs;
-        let Memory {
+        let branches = self.state.orders.len() * self.task.settings.pairs;
+        let TrainingState {
             unsolved,
             worst_overlap_cm,
             ..
-        } = self.memory;
+        } = self.state;
         (branches as u64, unsolved, worst_overlap_cm)
     }
 
-    /// Runs up to this many more branches, each of one pair of flocks, and changes the weights when a round is over.
+    /// Runs up to `branches` more branches of the current round, at least one; each is of one pair of flocks. Changes
+    /// the weights if the round is over then.
     ///
     /// # Errors
     /// [`FlockError::Interrupted`] if `keep_going` returned false, and errors of the flocks; nothing has changed then.
@@ -163,95 +186,87 @@ impl Trainer {
         if self.has_ended() {
             return Ok(());
         }
-        let (round, first) = (self.memory.orders.len(), self.under_way.len());
-        let last = self
-            .memory
-            .pairs
-            .len()
-            .min(first.saturating_add(branches.max(1)));
-        let law = self.law_of(&self.memory.weights[round])?;
-        let work = |number: usize| {
-            self.task.branch(
-                keep_going,
-                &law,
-                (round, number),
-                &self.memory.pairs[number],
-            )
-        };
-        let outcomes: Result<Vec<_>> = parallel::map((first..last).collect(), work)
-            .into_iter()
-            .collect();
-        self.under_way.extend(outcomes?);
-        if self.under_way.len() == self.memory.pairs.len() {
-            self.take_step();
+        let Self { task, state, .. } = &*self;
+        let (round, first) = (state.orders.len(), self.finished.len());
+        let end = state.pairs.len().min(first.saturating_add(branches.max(1)));
+        let law = self.law_from_weights(&state.weights[round])?;
+        let run =
+            |number: usize| task.branch(keep_going, &law, (round, number), &state.pairs[number]);
+        let outcomes = parallel::map((first..end).collect(), run);
+        let outcomes: Result<Vec<_>> = outcomes.into_iter().collect();
+        self.finished.extend(outcomes?);
+        if self.finished.len() == self.state.pairs.len() {
+            self.end_round();
         }
         Ok(())
     }
 
-    /// Ends a round: the weights take a step along the natural gradient.
-    fn take_step(&mut self) {
-        let (settings, memory) = (&self.task.settings, &mut self.memory);
-        let sums = memory.tried.iter_mut().chain(&mut memory.features);
-        for sum in sums.chain([&mut memory.differences]).flatten() {
+    /// Adds the finished branches to the sums of the regression, and takes a step of the weights.
+    fn end_round(&mut self) {
+        let (settings, state) = (&self.task.settings, &mut self.state);
+        let sums = state.regressor_squares.iter_mut();
+        let sums = sums.chain(&mut state.slope_squares);
+        for sum in sums.chain([&mut state.regressor_products]).flatten() {
             *sum *= settings.memory;
         }
-        memory.rounds = settings.memory * memory.rounds + 1.0;
-        let mut order = 0.0;
-        for ((outcome, next), pair) in self.under_way.drain(..).zip(&mut memory.pairs) {
-            add_square(&mut memory.tried, 1.0, &outcome.tried);
-            for (sum, tried) in memory.differences.iter_mut().zip(&outcome.tried) {
-                *sum += tried * outcome.difference;
+        state.rounds = settings.memory * state.rounds + 1.0;
+        let mut mean_order = 0.0;
+        for ((outcome, next_pair), pair) in self.finished.drain(..).zip(&mut state.pairs) {
+            let regressors = &outcome.regressors;
+            add_square(&mut state.regressor_squares, 1.0, regressors);
+            for (sum, regressor) in state.regressor_products.iter_mut().zip(regressors) {
+                *sum += regressor * outcome.order_difference;
             }
-            let share = 1.0 / (settings.pairs * outcome.features.len()) as f64;
-            for features in &outcome.features {
-                add_square(&mut memory.features, share, features);
+            let share = 1.0 / (settings.pairs * outcome.action_slopes.len()) as f64;
+            for slopes in &outcome.action_slopes {
+                add_square(&mut state.slope_squares, share, slopes);
             }
-            order += outcome.order / settings.pairs as f64;
-            memory.unsolved += u64::from(outcome.is_unsolved);
-            memory.worst_overlap_cm = memory.worst_overlap_cm.max(outcome.worst_overlap_cm);
-            *pair = next;
+            mean_order += outcome.order / settings.pairs as f64;
+            state.unsolved += u64::from(outcome.is_unsolved);
+            state.worst_overlap_cm = state.worst_overlap_cm.max(outcome.worst_overlap_cm);
+            *pair = next_pair;
         }
-        let gradient = ridge(&memory.tried, settings.ridge, &memory.differences);
-        let square = dot(&gradient, &product(&memory.features, &gradient)) / memory.rounds;
-        let left = 1.0 - memory.orders.len() as f64 / settings.rounds() as f64;
-        let rate = settings.step * left.max(0.0) / (square.max(0.0).sqrt() + 1e-12);
-        let weights = &memory.weights[memory.orders.len()];
-        let next = std::array::from_fn(|k| weights[k] + rate * gradient[k]);
-        memory.weights.push(next);
-        memory.orders.push(order);
+        let weights = state.stepped_weights(settings);
+        state.weights.push(weights);
+        state.orders.push(mean_order);
     }
 
-    /// The law of the mean weights over the second half of the rounds until now.
+    /// The law with the mean weights over the second half of the rounds until now.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for weights that are not finite.
     pub fn law(&self) -> Result<LeaningLaw> {
-        let half = &self.memory.weights[self.memory.orders.len().div_ceil(2)..];
+        let second_half = &self.state.weights[self.state.orders.len().div_ceil(2)..];
         let mean: Features = std::array::from_fn(|k| {
-            half.iter().fold(0.0, |sum, weights| sum + weights[k]) / half.len() as f64
+            let sum = second_half
+                .iter()
+                .fold(0.0, |sum, weights| sum + weights[k]);
+            sum / second_half.len() as f64
         });
-        self.law_of(&mean)
+        self.law_from_weights(&mean)
     }
 
-    fn law_of(&self, weights: &Features) -> Result<LeaningLaw> {
+    /// The law with these weights, in units of the largest action.
+    fn law_from_weights(&self, weights: &Features) -> Result<LeaningLaw> {
         let Task {
             settings,
             parameters,
             ..
         } = &self.task;
         let pool = parameters.pool.name();
-        let numbers = |largest| weights.map(|weight| largest * weight);
+        let scaled = |largest_action| weights.map(|weight| largest_action * weight);
         if settings.action_mode == ActionMode::Rudder {
             let period = Some(settings.decision_period_s);
-            return LeaningLaw::new(pool, None, period, &numbers(1.0));
+            return LeaningLaw::new(pool, None, period, &scaled(1.0));
         }
         // The law decides at every control step, since it then leads better than with leans that are held as in the
         // training.
         let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
-        LeaningLaw::new(pool, Some(gains), None, &numbers(LARGEST_LEAN))
+        LeaningLaw::new(pool, Some(gains), None, &scaled(LARGEST_LEAN))
     }
 
-    /// The training after its last whole round as bytes; branches of an unfinished round are taken again.
+    /// The training after its last whole round as bytes. The branches of an unfinished round are not stored, so that a
+    /// restored training runs them again.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Task {
             settings,
@@ -260,30 +275,28 @@ impl Trainer {
             first_seed,
             ..
         } = &self.task;
-        seal(
-            &MAGIC,
-            &(settings, parameters, seed, first_seed, &self.memory),
-        )
+        let state = &self.state;
+        seal(&MAGIC, &(settings, parameters, seed, first_seed, state))
     }
 
-    /// A training from its bytes, which continues bit for bit.
+    /// Restores a training from its bytes; it continues bit for bit.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged training with finite weights.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let (settings, parameters, seed, first_seed, memory) = unseal(&MAGIC, bytes)?;
+        let (settings, parameters, seed, first_seed, state) = unseal(&MAGIC, bytes)?;
+        let state: TrainingState = state;
         let mut trainer = Self::new(settings, parameters, seed, first_seed)?;
         let Task { settings, .. } = &trainer.task;
-        let why = "the training has weights that are not finite, or parts are missing";
-        let memory: Memory = memory;
-        FlockError::unless_fitting(memory.fits(settings.pairs, settings.branches()), why)?;
-        trainer.memory = memory;
+        let reason = "the training has weights that are not finite, or parts are missing";
+        FlockError::unless_fitting(state.fits(settings.pairs, settings.branches()), reason)?;
+        trainer.state = state;
         trainer.law()?;
-        trainer.task.check(&trainer.memory.pairs)?;
+        trainer.task.check(&trainer.state.pairs)?;
         Ok(trainer)
     }
 
-    /// This training, to end at other `flock_hours`.
+    /// This training with another end: it runs until `flock_hours`.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
