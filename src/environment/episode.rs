@@ -384,7 +384,7 @@ impl Episode {
             state.flock.set_target(state.schedule.targets())?;
         }
         if let Some(camera) = &mut state.camera {
-            camera.expose(state.rudders.len(), &state.flock);
+            camera.take_frame(state.rudders.len(), &state.flock);
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The reward: named terms, each larger for better, and their weights.
+//! The reward: named terms, each larger if leaders lead better, and their weights.
 
 use super::credit::LeaderCredit;
 use super::observation::{FlockView, speed_scale_cm_s};
@@ -43,12 +43,12 @@ pub const TERMS: usize = RewardTerm::ALL.len();
 pub type RewardTerms = [f64; TERMS];
 
 impl RewardTerm {
-    /// Values of the terms by their names.
+    /// Pairs of a term's name and its value.
     pub(super) fn named(terms: &RewardTerms) -> impl ExactSizeIterator<Item = (&'static str, f64)> {
         Self::ALL.iter().map(|term| term.name()).zip(*terms)
     }
 
-    /// Whether the term is about the normal boats, so that it needs at least one.
+    /// Whether the term needs at least one normal boat.
     pub(crate) fn needs_normal_boats(self) -> bool {
         matches!(
             self,
@@ -56,7 +56,7 @@ impl RewardTerm {
         ) || self.is_credit()
     }
 
-    /// Whether the term comes from the leader's contacts, which are watched only if such a term has a weight.
+    /// Whether the term is computed from the leader's contacts, which are recorded only if such a term has a weight.
     pub(crate) fn is_credit(self) -> bool {
         matches!(
             self,
@@ -71,16 +71,16 @@ pub(super) mod stored_terms {
 
     pub(in super::super) fn serialize<S: serde::Serializer>(
         terms: &RewardTerms,
-        to: S,
+        serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        by_name::write(RewardTerm::named(terms), to)
+        by_name::write(RewardTerm::named(terms), serializer)
     }
 
     pub(in super::super) fn deserialize<'de, D: serde::Deserializer<'de>>(
-        from: D,
+        deserializer: D,
     ) -> Result<RewardTerms, D::Error> {
         let mut terms = RewardTerms::default();
-        by_name::read(from, "the terms of the reward", |name, value| {
+        by_name::read(deserializer, "the terms of the reward", |name, value| {
             let term = name.parse::<RewardTerm>();
             term.map(|term| terms[term as usize] = value).is_ok()
         })?;
@@ -88,25 +88,26 @@ pub(super) mod stored_terms {
     }
 }
 
-/// The stored form of rows of terms, one row per leader: a column per term, by name.
+/// The stored form of all leaders' terms: for each term by name, a list of one value per leader.
 pub(super) mod stored_rows {
     use super::{RewardTerm, RewardTerms, TERMS, by_name};
 
     pub(in super::super) fn serialize<S: serde::Serializer>(
         rows: &[RewardTerms],
-        to: S,
+        serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        let columns = RewardTerm::ALL.iter();
-        let column = |term: RewardTerm| rows.iter().map(move |terms| terms[term as usize]);
-        let columns = columns.map(|&term| (term.name(), column(term).collect::<Vec<_>>()));
-        by_name::write(columns, to)
+        let columns = RewardTerm::ALL.iter().map(|&term| {
+            let column: Vec<f64> = rows.iter().map(|terms| terms[term as usize]).collect();
+            (term.name(), column)
+        });
+        by_name::write(columns, serializer)
     }
 
     pub(in super::super) fn deserialize<'de, D: serde::Deserializer<'de>>(
-        from: D,
+        deserializer: D,
     ) -> Result<Vec<RewardTerms>, D::Error> {
         let mut rows: Vec<RewardTerms> = Vec::new();
-        by_name::read(from, "the terms of the reward", |name, column: Vec<f64>| {
+        let set_column = |name: &str, column: Vec<f64>| {
             let Ok(term) = name.parse::<RewardTerm>() else {
                 return false;
             };
@@ -115,7 +116,8 @@ pub(super) mod stored_rows {
                 terms[term as usize] = value;
             }
             true
-        })?;
+        };
+        by_name::read(deserializer, "the terms of the reward", set_column)?;
         Ok(rows)
     }
 }
@@ -143,10 +145,10 @@ impl RewardWeights {
         for (term, weight) in RewardTerm::ALL.iter().zip(self.0) {
             let value = format!("{}: {weight}", term.name());
             FlockError::unless(weight.abs() <= 1e6, "reward", &value, "-1e6 to 1e6")?;
-            let has_normal = parameters.n_leaders < parameters.n_boats;
-            let is_met = has_normal || weight == 0.0 || !term.needs_normal_boats();
+            let has_normal_boats = parameters.n_leaders < parameters.n_boats;
+            let is_accepted = has_normal_boats || weight == 0.0 || !term.needs_normal_boats();
             let accepted = "this term needs a normal boat: n_boats > n_leaders";
-            FlockError::unless(is_met, "reward", value, accepted)?;
+            FlockError::unless(is_accepted, "reward", value, accepted)?;
         }
         Ok(())
     }
@@ -157,7 +159,7 @@ impl RewardWeights {
         weights.any(|(term, weight)| term.is_credit() && weight != 0.0)
     }
 
-    /// The weighted sum.
+    /// The weighted sum of the terms.
     fn total(&self, terms: &RewardTerms) -> f64 {
         self.0
             .iter()
@@ -177,12 +179,12 @@ impl Setting for RewardWeights {
 
     /// Terms that the value does not name have the weight 0.
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
-        let Value::Map(given) = value else {
+        let Value::Map(named_weights) = value else {
             let accepted = "a dictionary of weights, or a list of dictionaries, one per leader";
             return wrong_kind(name, accepted);
         };
         let mut weights = Self([0.0; TERMS]);
-        for (term, weight) in given {
+        for (term, weight) in named_weights {
             let term: RewardTerm = term.parse()?;
             weights.0[term as usize] = f64::from_value(name, weight)?;
         }
@@ -195,11 +197,12 @@ impl Setting for RewardWeights {
 pub enum Weights {
     /// The same for all leaders.
     One(RewardWeights),
-    /// One per leader. A flock with fewer leaders than others in its batch uses the first weights.
+    /// Weights for each leader. A flock with fewer leaders than others in its batch uses the first ones.
     Each(Vec<RewardWeights>),
 }
 
 impl Weights {
+    /// All different weights.
     fn all(&self) -> &[RewardWeights] {
         match self {
             Self::One(weights) => std::slice::from_ref(weights),
@@ -226,15 +229,16 @@ impl Weights {
             .try_for_each(|weights| weights.check(parameters))
     }
 
-    /// Checks that a list has one entry for each leader of the flock that has the most leaders in a batch.
+    /// Checks that a list has one entry for each leader. `leaders` is the largest number of leaders of a flock in the
+    /// batch.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
-    pub(super) fn check_leaders(&self, most: usize) -> Result<()> {
+    /// [`FlockError::Parameter`] for a shorter or longer list.
+    pub(super) fn check_leaders(&self, leaders: usize) -> Result<()> {
         match self {
-            Self::Each(weights) if weights.len() != most => {
+            Self::Each(weights) if weights.len() != leaders => {
                 let value = format!("a list of {} weights", weights.len());
-                let accepted = format!("one dictionary, or one for each of {most} leaders");
+                let accepted = format!("one dictionary, or one for each of {leaders} leaders");
                 Err(FlockError::parameter("reward", value, accepted))
             }
             _ => Ok(()),
@@ -274,38 +278,41 @@ impl Setting for Weights {
     }
 }
 
-/// The terms of one control step: the flock's are computed once, a leader's on request.
+/// The reward terms of one control step. Those of the flock are computed once, those of a leader on request.
 #[derive(Debug, Clone, Copy)]
 pub struct Reward {
+    /// Target of leader 0.
     reference: Target,
-    flock: RewardTerms,
+    /// Terms about the normal boats, for the reference target.
+    flock_terms: RewardTerms,
+    /// One over the preferred speed, in s/cm.
     inverse_speed: f64,
 }
 
 impl Reward {
-    /// The reward at the end of a control step, from the flock without the camera's flaws.
+    /// The reward at the end of a control step. `view` must be the flock as it is, not as the camera shows it.
     pub fn new(parameters: &FlockParameters, view: &FlockView) -> Self {
         let inverse_speed = 1.0 / speed_scale_cm_s(parameters);
         let reference = view.targets.reference();
         Self {
             reference,
-            flock: flock_terms(view, reference, inverse_speed),
+            flock_terms: flock_terms(view, reference, inverse_speed),
             inverse_speed,
         }
     }
 
-    /// All terms for one leader, towards its own target.
+    /// All terms of one leader, for its own target.
     pub fn terms(&self, view: &FlockView, leader: usize, credit: &LeaderCredit) -> RewardTerms {
-        let clockwise = LapFrame::at(view.poses[leader].position)
-            .components(view.velocities[leader].linear)
-            .y;
+        let frame = LapFrame::at(view.poses[leader].position);
+        let clockwise_cm_s = frame.components(view.velocities[leader].linear).y;
         let target = view.targets.of(leader);
         let mut terms = if target == self.reference {
-            self.flock
+            self.flock_terms
         } else {
             flock_terms(view, target, self.inverse_speed)
         };
-        terms[RewardTerm::LeaderVelocity as usize] = target.sign() * clockwise * self.inverse_speed;
+        terms[RewardTerm::LeaderVelocity as usize] =
+            target.sign() * clockwise_cm_s * self.inverse_speed;
         terms[RewardTerm::RudderEffort as usize] = -(view.rudders[leader] * view.rudders[leader]);
         terms[RewardTerm::ContactPush as usize] = credit.push;
         terms[RewardTerm::ContactAlignment as usize] = credit.alignment;
@@ -314,13 +321,14 @@ impl Reward {
     }
 }
 
-/// The terms that are about the normal boats, towards a target.
+/// The terms about the normal boats, for a target; 0 if there are none, and for all other terms.
 fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTerms {
     let mut terms = RewardTerms::default();
     if let Some(order) = view.order {
-        let towards = target.sign() * libm::sin(order.phi_v);
+        let towards_target = target.sign() * libm::sin(order.phi_v);
         terms[RewardTerm::SignedOrder as usize] = order.signed_order(target);
-        terms[RewardTerm::TangentialVelocity as usize] = order.psi_v * towards * inverse_speed;
+        terms[RewardTerm::TangentialVelocity as usize] =
+            order.psi_v * towards_target * inverse_speed;
         terms[RewardTerm::Jam as usize] = -jam(order, inverse_speed);
     }
     terms

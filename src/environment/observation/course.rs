@@ -1,7 +1,7 @@
-//! The course that steering laws read, from an observation or directly from a flock. Both are rounded as observations
-//! are.
+//! The course of a leader, which steering laws read. It comes from an observation, or from a flock with the same
+//! rounding as an observation.
 
-use super::blocks::{Block, OWN, TARGET, own};
+use super::blocks::{Block, OWN, TARGET, own_values};
 use super::view::{FlockView, Scaling};
 use super::{ANGULAR_VELOCITY_SCALE, ObservationLayout};
 use crate::boat::Course;
@@ -9,7 +9,7 @@ use crate::error::{FlockError, Result};
 use crate::geometry::LapFrame;
 use crate::parameters::FlockParameters;
 
-/// Indices of a leader's course in observations of one layout.
+/// Reads a leader's course from observations of one layout. The fields are indices of entries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CourseReader {
     cos_orientation: usize,
@@ -45,8 +45,8 @@ impl CourseReader {
         })
     }
 
-    /// The course relative to a heading that leans by `outward` (rad) from the target's tangent. It is mirrored if
-    /// the observation is.
+    /// The course relative to a heading that leans outward of the target's tangent by `outward` (rad). If the
+    /// observation is mirrored, so is the course.
     pub fn course(&self, observation: &[f32], outward: f64) -> Course {
         let read = |index: usize| f64::from(observation[index]);
         let target = self.target.map_or(1.0, read);
@@ -66,7 +66,7 @@ impl CourseReader {
     }
 }
 
-/// Reads leaders' courses from a flock in view, bit for bit as from observations.
+/// Reads leaders' courses from the view of a flock, bit for bit as from observations.
 #[derive(Debug, Clone)]
 pub struct CourseView {
     reader: CourseReader,
@@ -77,7 +77,7 @@ impl CourseView {
     /// A reader for flocks with these checked parameters.
     ///
     /// # Errors
-    /// None: the layout has all blocks that the laws read.
+    /// Never: the layout has all blocks that the laws read.
     pub fn new(parameters: &FlockParameters) -> Result<Self> {
         let layout = ObservationLayout::from_blocks(&[Block::Own, Block::Target]);
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
@@ -87,12 +87,11 @@ impl CourseView {
         })
     }
 
-    /// The course of a leader relative to a heading that leans by an angle (rad) outward of its target's tangent,
-    /// counter-clockwise positive.
+    /// The course of a leader relative to a heading that leans outward of its target's tangent by `outward` (rad).
     pub fn course(&self, view: &FlockView, leader: usize, outward: f64) -> Course {
         let frame = LapFrame::at(view.poses[leader].position);
         let mut physical = [0.0; OWN.len() + TARGET.len()];
-        physical[..OWN.len()].copy_from_slice(&own(view, leader, &frame));
+        physical[..OWN.len()].copy_from_slice(&own_values(view, leader, &frame));
         physical[OWN.len()] = view.targets.of(leader).sign();
         let mut observed = [0.0; OWN.len() + TARGET.len()];
         self.scaling.write(&physical, false, &mut observed);

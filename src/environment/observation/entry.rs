@@ -1,10 +1,10 @@
-//! Every number that can be observed: names, units, scales and bounds as data. The observer applies
-//! this table, and the documentation prints it.
+//! Entries of observations: name, unit, scale and bounds of each observed number. The observer applies them, and the
+//! documentation prints them.
 
 use crate::geometry::Hull;
 use crate::parameters::{FlockParameters, Value, named_fields};
 
-/// The physical value of an observed 1.0; for the radius also the physical value of 0.0.
+/// The physical value that is observed as 1; for `Radial` also the physical value that is observed as 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs, reason = "`description` says what each is")]
 pub enum Scale {
@@ -18,9 +18,11 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// The scale in words. The bounds are the centers of boats that touch the walls. Without an inner wall -1 is the
-    /// pool's center, and in open water +1 is 40 boat radii farther than -1. The speed is the faster of the two
-    /// preferred ones.
+    /// The scale in words.
+    ///
+    /// `Radial` is -1 and +1 for the centers of boats that touch the inner or outer wall. Without an inner wall -1 is the
+    /// pool's center, and in open water +1 is 40 boat radii farther out than -1. The preferred speed is the faster of
+    /// forward and reverse.
     pub fn description(self) -> &'static str {
         match self {
             Self::Plain => "1",
@@ -49,16 +51,15 @@ impl Scale {
 /// Scale of angular velocities in rad/s.
 pub(crate) const ANGULAR_VELOCITY_SCALE: f64 = 2.0;
 
-/// The speed by which velocities are divided: the fastest preferred speed of any boat, not counting the spread; 15 cm/s
-/// if all are 0.
+/// The speed by which velocities are divided: the fastest preferred speed of leaders and normal boats, before
+/// differences between boats are drawn; 15 cm/s if all preferred speeds are 0.
 pub(crate) fn speed_scale_cm_s(parameters: &FlockParameters) -> f64 {
     let fastest = parameters.speed_cm_s.max(parameters.reverse_speed_cm_s)
         * parameters.leader_speed_factor.max(1.0);
     if fastest > 0.0 { fastest } else { 15.0 }
 }
 
-/// Gain and offset of a distance from the pool's center: -1 at the inner wall and +1 at the outer one, as
-/// [`Scale::description`] says.
+/// Gain and offset of distances from the pool's center, for the scale that [`Scale::description`] describes.
 fn radial(parameters: &FlockParameters) -> (f64, f64) {
     let (pool, radius) = (parameters.pool, Hull::new(parameters).radius);
     let inner = if pool.has_inner_wall() {
@@ -71,18 +72,19 @@ fn radial(parameters: &FlockParameters) -> (f64, f64) {
     } else {
         inner + 40.0 * radius
     };
-    let half = (0.5 * (outer - inner)).max(f64::MIN_POSITIVE.sqrt());
-    (1.0 / half, -0.5 * (outer + inner) / half)
+    let half_width = (0.5 * (outer - inner)).max(f64::MIN_POSITIVE.sqrt());
+    (1.0 / half_width, -0.5 * (outer + inner) / half_width)
 }
 
 /// One number of an observation or of the global state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Its name. All neighbors have entries of the same names; so do all boats of the global state.
+    /// Name of the number. The entries of all neighbors have the same names; so have those of all boats in the global
+    /// state.
     pub name: &'static str,
     /// Unit of the physical value.
     pub unit: &'static str,
-    /// Meaning, with its sign.
+    /// Meaning of the number and of its sign.
     pub meaning: &'static str,
     /// Scaling of the physical value to the observed one.
     pub scale: Scale,
@@ -95,6 +97,7 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// An entry whose sign does not change under mirroring.
     pub(super) const fn new(
         name: &'static str,
         unit: &'static str,
@@ -119,11 +122,12 @@ impl Entry {
         let [name, unit, low, high, mirrored, meaning] =
             named_fields!(self; name unit low high mirrored meaning);
         let scale = ("scale", self.scale.description().into());
-        let at = [("block", block.into()), ("place", index.into())];
-        let of_entry = [name, unit, scale, low, high, mirrored, meaning];
-        at.into_iter().chain(of_entry).collect()
+        let position = [("block", block.into()), ("place", index.into())];
+        let fields = [name, unit, scale, low, high, mirrored, meaning];
+        position.into_iter().chain(fields).collect()
     }
 
+    /// This entry with a sign that changes under mirroring.
     pub(super) const fn odd(self) -> Self {
         Self {
             mirrored: true,
@@ -132,8 +136,11 @@ impl Entry {
     }
 }
 
+/// Bounds of cosines, sines and rudders.
 pub(super) const UNIT: (f64, f64) = (-1.0, 1.0);
+/// Bounds of flags and fractions.
 pub(super) const FLAG: (f64, f64) = (0.0, 1.0);
+/// Bounds of scaled velocities.
 pub(super) const TWICE: (f64, f64) = (-2.0, 2.0);
 
 /// One boat of the global state.
@@ -151,7 +158,7 @@ pub const BOAT: [Entry; 10] = [
     Entry::new("is_leader", "", Scale::Plain, FLAG, "1 for a leader"),
 ];
 
-/// Entries of the global state other than boats, phase and target.
+/// The last entry of the global state, after boats, phase and target.
 #[rustfmt::skip]
 pub(super) const CLOCK: [Entry; 1] =
     [Entry::new("episode_elapsed", "", Scale::Plain, FLAG, "part of the episode that is over")];

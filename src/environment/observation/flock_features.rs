@@ -1,14 +1,17 @@
-//! Features of a whole flock that depend neither on the order of boats nor on absolute angles, for critics that see
-//! everything. All are in the frame of the target: "ahead" is along it, whichever direction it is.
+//! Features of a whole flock, for critics that see everything. They depend neither on the numbering of the boats nor on
+//! absolute angles. All are in the frame of the target: "ahead" is along the target's tangent, clockwise or not.
 
-use super::blocks::{PHASE, phase};
+use super::blocks::{PHASE, phase_values};
 use super::entry::{ANGULAR_VELOCITY_SCALE, CLOCK, Entry, FLAG, Scale, TWICE, UNIT};
 use super::view::{FlockView, Scaling};
 use crate::geometry::{LapFrame, Vec2};
 use crate::parameters::{FlockParameters, Target};
 
+/// Bounds of mean squares of velocities.
 const SQUARE: (f64, f64) = (0.0, 4.0);
+/// Bounds of products of radial positions and velocities.
 const PRODUCT: (f64, f64) = (-2.2, 2.2);
+/// Bounds of sums over several boats.
 const SEVERAL: (f64, f64) = (-40.0, 40.0);
 
 /// Means over a group of boats, in the frame of the target.
@@ -40,8 +43,8 @@ const GROUP: [Entry; 24] = [
     Entry::new("clumping_3", "", Scale::Plain, FLAG, "|mean exp(3i*theta)|"),
 ];
 
-/// Sums over the normal boats, weighted by exp(-d²/2), where d is their distance from a leader in units of 6 boat
-/// radii; means over the leaders.
+/// Sums over the normal boats, weighted by exp(-d²/2), where d is the distance from a leader in units of 6 boat radii.
+/// Each feature is the mean of that sum over the leaders.
 #[rustfmt::skip]
 const NEAR_LEADERS: [Entry; 4] = [
     Entry::new("near", "", Scale::Plain, SEVERAL, "mean over leaders of the sum over normal boats of the weight exp(-d^2/2), d their distance over 6 boat radii"),
@@ -50,10 +53,10 @@ const NEAR_LEADERS: [Entry; 4] = [
     Entry::new("near_velocity_ahead", "", Scale::Plain, SEVERAL, "the same of the weight times the velocity towards the target over the preferred speed"),
 ];
 
-/// Boats of the two groups: normal ones and leaders.
+/// Number of groups: normal boats, leaders.
 const GROUPS: usize = 2;
 
-/// All features of a flock in order, each with its block.
+/// All features of a flock in order, each with the name of its block.
 pub fn flock_feature_entries() -> Vec<(&'static str, Entry)> {
     let blocks: [(&str, &[Entry]); 5] = [
         ("normal boats", &GROUP),
@@ -62,22 +65,24 @@ pub fn flock_feature_entries() -> Vec<(&'static str, Entry)> {
         ("clock", &PHASE),
         ("clock", &CLOCK),
     ];
-    let named = |(block, entries): (&'static str, &'static [Entry])| {
+    let with_block = |(block, entries): (&'static str, &'static [Entry])| {
         entries.iter().map(move |entry| (block, *entry))
     };
-    blocks.into_iter().flat_map(named).collect()
+    blocks.into_iter().flat_map(with_block).collect()
 }
 
-/// One boat in the frame of the target, scaled as observations are and within their bounds.
+/// One boat in the frame of the target, scaled and clipped as observations are.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct ScaledBoat {
     radial: f64,
     outward: f64,
     ahead: f64,
     outward_velocity: f64,
     velocity_ahead: f64,
     spin_ahead: f64,
-    polar: Vec2,
+    /// Unit vector from the pool's center to the boat.
+    outward_axis: Vec2,
+    /// Center of the hull in cm.
     center: Vec2,
 }
 
@@ -85,10 +90,12 @@ struct Seen {
 #[derive(Debug, Clone)]
 pub struct FlockFeatures {
     scaling: Scaling,
-    radial: (f64, f64),
-    speed: f64,
-    /// One over twice the square of the distance within which boats count as near a leader, in 1/cm².
-    near: f64,
+    /// Gain in 1/cm and offset of radial positions.
+    radial_scale: (f64, f64),
+    /// Gain of velocities, in s/cm.
+    speed_gain: f64,
+    /// d²/2 over the squared distance, where d is the distance in units of 6 boat radii; in 1/cm².
+    half_square_gain: f64,
 }
 
 impl FlockFeatures {
@@ -98,57 +105,62 @@ impl FlockFeatures {
     /// A writer for flocks with these checked parameters.
     pub fn new(parameters: &FlockParameters) -> Self {
         let entries = flock_feature_entries().into_iter();
-        let length = Scale::Length.affine(parameters).0;
+        let length_gain = Scale::Length.affine(parameters).0;
         Self {
             scaling: Scaling::new(entries.map(|(_, entry)| entry), parameters),
-            radial: Scale::Radial.affine(parameters),
-            speed: Scale::Speed.affine(parameters).0,
-            near: 0.5 * length * length,
+            radial_scale: Scale::Radial.affine(parameters),
+            speed_gain: Scale::Speed.affine(parameters).0,
+            half_square_gain: 0.5 * length_gain * length_gain,
         }
     }
 
     /// Writes the features in the frame of a target; `elapsed` is the fraction of the episode that is over.
     pub fn observe(&self, view: &FlockView, target: Target, elapsed: f64, out: &mut [f32]) {
-        let seen: Vec<_> = (0..view.poses.len())
-            .map(|boat| self.seen(view, target, boat))
+        let boats: Vec<_> = (0..view.poses.len())
+            .map(|boat| self.scaled_boat(view, target, boat))
             .collect();
-        let (leaders, normal) = seen.split_at(view.leaders);
+        let (leaders, normal_boats) = boats.split_at(view.leaders);
         let mut features = Vec::with_capacity(Self::SIZE);
-        features.extend(moments(normal));
-        features.extend(moments(leaders));
-        features.extend(self.near_leaders(leaders, normal));
-        features.extend(phase(view));
+        features.extend(group_means(normal_boats));
+        features.extend(group_means(leaders));
+        features.extend(self.near_leaders(leaders, normal_boats));
+        features.extend(phase_values(view));
         features.push(elapsed);
         self.scaling.write(&features, false, out);
     }
 
-    fn seen(&self, view: &FlockView, target: Target, boat: usize) -> Seen {
+    /// A boat in the frame of the target.
+    fn scaled_boat(&self, view: &FlockView, target: Target, boat: usize) -> ScaledBoat {
         let (pose, velocity, hull) = (&view.poses[boat], &view.velocities[boat], &view.hulls[boat]);
         let frame = LapFrame::at(pose.position);
-        let towards = target.sign();
+        let target_sign = target.sign();
+        let (radial_gain, radial_offset) = self.radial_scale;
         let orientation = frame.components(hull.axis);
-        let lap_velocity = frame.components(velocity.linear) * self.speed;
+        let lap_velocity = frame.components(velocity.linear) * self.speed_gain;
         let spin = -velocity.angular / ANGULAR_VELOCITY_SCALE;
-        Seen {
-            radial: (pose.position.norm() * self.radial.0 + self.radial.1).clamp(-1.1, 1.1),
+        ScaledBoat {
+            radial: (pose.position.norm() * radial_gain + radial_offset).clamp(-1.1, 1.1),
             outward: orientation.x,
-            ahead: towards * orientation.y,
+            ahead: target_sign * orientation.y,
             outward_velocity: lap_velocity.x.clamp(-2.0, 2.0),
-            velocity_ahead: (towards * lap_velocity.y).clamp(-2.0, 2.0),
-            spin_ahead: (towards * spin).clamp(-2.0, 2.0),
-            polar: frame.outward,
+            velocity_ahead: (target_sign * lap_velocity.y).clamp(-2.0, 2.0),
+            spin_ahead: (target_sign * spin).clamp(-2.0, 2.0),
+            outward_axis: frame.outward,
             center: hull.center,
         }
     }
 
-    /// For each leader, sums values of the normal boats with the weight exp(−d²/2), where d is the scaled distance;
-    /// returns the means over the leaders.
-    fn near_leaders(&self, leaders: &[Seen], normal: &[Seen]) -> [f64; NEAR_LEADERS.len()] {
+    /// The values of [`NEAR_LEADERS`].
+    fn near_leaders(
+        &self,
+        leaders: &[ScaledBoat],
+        normal_boats: &[ScaledBoat],
+    ) -> [f64; NEAR_LEADERS.len()] {
         let mut sums = [0.0; NEAR_LEADERS.len()];
         for leader in leaders {
-            for boat in normal {
+            for boat in normal_boats {
                 let square = (boat.center - leader.center).norm_squared();
-                let weight = libm::exp(-self.near * square);
+                let weight = libm::exp(-self.half_square_gain * square);
                 let values = [1.0, boat.outward, boat.ahead, boat.velocity_ahead];
                 for (sum, value) in sums.iter_mut().zip(values) {
                     *sum += weight * value;
@@ -159,36 +171,38 @@ impl FlockFeatures {
     }
 }
 
-/// Means over a group, zero for an empty one.
-fn moments(group: &[Seen]) -> [f64; GROUP.len()] {
+/// The values of [`GROUP`]: means over a group of boats; zeros for an empty group.
+fn group_means(group: &[ScaledBoat]) -> [f64; GROUP.len()] {
     let mut sums = [0.0; GROUP.len()];
-    // cos(mθ) and sin(mθ) for m = 1, 2 and 3.
+    // Sums of (cos mθ, sin mθ) for m = 1, 2 and 3, where θ is a boat's polar angle.
     let mut harmonics = [Vec2::zeros(); 3];
     for boat in group {
-        let mut share = [0.0; 6];
-        share[usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead)] = 1.0;
-        for (sum, value) in sums.iter_mut().zip(products(boat).into_iter().chain(share)) {
+        let mut is_in_bin = [0.0; 6];
+        is_in_bin[usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead)] = 1.0;
+        let values = moments(boat).into_iter().chain(is_in_bin);
+        for (sum, value) in sums.iter_mut().zip(values) {
             *sum += value;
         }
-        let turn = boat.polar;
-        let mut power = turn;
+        let axis = boat.outward_axis;
+        let mut power = axis;
         for harmonic in &mut harmonics {
             *harmonic += power;
+            // The product of complex numbers: the angle of `power` grows by θ.
             power = Vec2::new(
-                power.x * turn.x - power.y * turn.y,
-                power.x * turn.y + power.y * turn.x,
+                power.x * axis.x - power.y * axis.y,
+                power.x * axis.y + power.y * axis.x,
             );
         }
     }
-    let first = GROUP.len() - harmonics.len();
-    for (sum, harmonic) in sums[first..].iter_mut().zip(harmonics) {
+    let first_harmonic = GROUP.len() - harmonics.len();
+    for (sum, harmonic) in sums[first_harmonic..].iter_mut().zip(harmonics) {
         *sum = harmonic.norm();
     }
     sums.map(|sum| sum / group.len().max(1) as f64)
 }
 
-/// A boat's numbers. Their means are the first features of its group.
-fn products(boat: &Seen) -> [f64; 15] {
+/// A boat's values, squares and products, whose means are the first features of its group.
+fn moments(boat: &ScaledBoat) -> [f64; 15] {
     [
         boat.radial,
         boat.radial * boat.radial,

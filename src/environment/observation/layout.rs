@@ -9,40 +9,42 @@ use crate::parameters::{Kind, Setting, Value, wrong_kind};
 /// its file.
 pub const OBSERVATION_VERSION: u32 = 1;
 
-/// The most neighbors, and the most obstacles, that a leader may observe.
+/// The largest number of neighbors, and of obstacles, that a leader may observe.
 pub(crate) const MOST_NEIGHBORS: usize = 64;
 
-/// Blocks that are on.
+/// Selection of blocks: how often each block occurs in an observation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ObservationLayout {
+    /// Occurrences of each block; 0 if the block is off.
     #[serde(with = "stored_repeats")]
     repeats: [usize; Block::COUNT],
-    /// Whether observation and action are reflected if the target is counter-clockwise, so that both directions are the
+    /// Whether observation and action are reflected if the target is counter-clockwise, so that leaders always meet the
     /// clockwise task.
     pub is_mirrored: bool,
 }
 
-/// The stored form of blocks, by name; missing ones occur as often as by default.
+/// The stored form of occurrences, by the names of the blocks. A missing block has its default.
 mod stored_repeats {
     use super::Block;
     use crate::by_name;
 
     pub(super) fn serialize<S: serde::Serializer>(
         repeats: &[usize; Block::COUNT],
-        to: S,
+        serializer: S,
     ) -> Result<S::Ok, S::Error> {
         let names = Block::ALL.iter().map(|block| block.name());
-        by_name::write(names.zip(*repeats), to)
+        by_name::write(names.zip(*repeats), serializer)
     }
 
     pub(super) fn deserialize<'de, D: serde::Deserializer<'de>>(
-        from: D,
+        deserializer: D,
     ) -> Result<[usize; Block::COUNT], D::Error> {
         let mut repeats = Block::DEFAULT;
-        by_name::read(from, "the blocks of an observation", |name, count| {
+        let set = |name: &str, count| {
             let block = name.parse::<Block>();
             block.map(|block| repeats[block as usize] = count).is_ok()
-        })?;
+        };
+        by_name::read(deserializer, "the blocks of an observation", set)?;
         Ok(repeats)
     }
 }
@@ -57,7 +59,7 @@ impl Default for ObservationLayout {
 }
 
 impl ObservationLayout {
-    /// A layout of these blocks alone, each once.
+    /// A layout with only these blocks, each once.
     pub fn from_blocks(blocks: &[Block]) -> Self {
         let mut layout = Self {
             repeats: [0; Block::COUNT],
@@ -81,7 +83,7 @@ impl ObservationLayout {
     /// Checks the layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if nothing is observed, or too many neighbors or obstacles.
+    /// [`FlockError::Parameter`] if all blocks are off, or if there are too many neighbors or obstacles.
     pub fn check(&self) -> Result<()> {
         for &block in Block::ALL {
             let repeats = self.repeats(block);
@@ -116,21 +118,22 @@ impl ObservationLayout {
         };
     }
 
-    /// Index of a block's first entry, if it is on.
-    pub fn offset(&self, wanted: Block) -> Option<usize> {
-        let before = Block::ALL.iter().take(wanted as usize);
-        let sizes = before.map(|&block| self.repeats(block) * block.entries().len());
-        self.has(wanted).then(|| sizes.sum())
+    /// Index of a block's first entry in the observation; `None` if the block is off.
+    pub fn offset(&self, block: Block) -> Option<usize> {
+        let earlier_blocks = Block::ALL.iter().take(block as usize);
+        let sizes = earlier_blocks.map(|&block| self.repeats(block) * block.entries().len());
+        self.has(block).then(|| sizes.sum())
     }
 
-    /// Index of a block's entry, if the block is on; the first neighbor's for `Neighbors`.
+    /// Index of an entry of a block in the observation; `None` if the block is off. In a block that occurs more than
+    /// once, it is the first such entry, as that of the nearest neighbor.
     pub fn index(&self, block: Block, name: &str) -> Option<usize> {
         let mut entries = block.entries().iter();
         let index = entries.position(|entry| entry.name == name)?;
         self.offset(block).map(|offset| offset + index)
     }
 
-    /// Size of the observation of one leader.
+    /// Number of entries in the observation of one leader.
     pub fn size(&self) -> usize {
         let blocks = Block::ALL.iter();
         blocks
@@ -138,14 +141,14 @@ impl ObservationLayout {
             .sum()
     }
 
-    /// All entries in order, with their block and its count from 0.
+    /// All entries in order, each with its block and the number of the block's occurrence, from 0.
     pub fn entries(&self) -> Vec<(Block, usize, Entry)> {
         Block::ALL
             .iter()
-            .flat_map(|&block| (0..self.repeats(block)).map(move |count| (block, count)))
-            .flat_map(|(block, count)| {
+            .flat_map(|&block| (0..self.repeats(block)).map(move |number| (block, number)))
+            .flat_map(|(block, number)| {
                 let entries = block.entries().iter();
-                entries.map(move |entry| (block, count, *entry))
+                entries.map(move |entry| (block, number, *entry))
             })
             .collect()
     }
@@ -157,12 +160,12 @@ impl Setting for ObservationLayout {
     fn value(&self) -> Value {
         let blocks = Block::ALL.iter().map(|block| {
             let repeats = self.repeats(*block);
-            let shown = if block.is_counted() {
+            let value = if block.is_counted() {
                 Value::Count(repeats)
             } else {
                 Value::Flag(repeats > 0)
             };
-            (block.name(), shown)
+            (block.name(), value)
         });
         blocks.collect()
     }
@@ -186,7 +189,7 @@ impl Setting for ObservationLayout {
     }
 }
 
-/// All entries of the global state of a number of boats.
+/// All entries of the global state of a flock with this number of boats.
 pub fn state_entries(boats: usize) -> Vec<Entry> {
     let mut entries: Vec<Entry> = (0..boats).flat_map(|_| BOAT).collect();
     entries.extend(PHASE.iter().chain(&TARGET).chain(&CLOCK));

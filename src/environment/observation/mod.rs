@@ -1,4 +1,4 @@
-//! Observations of leaders: their layout, the camera between flock and leaders, and the numbers.
+//! Observations of leaders: their layout, the camera through which leaders see the flock, and the observed numbers.
 
 mod blocks;
 mod camera;

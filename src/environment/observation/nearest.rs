@@ -1,4 +1,4 @@
-//! The nearest boats of leaders. A processor cannot predict which boats are near, and a wrong prediction costs more
+//! The boats nearest to leaders. Processors mispredict branches that depend on distances, and a misprediction costs more
 //! than the arithmetic for all boats. So no branch depends on distances.
 
 use crate::geometry::HullPose;
@@ -8,24 +8,23 @@ use wide::f64x4;
 const AT_ONCE: usize = 4;
 /// Up to this many boats are found and sorted without branches.
 const FEW: usize = 16;
-/// Boats are looked for within the farthest distance of the leader's last search; its square is multiplied by this.
+/// A leader's search has as its limit the largest squared distance that the last search found, times this factor.
 const GROWTH: f64 = 1.1;
 
-/// Finds the nearest boats, with its memory.
+/// Finds the nearest boats; remembers the limits of the last search.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Nearest {
-    /// Squared distances of every boat from the present leaders; a leader's distance from itself is infinite.
+    /// Squared distances of every boat from the present [`AT_ONCE`] leaders; a leader's distance from itself is infinite.
     squares: Vec<[f64; AT_ONCE]>,
-    /// Squared distances within which each leader had the wanted number of boats in its last search; they may be
-    /// slightly too large.
+    /// For each leader, the squared distance within which its next search looks for boats.
     limits: Vec<f64>,
-    /// A leader's nearest boats, in front.
-    found: Vec<u32>,
+    /// Scratch memory: starts with the boats that the present search found.
+    candidates: Vec<u32>,
 }
 
 impl Nearest {
-    /// The `wanted` nearest boats of a leader by center distance, or all if there are fewer: nearest first, equally
-    /// near ones in the order of boats. Leaders come one after another.
+    /// The `wanted` boats with the nearest centers to a leader, or all if there are fewer. They come nearest first,
+    /// equally near boats in the order of their indices. Call this for leaders 0, 1, … in that order.
     pub(super) fn of_leader(
         &mut self,
         hulls: &[HullPose],
@@ -37,55 +36,59 @@ impl Nearest {
             self.measure(hulls, leader);
         }
         let mut count = self.find(leader);
-        if count < wanted.min(hulls.len() - 1) || wanted <= FEW && count > FEW {
+        let has_too_few = count < wanted.min(hulls.len() - 1);
+        let has_too_many_to_sort = wanted <= FEW && count > FEW;
+        if has_too_few || has_too_many_to_sort {
             self.set_limits(leader - lane, wanted);
             count = self.find(leader);
         }
-        let found = &mut self.found[..count];
-        sort(found, |boat| self.squares[boat as usize][lane]);
-        let last = found.get(wanted - 1);
-        let square = last.map_or(f64::MAX, |&boat| self.squares[boat as usize][lane]);
+        let candidates = &mut self.candidates[..count];
+        sort(candidates, |boat| self.squares[boat as usize][lane]);
+        let last_wanted = candidates.get(wanted - 1);
+        let square = last_wanted.map_or(f64::MAX, |&boat| self.squares[boat as usize][lane]);
         self.limits[leader] = (GROWTH * square).min(f64::MAX);
-        self.found[..count.min(wanted)]
+        self.candidates[..count.min(wanted)]
             .iter()
             .map(|&boat| boat as usize)
     }
 
-    /// Lists the boats within a leader's limit; returns their number.
+    /// Lists the boats within a leader's limit in `candidates`; returns their number.
     fn find(&mut self, leader: usize) -> usize {
         let (lane, limit) = (leader % AT_ONCE, self.limits[leader]);
         let mut count = 0;
         for (boat, squares) in self.squares.iter().enumerate() {
-            self.found[count] = boat as u32;
+            // Without a branch: a boat that is too far is overwritten by the next one.
+            self.candidates[count] = boat as u32;
             count += usize::from(squares[lane] <= limit);
         }
         count
     }
 
-    /// Computes distances from up to [`AT_ONCE`] leaders, from `first` on.
+    /// Computes squared distances of all boats from [`AT_ONCE`] boats, from `first` on: leaders, and perhaps others after
+    /// the last leader.
     fn measure(&mut self, hulls: &[HullPose], first: usize) {
-        let others = hulls[first..].iter().map(|hull| hull.center);
+        let centers = hulls[first..].iter().map(|hull| hull.center);
         let (mut x, mut y) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
-        for (lane, center) in others.take(AT_ONCE).enumerate() {
+        for (lane, center) in centers.take(AT_ONCE).enumerate() {
             (x[lane], y[lane]) = (center.x, center.y);
         }
         let (x, y) = (f64x4::new(x), f64x4::new(y));
-        self.found.resize(hulls.len() + 1, 0);
+        self.candidates.resize(hulls.len() + 1, 0);
         self.limits.resize(hulls.len() + AT_ONCE, f64::MAX);
         self.squares.clear();
         self.squares.extend(hulls.iter().map(|hull| {
             let (dx, dy) = (hull.center.x - x, hull.center.y - y);
             (dx * dx + dy * dy).to_array()
         }));
-        for (lane, own) in self.squares[first..].iter_mut().take(AT_ONCE).enumerate() {
-            own[lane] = f64::INFINITY;
+        for (lane, squares) in self.squares[first..].iter_mut().take(AT_ONCE).enumerate() {
+            squares[lane] = f64::INFINITY;
         }
     }
 
-    /// Sets the limits of the present leaders from their distances.
+    /// Sets the limits of the present leaders so that each finds `wanted` boats.
     fn set_limits(&mut self, first: usize, wanted: usize) {
         let limits = if wanted <= FEW {
-            self.largest_of_smallest(wanted)
+            self.nth_smallest(wanted)
         } else {
             f64x4::splat(f64::INFINITY)
         };
@@ -93,29 +96,29 @@ impl Nearest {
         self.limits[first..first + AT_ONCE].copy_from_slice(&limits);
     }
 
-    /// The largest of the `wanted` smallest squares, at most [`FEW`], for each of the present leaders.
-    fn largest_of_smallest(&self, wanted: usize) -> f64x4 {
+    /// The `wanted`-th smallest square of each present leader; `wanted` is at most [`FEW`].
+    fn nth_smallest(&self, wanted: usize) -> f64x4 {
         let mut smallest = [f64x4::splat(f64::INFINITY); FEW];
         let smallest = &mut smallest[..wanted];
         for &squares in &self.squares {
             let mut square = f64x4::new(squares);
-            // Kept in ascending order: a displaced square moves to the next slot.
-            for kept in &mut *smallest {
-                (*kept, square) = (kept.fast_min(square), kept.fast_max(square));
+            // The slots stay in ascending order: a displaced square moves to the next slot.
+            for slot in &mut *smallest {
+                (*slot, square) = (slot.fast_min(square), slot.fast_max(square));
             }
         }
         smallest[wanted - 1]
     }
 }
 
-/// Sorts boats, which come in their order, by distance.
-fn sort(found: &mut [u32], square: impl Fn(u32) -> f64) {
-    if found.len() > FEW {
-        found.sort_by(|&a, &b| square(a).total_cmp(&square(b)));
+/// Sorts boats by squared distance. They come in the order of their indices, and equally near boats stay in it.
+fn sort(boats: &mut [u32], square: impl Fn(u32) -> f64) {
+    if boats.len() > FEW {
+        boats.sort_by(|&a, &b| square(a).total_cmp(&square(b)));
         return;
     }
     let (mut squares, mut ranks, mut sorted) = ([0.0; FEW], [0; FEW], [0; FEW]);
-    for (k, &boat) in found.iter().enumerate() {
+    for (k, &boat) in boats.iter().enumerate() {
         (squares[k], ranks[k]) = (square(boat), k);
         for earlier in 0..k {
             let is_nearer = usize::from(squares[k] < squares[earlier]);
@@ -123,8 +126,8 @@ fn sort(found: &mut [u32], square: impl Fn(u32) -> f64) {
             ranks[k] -= is_nearer;
         }
     }
-    for (&boat, rank) in found.iter().zip(ranks) {
+    for (&boat, rank) in boats.iter().zip(ranks) {
         sorted[rank] = boat;
     }
-    found.copy_from_slice(&sorted[..found.len()]);
+    boats.copy_from_slice(&sorted[..boats.len()]);
 }

@@ -1,6 +1,6 @@
-//! From a flock to the numbers that leaders and critics get.
+//! Observers, which compute the numbers that leaders and critics get from a flock.
 
-use super::blocks::{Block, Seen, Writers, phase};
+use super::blocks::{Block, LeaderView, Writers, phase_values};
 use super::entry::BOAT;
 use super::view::{FlockView, Scaling};
 use super::{ObservationLayout, state_entries};
@@ -9,11 +9,12 @@ use crate::flock::Flock;
 use crate::geometry::LapFrame;
 use crate::parameters::FlockParameters;
 
-/// Observations of a flock's leaders without an environment, one after another, given the rudders as they stand.
+/// Observations of all leaders of a flock without an environment, one leader after another. `rudders` are the leaders'
+/// present rudders.
 ///
 /// # Errors
-/// As for [`Observer::new`], and [`crate::FlockError::Parameter`] if the layout has the order of normal boats and there
-/// are none.
+/// As for [`Observer::new`], and [`crate::FlockError::Parameter`] if the layout needs the order of normal boats in a
+/// flock without normal boats.
 pub fn observe_flock(
     flock: &Flock,
     layout: ObservationLayout,
@@ -21,8 +22,12 @@ pub fn observe_flock(
 ) -> Result<Vec<f32>> {
     let parameters = flock.parameters();
     let order = flock.order_parameters(false);
-    let needed = layout.has(Block::Order) || layout.has(Block::LeanFeatures);
-    let order = if needed { Some(order?) } else { order.ok() };
+    let needs_order = layout.has(Block::Order) || layout.has(Block::LeanFeatures);
+    let order = if needs_order {
+        Some(order?)
+    } else {
+        order.ok()
+    };
     let view = FlockView::new(flock, rudders, order.as_ref());
     let mut out = vec![0.0; parameters.n_leaders * layout.size()];
     Observer::new(layout, parameters)?.observe(&view, &mut out);
@@ -35,6 +40,7 @@ pub struct Observer {
     layout: ObservationLayout,
     scaling: Scaling,
     writers: Writers,
+    /// Scratch memory: the physical values of one leader's observation.
     physical: Vec<f64>,
 }
 
@@ -42,8 +48,8 @@ impl Observer {
     /// An observer for a checked layout and checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for blocks that cannot serve the flock, such as `lean_features` in a pool in
-    /// which they are not standardized.
+    /// [`crate::FlockError::Parameter`] for blocks that cannot describe the flock, such as `lean_features` in a pool in
+    /// which these features are not standardized.
     pub fn new(layout: ObservationLayout, parameters: &FlockParameters) -> Result<Self> {
         let entries = layout.entries().into_iter().map(|(_, _, entry)| entry);
         let scaling = Scaling::new(entries, parameters);
@@ -60,16 +66,16 @@ impl Observer {
         &self.layout
     }
 
-    /// Writes the leaders' observations one after another, `layout().size()` numbers each; returns how
-    /// many numbers were clipped at their bounds.
+    /// Writes the leaders' observations one after another, `layout().size()` numbers each. Returns how many numbers were
+    /// clipped at their bounds.
     pub fn observe(&mut self, view: &FlockView, out: &mut [f32]) -> u32 {
         let mut clipped = 0;
         for (leader, row) in out.chunks_exact_mut(self.scaling.len()).enumerate() {
             self.physical.clear();
-            let seen = Seen::new(view, leader);
-            self.writers.write(&seen, &mut self.physical);
-            let mirrored = self.layout.is_mirrored && view.targets.of(leader).sign() < 0.0;
-            clipped += self.scaling.write(&self.physical, mirrored, row);
+            let leader_view = LeaderView::new(view, leader);
+            self.writers.write(&leader_view, &mut self.physical);
+            let is_mirrored = self.layout.is_mirrored && view.targets.of(leader).sign() < 0.0;
+            clipped += self.scaling.write(&self.physical, is_mirrored, row);
         }
         clipped
     }
@@ -79,41 +85,46 @@ impl Observer {
 #[derive(Debug, Clone)]
 pub(crate) struct StateObserver {
     boats: usize,
-    boat: Scaling,
-    rest: Scaling,
+    /// Scaling of one boat's entries.
+    boat_scaling: Scaling,
+    /// Scaling of the entries after the boats: phase, target and clock.
+    common_scaling: Scaling,
     mirror_to_target: bool,
 }
 
 impl StateObserver {
     /// An observer for checked parameters, mirrored like the observations of leader 0.
     pub(crate) fn new(parameters: &FlockParameters, mirror_to_target: bool) -> Self {
-        let rest = state_entries(0).into_iter();
+        let common_entries = state_entries(0).into_iter();
         Self {
             boats: parameters.n_boats,
-            boat: Scaling::new(BOAT.into_iter(), parameters),
-            rest: Scaling::new(rest, parameters),
+            boat_scaling: Scaling::new(BOAT.into_iter(), parameters),
+            common_scaling: Scaling::new(common_entries, parameters),
             mirror_to_target,
         }
     }
 
-    /// Number of features.
+    /// Number of entries of the global state.
     pub(crate) fn size(&self) -> usize {
-        self.boats * self.boat.len() + self.rest.len()
+        self.boats * self.boat_scaling.len() + self.common_scaling.len()
     }
 
     /// Writes the state; `elapsed` is the fraction of the episode that is over.
     pub(crate) fn observe(&self, view: &FlockView, elapsed: f64, out: &mut [f32]) {
-        let mirrored = self.mirror_to_target && view.targets.reference().sign() < 0.0;
-        let (boats, rest) = out.split_at_mut(self.boats * self.boat.len());
-        for (boat, row) in boats.chunks_exact_mut(self.boat.len()).enumerate() {
-            self.boat.write(&boat_state(view, boat), mirrored, row);
+        let is_mirrored = self.mirror_to_target && view.targets.reference().sign() < 0.0;
+        let boat_size = self.boat_scaling.len();
+        let (boat_rows, common) = out.split_at_mut(self.boats * boat_size);
+        for (boat, row) in boat_rows.chunks_exact_mut(boat_size).enumerate() {
+            let state = boat_state(view, boat);
+            self.boat_scaling.write(&state, is_mirrored, row);
         }
-        let mut physical = phase(view).to_vec();
+        let mut physical = phase_values(view).to_vec();
         physical.extend([view.targets.mean_sign(view.leaders), elapsed]);
-        self.rest.write(&physical, mirrored, rest);
+        self.common_scaling.write(&physical, is_mirrored, common);
     }
 }
 
+/// The physical values of [`BOAT`].
 fn boat_state(view: &FlockView, boat: usize) -> [f64; BOAT.len()] {
     let (pose, velocity) = (&view.poses[boat], &view.velocities[boat]);
     let frame = LapFrame::at(pose.position);

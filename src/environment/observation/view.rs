@@ -1,4 +1,4 @@
-//! A flock as it is observed, and the scaling of physical values to observed ones.
+//! A flock as it is observed, and the scaling of physical values to observed numbers.
 
 use super::entry::Entry;
 use crate::analysis::OrderParameters;
@@ -10,11 +10,11 @@ use crate::parameters::{FlockParameters, Targets};
 /// Everything that an observation depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct FlockView<'a> {
-    /// Poses, leaders first.
+    /// Poses of all boats, leaders first.
     pub poses: &'a [Pose],
-    /// The poses with their direction vectors.
+    /// The same poses with their direction vectors.
     pub hulls: &'a [HullPose],
-    /// Velocities.
+    /// Velocities of all boats, leaders first.
     pub velocities: &'a [Velocity],
     /// Number of leaders.
     pub leaders: usize,
@@ -22,17 +22,17 @@ pub struct FlockView<'a> {
     pub phase: PhaseMoment,
     /// Length of the backward phase in s.
     pub bw_s: f64,
-    /// The directions to lead in.
+    /// The leaders' targets: the directions to lead in.
     pub targets: &'a Targets,
-    /// The leaders' rudders as they stand.
+    /// The leaders' present rudders, positive counter-clockwise.
     pub rudders: &'a [f64],
-    /// Order parameters of the normal boats; `None` without any.
+    /// Order parameters of the normal boats; `None` if there are none.
     pub order: Option<&'a OrderParameters>,
 }
 
 impl<'a> FlockView<'a> {
-    /// The view of a flock without a camera, from its present rudders and the order parameters of its normal
-    /// boats.
+    /// The view of a flock without a camera. `rudders` are the leaders' present rudders, `order` the order parameters of
+    /// the normal boats.
     pub fn new(flock: &'a Flock, rudders: &'a [f64], order: Option<&'a OrderParameters>) -> Self {
         let parameters = flock.parameters();
         Self {
@@ -49,10 +49,10 @@ impl<'a> FlockView<'a> {
     }
 }
 
-/// Scales, offsets and bounds of a row of numbers, ready to apply.
+/// Scaling of a row of physical values to observed numbers: gain·value + offset, clipped at the bounds.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scaling {
-    /// Gains without and with mirroring.
+    /// The gains without mirroring, then with mirroring.
     gains: [Vec<f64>; 2],
     offsets: Vec<f64>,
     lows: Vec<f64>,
@@ -60,6 +60,7 @@ pub(super) struct Scaling {
 }
 
 impl Scaling {
+    /// The scaling of these entries for flocks with these parameters.
     pub(super) fn new(entries: impl Iterator<Item = Entry>, parameters: &FlockParameters) -> Self {
         let mut scaling = Self {
             gains: [Vec::new(), Vec::new()],
@@ -78,25 +79,31 @@ impl Scaling {
         scaling
     }
 
+    /// Number of entries.
     pub(super) fn len(&self) -> usize {
         self.offsets.len()
     }
 
     /// Writes scaled and clipped numbers; returns how many were clipped.
-    pub(super) fn write(&self, physical: &[f64], mirrored: bool, out: &mut [f32]) -> u32 {
+    pub(super) fn write(&self, physical: &[f64], is_mirrored: bool, out: &mut [f32]) -> u32 {
+        // Slices of equal length spare the loop its bounds checks.
         let n = self.len();
-        let gains = &self.gains[usize::from(mirrored)][..n];
+        let gains = &self.gains[usize::from(is_mirrored)][..n];
         let (offsets, lows, highs) = (&self.offsets[..n], &self.lows[..n], &self.highs[..n]);
         let (physical, out) = (&physical[..n], &mut out[..n]);
-        let mut clipped = 0;
+        let mut clipped_count = 0;
         for i in 0..n {
-            let value = gains[i] * physical[i] + offsets[i];
+            let scaled = gains[i] * physical[i] + offsets[i];
             // NaN becomes the lower bound.
-            let raised = if value > lows[i] { value } else { lows[i] };
-            let bounded = if raised < highs[i] { raised } else { highs[i] };
-            clipped += u32::from(bounded != value);
-            out[i] = bounded as f32;
+            let at_least_low = if scaled > lows[i] { scaled } else { lows[i] };
+            let clipped = if at_least_low < highs[i] {
+                at_least_low
+            } else {
+                highs[i]
+            };
+            clipped_count += u32::from(clipped != scaled);
+            out[i] = clipped as f32;
         }
-        clipped
+        clipped_count
     }
 }

@@ -1,4 +1,5 @@
-//! Features that a leader's lean depends on: numbers that it sees, mirrored to the target and standardized.
+//! Features from which a leader's lean is computed: numbers that the leader sees, mirrored to the target and
+//! standardized.
 
 use super::super::entry::{Entry, Scale};
 use super::super::view::{FlockView, Scaling};
@@ -6,7 +7,7 @@ use super::neighbors::{NEIGHBOR, Neighbors};
 use super::order::{ORDER, Order};
 use super::own::{OWN, Own};
 use super::phase::{PHASE, Phase};
-use super::{MadeFor, Seen, WriteBlock};
+use super::{FromParameters, LeaderView, WriteBlock};
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
@@ -16,12 +17,12 @@ pub const LEAN_FEATURES: usize = 29;
 /// The pools in which the features are standardized.
 const POOLS: [&str; 2] = ["wide", "narrow"];
 
-/// Standardized features are clipped at ± this: larger ones come from flocks unlike those that were measured.
+/// Standardized features are clipped at ± this number. Larger ones occur only in flocks unlike those that were measured.
 const BOUND: f64 = 20.0;
 
 /// One row per feature: its mean and standard deviation in each of [`POOLS`], measured after 20 s in flocks of 27 boats
 /// at the pool's critical noise, three of which the tuned law steers. Deviations are at least 0.05.
-const USUAL: &str = include_str!("lean_features.csv");
+const MEANS_AND_DEVIATIONS: &str = include_str!("lean_features.csv");
 
 /// The features as entries of an observation. They are the same for both targets, so that mirroring changes none.
 #[rustfmt::skip]
@@ -62,9 +63,9 @@ const fn feature(name: &'static str, meaning: &'static str) -> Entry {
 }
 
 /// Mean and standard deviation of each feature in one of [`POOLS`], by its index.
-fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
-    let mut usual = [(f64::NAN, f64::NAN); LEAN_FEATURES];
-    for row in USUAL.lines().skip(1) {
+fn means_and_deviations(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
+    let mut table = [(f64::NAN, f64::NAN); LEAN_FEATURES];
+    for row in MEANS_AND_DEVIATIONS.lines().skip(1) {
         let mut cells = row.split(',');
         let name = cells.next();
         let index = ENTRIES.iter().position(|entry| Some(entry.name) == name);
@@ -72,26 +73,29 @@ fn usual(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
         if let (Some(index), Some(Ok(mean)), Some(Ok(deviation))) =
             (index, numbers.next(), numbers.next())
         {
-            usual[index] = (mean, deviation);
+            table[index] = (mean, deviation);
         }
     }
-    usual
+    table
 }
 
 /// Number of neighbors that the features use.
-const SEEN_NEIGHBORS: usize = 6;
-/// Where the neighbors start in the view, where the order parameters start, and where these end.
-const NEIGHBORS: usize = OWN.len() + PHASE.len();
-const ORDERS: usize = NEIGHBORS + SEEN_NEIGHBORS * NEIGHBOR.len();
-const VIEW: usize = ORDERS + ORDER.len();
+const USED_NEIGHBORS: usize = 6;
+/// Index of the first neighbor among the observed numbers: the blocks own, phase, neighbors and order.
+const NEIGHBORS_START: usize = OWN.len() + PHASE.len();
+/// Index of the first order parameter.
+const ORDER_START: usize = NEIGHBORS_START + USED_NEIGHBORS * NEIGHBOR.len();
+/// Number of observed numbers.
+const OBSERVED: usize = ORDER_START + ORDER.len();
 
-/// Writer of lean features, with its memory.
+/// Writer of lean features.
 #[derive(Debug, Clone)]
 pub struct LeanFeatures {
-    usual: [(f64, f64); LEAN_FEATURES],
+    means_and_deviations: [(f64, f64); LEAN_FEATURES],
     scaling: Scaling,
     neighbors: Neighbors,
     order: Order,
+    /// Scratch memory: the observed numbers before scaling.
     physical: Vec<f64>,
 }
 
@@ -104,25 +108,25 @@ impl LeanFeatures {
     /// A writer for checked parameters, with the means and deviations of a pool.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for pools in which they are not standardized.
+    /// [`FlockError::Parameter`] for pools in which the features are not standardized.
     pub fn standardized(parameters: &FlockParameters, pool: Option<&str>) -> Result<Self> {
         let index = Self::check_pool(pool)?;
         let neighbors = NEIGHBOR.iter().cycle();
-        let neighbors = neighbors.take(SEEN_NEIGHBORS * NEIGHBOR.len());
+        let neighbors = neighbors.take(USED_NEIGHBORS * NEIGHBOR.len());
         let entries = OWN.iter().chain(&PHASE).chain(neighbors).chain(&ORDER);
         Ok(Self {
-            usual: usual(index),
+            means_and_deviations: means_and_deviations(index),
             scaling: Scaling::new(entries.copied(), parameters),
             neighbors: Neighbors::default(),
             order: Order::default(),
-            physical: Vec::with_capacity(VIEW),
+            physical: Vec::with_capacity(OBSERVED),
         })
     }
 
-    /// Checks that the features are standardized in a pool, and returns its index.
+    /// Checks that the features are standardized in a pool; returns its index in [`POOLS`].
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
+    /// [`FlockError::Parameter`] for other pools, and without a name.
     pub(crate) fn check_pool(pool: Option<&str>) -> Result<usize> {
         let index = POOLS.iter().position(|name| Some(*name) == pool);
         index.ok_or_else(|| {
@@ -132,82 +136,84 @@ impl LeanFeatures {
         })
     }
 
-    /// The features of a leader, rounded as in an observation. Leaders must be asked for in their order, from 0.
+    /// The features of a leader, rounded as in an observation. Call this for leaders 0, 1, … in that order.
     pub fn observed(&mut self, view: &FlockView, leader: usize) -> [f32; LEAN_FEATURES] {
-        self.standard(&Seen::new(view, leader))
+        self.standardized_features(&LeaderView::new(view, leader))
             .map(|value| value.clamp(-BOUND, BOUND) as f32)
     }
 
-    fn standard(&mut self, seen: &Seen) -> [f64; LEAN_FEATURES] {
-        let mut values = features(&self.view(seen));
-        for (value, (mean, deviation)) in values.iter_mut().zip(self.usual) {
+    /// The standardized features, not yet clipped.
+    fn standardized_features(&mut self, view: &LeaderView) -> [f64; LEAN_FEATURES] {
+        let mut values = features(&self.observed_numbers(view));
+        for (value, (mean, deviation)) in values.iter_mut().zip(self.means_and_deviations) {
             *value = (*value - mean) / deviation;
         }
         values
     }
 
     /// The blocks own, phase, neighbors and order as observed, mirrored to the target.
-    fn view(&mut self, seen: &Seen) -> [f64; VIEW] {
-        self.physical.clear();
-        Own.write(seen, 1, &mut self.physical);
-        Phase.write(seen, 1, &mut self.physical);
-        self.neighbors
-            .write(seen, SEEN_NEIGHBORS, &mut self.physical);
-        self.order.write(seen, 1, &mut self.physical);
-        let mut row = [0.0; VIEW];
-        let mirrored = seen.view.targets.of(seen.leader).sign() < 0.0;
-        self.scaling.write(&self.physical, mirrored, &mut row);
+    fn observed_numbers(&mut self, view: &LeaderView) -> [f64; OBSERVED] {
+        let physical = &mut self.physical;
+        physical.clear();
+        Own.write(view, 1, physical);
+        Phase.write(view, 1, physical);
+        self.neighbors.write(view, USED_NEIGHBORS, physical);
+        self.order.write(view, 1, physical);
+        let mut row = [0.0; OBSERVED];
+        let is_mirrored = view.flock.targets.of(view.leader).sign() < 0.0;
+        self.scaling.write(physical, is_mirrored, &mut row);
         row.map(f64::from)
     }
 }
 
-impl MadeFor for LeanFeatures {
-    fn made_for(parameters: &FlockParameters) -> Result<Self> {
+impl FromParameters for LeanFeatures {
+    fn from_parameters(parameters: &FlockParameters) -> Result<Self> {
         Self::standardized(parameters, parameters.pool.name())
     }
 }
 
 impl WriteBlock for LeanFeatures {
-    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
-        physical.extend(self.standard(seen));
+    fn write(&mut self, view: &LeaderView, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.extend(self.standardized_features(view));
     }
 }
 
-/// The features of a view, in their order: some of its numbers, and sums over the present neighbors. Normal boats have
-/// the weight exp(-d²/2), leaders exp(-d²/8), where d is their distance in units of 6 boat radii.
-fn features(view: &[f64; VIEW]) -> [f64; LEAN_FEATURES] {
+/// The features in the order of [`ENTRIES`], before they are standardized: some of the observed numbers, and sums over
+/// the neighbors that exist. Normal boats have the weight exp(-d²/2), leaders exp(-d²/8), where d is their distance in
+/// units of 6 boat radii.
+fn features(observed: &[f64; OBSERVED]) -> [f64; LEAN_FEATURES] {
     let [radial, cos, sin, outward, clockwise, forward, spin] =
-        [0, 1, 2, 3, 4, 5, 6].map(|index| view[index]);
-    let [fw, bw, bw_duration] = [0, 2, 5].map(|index| view[OWN.len() + index]);
-    let mut near = [0.0; 11];
-    let mut leaders = [0.0; 3];
-    for neighbor in view[NEIGHBORS..ORDERS].chunks_exact(NEIGHBOR.len()) {
+        [0, 1, 2, 3, 4, 5, 6].map(|index| observed[index]);
+    let [fw, bw, bw_duration] = [0, 2, 5].map(|index| observed[OWN.len() + index]);
+    let mut normal_sums = [0.0; 11];
+    let mut leader_sums = [0.0; 3];
+    for neighbor in observed[NEIGHBORS_START..ORDER_START].chunks_exact(NEIGHBOR.len()) {
         let &[present, x, y, cos, turned, vx, vy, is_leader] = neighbor else {
             continue;
         };
         let square = x * x + y * y;
         if is_leader > 0.0 {
-            add(
-                &mut leaders,
-                present * libm::exp(-square / 8.0),
-                [1.0, x, y],
-            );
+            let weight = present * libm::exp(-square / 8.0);
+            add(&mut leader_sums, weight, [1.0, x, y]);
         } else {
+            let weight = present * libm::exp(-square / 2.0);
             let opposed = (1.0 - cos) / 2.0;
             let (ox, oy, tx, ty) = (opposed * x, opposed * y, turned * x, turned * y);
             let terms = [1.0, x, y, opposed, turned, vx, vy, ox, oy, tx, ty];
-            add(&mut near, present * libm::exp(-square / 2.0), terms);
+            add(&mut normal_sums, weight, terms);
         }
     }
+    let near_outer_wall = (radial - 0.6).max(0.0);
     let mut features = [0.0; LEAN_FEATURES];
-    features[..5].copy_from_slice(&[radial, outward, clockwise, forward, (radial - 0.6).max(0.0)]);
-    features[5..9].copy_from_slice(&view[ORDERS..]);
-    features[9..20].copy_from_slice(&near);
-    features[20..23].copy_from_slice(&leaders);
+    features[..5].copy_from_slice(&[radial, outward, clockwise, forward, near_outer_wall]);
+    features[5..9].copy_from_slice(&observed[ORDER_START..]);
+    features[9..20].copy_from_slice(&normal_sums);
+    features[20..23].copy_from_slice(&leader_sums);
     features[23..].copy_from_slice(&[cos, sin, spin, fw, bw, bw_duration]);
     features
 }
 
+/// Adds each term times the weight to its sum.
 fn add<const N: usize>(sums: &mut [f64; N], weight: f64, terms: [f64; N]) {
     for (sum, term) in sums.iter_mut().zip(terms) {
         *sum += weight * term;

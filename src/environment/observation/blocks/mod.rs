@@ -10,8 +10,8 @@ mod phase;
 mod target;
 
 pub use lean_features::{LEAN_FEATURES, LeanFeatures};
-pub(crate) use own::{OWN, own};
-pub(crate) use phase::{PHASE, phase};
+pub(crate) use own::{OWN, own_values};
+pub(crate) use phase::{PHASE, phase_values};
 pub(crate) use target::TARGET;
 
 use super::entry::Entry;
@@ -22,49 +22,49 @@ use crate::parameters::{FlockParameters, named_choice};
 
 /// A flock as one of its leaders sees it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Seen<'a> {
+pub(super) struct LeaderView<'a> {
     /// The flock.
-    pub view: &'a FlockView<'a>,
-    /// The leader. Leaders come one after another, from 0.
+    pub flock: &'a FlockView<'a>,
+    /// Index of the leader. Leaders are observed one after another, from 0.
     pub leader: usize,
     /// The leader's outward and clockwise axes.
     pub frame: LapFrame,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> LeaderView<'a> {
     /// The flock as that leader sees it.
-    pub(super) fn new(view: &'a FlockView<'a>, leader: usize) -> Self {
+    pub(super) fn new(flock: &'a FlockView<'a>, leader: usize) -> Self {
         Self {
-            view,
+            flock,
             leader,
-            frame: LapFrame::at(view.poses[leader].position),
+            frame: LapFrame::at(flock.poses[leader].position),
         }
     }
 }
 
-/// An object that is made for a flock's parameters. Types that implement `Default` are the same for every flock.
-trait MadeFor: Sized {
-    /// The object for checked parameters.
+/// A writer that is made from a flock's parameters. Types that implement `Default` are the same for every flock.
+trait FromParameters: Sized {
+    /// The writer for checked parameters.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for flocks that it cannot serve.
-    fn made_for(parameters: &FlockParameters) -> Result<Self>;
+    /// [`crate::FlockError::Parameter`] for flocks that the block cannot describe.
+    fn from_parameters(parameters: &FlockParameters) -> Result<Self>;
 }
 
-impl<T: Default> MadeFor for T {
-    fn made_for(_parameters: &FlockParameters) -> Result<Self> {
+impl<T: Default> FromParameters for T {
+    fn from_parameters(_parameters: &FlockParameters) -> Result<Self> {
         Ok(Self::default())
     }
 }
 
-/// Writer of the physical values of a block, with its memory.
-trait WriteBlock: MadeFor {
-    /// Adds the values of a block that occurs `repeats` times, in the order of its entries.
-    fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>);
+/// Writer of the physical values of a block.
+trait WriteBlock: FromParameters {
+    /// Appends the values of a block that occurs `repeats` times, in the order of its entries.
+    fn write(&mut self, view: &LeaderView, repeats: usize, physical: &mut Vec<f64>);
 }
 
-/// Declares blocks in the order of an observation: name, entries, writer, default number of occurrences, and whether it
-/// may occur more than once, as a neighbor's block may.
+/// Declares blocks in the order of an observation: name, entries, writer, default number of occurrences, and `counted` if
+/// the block may occur more than once, as that of a neighbor may.
 macro_rules! declare_blocks {
     ($($(#[doc = $doc:literal])+ $block:ident = $name:literal:
         $module:ident::{$entries:ident, $writer:ident}, $default:literal $counted:ident;)+) => {
@@ -77,10 +77,10 @@ macro_rules! declare_blocks {
             /// Number of blocks.
             pub(super) const COUNT: usize = Self::ALL.len();
 
-            /// Number of occurrences of each by default.
+            /// Default number of occurrences of each block.
             pub(super) const DEFAULT: [usize; Self::COUNT] = [$($default),+];
 
-            /// Whether the block may occur more than once, like a neighbor's.
+            /// Whether the block may occur more than once, like that of a neighbor.
             pub fn is_counted(self) -> bool {
                 match self { $(Self::$block => declare_blocks!(@ $counted),)+ }
             }
@@ -96,7 +96,7 @@ macro_rules! declare_blocks {
             }
         }
 
-        /// The writers of the present blocks, each with its number of occurrences.
+        /// The writers of the blocks in a layout, each with its number of occurrences.
         #[derive(Debug, Clone)]
         pub(super) struct Writers { $($module: Option<(usize, $module::$writer)>,)+ }
 
@@ -104,18 +104,18 @@ macro_rules! declare_blocks {
             /// Writers for checked parameters; `repeats` says how often each block occurs.
             ///
             /// # Errors
-            /// [`crate::FlockError::Parameter`] for flocks that one of the blocks cannot serve.
+            /// [`crate::FlockError::Parameter`] for flocks that one of the blocks cannot describe.
             pub(super) fn new(repeats: impl Fn(Block) -> usize, parameters: &FlockParameters) -> Result<Self> {
                 Ok(Self { $($module: match repeats(Block::$block) {
                     0 => None,
-                    count => Some((count, $module::$writer::made_for(parameters)?)),
+                    count => Some((count, $module::$writer::from_parameters(parameters)?)),
                 },)+ })
             }
 
-            /// Adds the physical values of all blocks.
-            pub(super) fn write(&mut self, seen: &Seen, physical: &mut Vec<f64>) {
+            /// Appends the physical values of all blocks.
+            pub(super) fn write(&mut self, view: &LeaderView, physical: &mut Vec<f64>) {
                 $(if let Some((repeats, writer)) = &mut self.$module {
-                    writer.write(seen, *repeats, physical);
+                    writer.write(view, *repeats, physical);
                 })+
             }
         }

@@ -2,7 +2,7 @@
 
 use super::super::entry::{Entry, FLAG, Scale, TWICE, UNIT};
 use super::super::nearest::Nearest;
-use super::{Seen, WriteBlock};
+use super::{LeaderView, WriteBlock};
 use crate::geometry::cross;
 
 /// One neighbor; zeros for neighbors that the flock lacks.
@@ -23,24 +23,25 @@ pub(super) const NEIGHBOR: [Entry; 8] = [
 pub(super) struct Neighbors(Nearest);
 
 impl WriteBlock for Neighbors {
-    fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
-        let (view, own) = (seen.view, &seen.view.hulls[seen.leader]);
-        let filled = physical.len() + repeats * NEIGHBOR.len();
-        for boat in self.0.of_leader(view.hulls, seen.leader, repeats) {
-            let other = &view.hulls[boat];
-            let distance = seen.frame.components(other.center - own.center);
-            let velocity = seen.frame.components(view.velocities[boat].linear);
+    fn write(&mut self, view: &LeaderView, repeats: usize, physical: &mut Vec<f64>) {
+        let flock = view.flock;
+        let leader = &flock.hulls[view.leader];
+        let end = physical.len() + repeats * NEIGHBOR.len();
+        for boat in self.0.of_leader(flock.hulls, view.leader, repeats) {
+            let neighbor = &flock.hulls[boat];
+            let distance = view.frame.components(neighbor.center - leader.center);
+            let velocity = view.frame.components(flock.velocities[boat].linear);
             physical.extend([
                 1.0,
                 distance.x,
                 distance.y,
-                own.axis.dot(&other.axis),
-                -cross(own.axis, other.axis),
+                leader.axis.dot(&neighbor.axis),
+                -cross(leader.axis, neighbor.axis),
                 velocity.x,
                 velocity.y,
-                f64::from(u8::from(boat < view.leaders)),
+                f64::from(u8::from(boat < flock.leaders)),
             ]);
         }
-        physical.resize(filled, 0.0);
+        physical.resize(end, 0.0);
     }
 }

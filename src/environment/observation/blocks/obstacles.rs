@@ -1,7 +1,7 @@
 //! The obstacles nearest to leaders.
 
 use super::super::entry::{Entry, FLAG, Scale};
-use super::{MadeFor, Seen, WriteBlock};
+use super::{FromParameters, LeaderView, WriteBlock};
 use crate::error::Result;
 use crate::geometry::{Hull, Obstacle};
 use crate::parameters::FlockParameters;
@@ -15,15 +15,15 @@ pub(super) const OBSTACLE: [Entry; 4] = [
     Entry::new("gap", "cm", Scale::Length, (-1.0, 4.0), "distance between the leader's hull and the obstacle, negative for overlap"),
 ];
 
-/// Finds the nearest obstacles.
+/// Writes [`OBSTACLE`] for the nearest obstacles, nearest first.
 #[derive(Debug, Clone)]
 pub(super) struct NearestObstacles {
     hull: Hull,
     obstacles: Vec<Obstacle>,
 }
 
-impl MadeFor for NearestObstacles {
-    fn made_for(parameters: &FlockParameters) -> Result<Self> {
+impl FromParameters for NearestObstacles {
+    fn from_parameters(parameters: &FlockParameters) -> Result<Self> {
         Ok(Self {
             hull: Hull::new(parameters),
             obstacles: Obstacle::all(parameters),
@@ -32,25 +32,25 @@ impl MadeFor for NearestObstacles {
 }
 
 impl WriteBlock for NearestObstacles {
-    /// Nearest to the leader's center first, equally near ones in the order of obstacles; zeros for missing ones.
-    fn write(&mut self, seen: &Seen, repeats: usize, physical: &mut Vec<f64>) {
-        let leader = &seen.view.hulls[seen.leader];
-        let filled = physical.len() + repeats * OBSTACLE.len();
+    /// Distances are from the leader's center; equally near obstacles come in the order of the parameters.
+    fn write(&mut self, view: &LeaderView, repeats: usize, physical: &mut Vec<f64>) {
+        let leader = &view.flock.hulls[view.leader];
+        let end = physical.len() + repeats * OBSTACLE.len();
         let distances = self
             .obstacles
             .iter()
             .map(|obstacle| obstacle.distance(leader.center));
-        let mut found: Vec<_> = distances.zip(&self.obstacles).collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, obstacle) in found.into_iter().take(repeats) {
-            let nearest = obstacle.nearest(leader.center) - leader.center;
-            let distance = seen.frame.components(nearest);
-            let mut gap = f64::INFINITY;
-            obstacle.gaps(leader, self.hull, f64::INFINITY, &mut |_, found| {
-                gap = gap.min(found.gap);
+        let mut by_distance: Vec<_> = distances.zip(&self.obstacles).collect();
+        by_distance.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, obstacle) in by_distance.into_iter().take(repeats) {
+            let to_nearest_point = obstacle.nearest(leader.center) - leader.center;
+            let distance = view.frame.components(to_nearest_point);
+            let mut smallest_gap = f64::INFINITY;
+            obstacle.gaps(leader, self.hull, f64::INFINITY, &mut |_, contact| {
+                smallest_gap = smallest_gap.min(contact.gap);
             });
-            physical.extend([1.0, distance.x, distance.y, gap]);
+            physical.extend([1.0, distance.x, distance.y, smallest_gap]);
         }
-        physical.resize(filled, 0.0);
+        physical.resize(end, 0.0);
     }
 }

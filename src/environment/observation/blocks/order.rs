@@ -2,7 +2,7 @@
 
 use super::super::entry::{Entry, Scale, TWICE, UNIT};
 use super::super::view::FlockView;
-use super::{Seen, WriteBlock};
+use super::{LeaderView, WriteBlock};
 
 /// Order parameters of the normal boats, as vectors in LAP axes.
 #[rustfmt::skip]
@@ -18,15 +18,16 @@ pub(super) const ORDER: [Entry; 4] = [
 pub(super) struct Order([f64; ORDER.len()]);
 
 impl WriteBlock for Order {
-    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
-        if seen.leader == 0 {
-            self.0 = order(seen.view);
+    fn write(&mut self, view: &LeaderView, _repeats: usize, physical: &mut Vec<f64>) {
+        if view.leader == 0 {
+            self.0 = order_values(view.flock);
         }
         physical.extend_from_slice(&self.0);
     }
 }
 
-fn order(view: &FlockView) -> [f64; ORDER.len()] {
+/// The values of [`ORDER`]; zeros if there are no normal boats.
+fn order_values(view: &FlockView) -> [f64; ORDER.len()] {
     let Some(order) = view.order else {
         return [0.0; ORDER.len()];
     };

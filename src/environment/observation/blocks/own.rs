@@ -1,8 +1,8 @@
-//! The leader itself.
+//! The block of the leader itself: its position, orientation, velocity and rudder.
 
 use super::super::entry::{Entry, Scale, TWICE, UNIT};
 use super::super::view::FlockView;
-use super::{Seen, WriteBlock};
+use super::{LeaderView, WriteBlock};
 use crate::boat::misalignment;
 use crate::geometry::LapFrame;
 
@@ -24,13 +24,13 @@ pub(crate) const OWN: [Entry; 8] = [
 pub(super) struct Own;
 
 impl WriteBlock for Own {
-    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
-        physical.extend(own(seen.view, seen.leader, &seen.frame));
+    fn write(&mut self, view: &LeaderView, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.extend(own_values(view.flock, view.leader, &view.frame));
     }
 }
 
-/// The leader itself, in the order of [`OWN`].
-pub(crate) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
+/// The physical values of [`OWN`].
+pub(crate) fn own_values(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OWN.len()] {
     let (pose, velocity) = (&view.poses[leader], &view.velocities[leader]);
     let (cos, sin) = orientation(view, leader, frame);
     let lap_velocity = frame.components(velocity.linear);
@@ -46,17 +46,19 @@ pub(crate) fn own(view: &FlockView, leader: usize, frame: &LapFrame) -> [f64; OW
     ]
 }
 
-/// Cosine and sine of the LAP orientation φ. If the heading is opposite to the target's, up to rounding, they are
-/// computed from the steering law's misalignment δ = φ − φ_target. A reader of the observation then finds the same sign
-/// at the jump δ = ±π as the law.
+/// Cosine and sine of the LAP orientation φ.
+///
+/// If the leader heads exactly against the target, up to rounding, both are computed from the steering law's
+/// misalignment δ = φ − φ_target. So a law that reads the observation turns to the same side as the steering law, whose
+/// δ jumps from π to −π there.
 fn orientation(view: &FlockView, leader: usize, frame: &LapFrame) -> (f64, f64) {
     let orientation = frame.components(view.hulls[leader].axis);
     let target = view.targets.of(leader);
-    let towards = target.sign();
-    if orientation.x.abs() > 1e-9 || towards * orientation.y > 0.0 {
+    let is_against_target = orientation.x.abs() <= 1e-9 && target.sign() * orientation.y <= 0.0;
+    if !is_against_target {
         return (orientation.x, orientation.y);
     }
     let pose = &view.poses[leader];
     let (sin, cos) = libm::sincos(misalignment(pose.position, pose.heading, target));
-    (-towards * sin, towards * cos)
+    (-target.sign() * sin, target.sign() * cos)
 }

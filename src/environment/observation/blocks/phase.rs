@@ -2,7 +2,7 @@
 
 use super::super::entry::{Entry, FLAG, Scale};
 use super::super::view::FlockView;
-use super::{Seen, WriteBlock};
+use super::{LeaderView, WriteBlock};
 use crate::clock::seconds;
 
 /// Time in the cycle of phases.
@@ -21,16 +21,16 @@ pub(crate) const PHASE: [Entry; 6] = [
 pub(super) struct Phase;
 
 impl WriteBlock for Phase {
-    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
-        physical.extend(phase(seen.view));
+    fn write(&mut self, view: &LeaderView, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.extend(phase_values(view.flock));
     }
 }
 
-/// Time in the cycle of phases, in the order of [`PHASE`].
-pub(crate) fn phase(view: &FlockView) -> [f64; PHASE.len()] {
-    let mut entries = [0.0; PHASE.len()];
-    entries[view.phase.phase.index()] = 1.0;
-    entries[4] = seconds(view.phase.left);
-    entries[5] = view.bw_s;
-    entries
+/// The physical values of [`PHASE`].
+pub(crate) fn phase_values(view: &FlockView) -> [f64; PHASE.len()] {
+    let mut values = [0.0; PHASE.len()];
+    values[view.phase.phase.index()] = 1.0;
+    values[4] = seconds(view.phase.left);
+    values[5] = view.bw_s;
+    values
 }

@@ -1,7 +1,7 @@
 //! The direction to lead in.
 
 use super::super::entry::{Entry, Scale, UNIT};
-use super::{Seen, WriteBlock};
+use super::{LeaderView, WriteBlock};
 
 /// The direction to lead in.
 #[rustfmt::skip]
@@ -14,7 +14,7 @@ pub(crate) const TARGET: [Entry; 1] = [
 pub(super) struct Target;
 
 impl WriteBlock for Target {
-    fn write(&mut self, seen: &Seen, _repeats: usize, physical: &mut Vec<f64>) {
-        physical.push(seen.view.targets.of(seen.leader).sign());
+    fn write(&mut self, view: &LeaderView, _repeats: usize, physical: &mut Vec<f64>) {
+        physical.push(view.flock.targets.of(view.leader).sign());
     }
 }
