@@ -1,4 +1,4 @@
-//! Settings of an episode that are fixed, or drawn from the flock's seed.
+//! Settings of an episode that are either fixed or drawn from the flock's seed.
 
 use crate::error::{FlockError, Result};
 use crate::parameters::{Kind, Range, Setting, Target, Targets, Value, wrong_kind};
@@ -13,18 +13,18 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// The number for an episode. `share` in [0, 1) selects a point of the range.
-    pub fn at(self, share: f64) -> f64 {
+    /// The number for an episode. `fraction` in [0, 1) selects a point of the range.
+    pub fn at(self, fraction: f64) -> f64 {
         match self {
             Self::Fixed(number) => number,
-            Self::Uniform(low, high) => low + share * (high - low),
+            Self::Uniform(low, high) => low + fraction * (high - low),
         }
     }
 
-    /// Checks the ends of a range.
+    /// Checks the ends of a range. A fixed number is checked elsewhere, as a parameter of the flock.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
+    /// [`FlockError::Parameter`] for the field `name`.
     pub(super) fn check(self, name: &'static str) -> Result<()> {
         match self {
             Self::Uniform(low, high) => {
@@ -56,10 +56,10 @@ impl Setting for Drawn {
     }
 }
 
-/// Target directions of an episode.
+/// Choice of an episode's target directions.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum TargetChoice {
-    /// The same throughout.
+    /// The same targets during the whole episode.
     Fixed(Targets),
     /// One of the two directions, drawn for the episode.
     Random,
@@ -99,24 +99,31 @@ impl Setting for TargetChoice {
     }
 
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
-        match (value, Targets::from_value(name, value)) {
-            (Value::Name(text), _) if text == "random" => Ok(Self::Random),
-            (Value::Name(text), _) if text == "alternate" => Ok(Self::Alternate),
-            (_, Ok(targets)) => Ok(Self::Fixed(targets)),
-            (_, Err(FlockError::Parameter { .. })) => {
-                let accepted = match value {
-                    Value::List(_) => {
-                        "a list of \"cw\" and \"ccw\", one per leader; \"random\" and \"alternate\" hold for all \
-                         leaders and stand alone"
-                    }
-                    _ => {
-                        "one of \"cw\", \"ccw\", \"random\", \"alternate\", or a list of \"cw\" and \"ccw\", one per \
-                         leader"
-                    }
-                };
-                Err(FlockError::parameter(name, value, accepted))
+        match value {
+            Value::Name(text) if text == "random" => return Ok(Self::Random),
+            Value::Name(text) if text == "alternate" => return Ok(Self::Alternate),
+            _ => {}
+        }
+        match Targets::from_value(name, value) {
+            Ok(targets) => Ok(Self::Fixed(targets)),
+            Err(FlockError::Parameter { .. }) => {
+                Err(FlockError::parameter(name, value, accepted_targets(value)))
             }
-            (_, Err(other)) => Err(other),
+            Err(other) => Err(other),
+        }
+    }
+}
+
+/// The accepted targets, for the message that refuses a value.
+fn accepted_targets(value: &Value) -> &'static str {
+    match value {
+        Value::List(_) => {
+            "a list of \"cw\" and \"ccw\", one per leader; \"random\" and \"alternate\" hold for all \
+             leaders and stand alone"
+        }
+        _ => {
+            "one of \"cw\", \"ccw\", \"random\", \"alternate\", or a list of \"cw\" and \"ccw\", one per \
+             leader"
         }
     }
 }

@@ -1,4 +1,4 @@
-//! One episode under way: the flock, its leaders' rudders, observations and rewards so far.
+//! A running episode: the flock, its leaders' rudders, observations and rewards so far.
 
 use super::credit::{ContactCredit, LeaderCredit};
 use super::observation::{
@@ -24,14 +24,16 @@ use crate::parameters::{FlockParameters, Target, Targets};
 pub(crate) struct EpisodeState {
     flock: Flock,
     schedule: EpisodeSchedule,
-    /// The leaders' rudders as they stand, positive counter-clockwise.
+    /// The leaders' present rudders, positive counter-clockwise.
     rudders: Vec<f64>,
+    /// The camera through which leaders see the flock; `None` if they see it as it is.
     camera: Option<Camera>,
+    /// Each leader's reward terms, means over the control steps since the last decision.
     #[serde(with = "stored_rows")]
     terms: Vec<RewardTerms>,
     statistics: EpisodeStatistics,
     ended: bool,
-    /// Effects of the leaders' contacts, if a reward term needs them.
+    /// Effects of the leaders' contacts; `None` if no reward term needs them.
     credit: Option<ContactCredit>,
     /// Order parameters of the normal boats; `None` if there are none.
     #[serde(skip)]
@@ -72,25 +74,26 @@ impl EpisodeState {
             && camera.is_none_or(|camera| camera.fits(boats))
     }
 
-    fn view(&self) -> FlockView<'_> {
+    /// The flock as it is, not as the camera shows it.
+    fn true_view(&self) -> FlockView<'_> {
         FlockView::new(&self.flock, &self.rudders, self.order.as_ref())
     }
 
     /// The flock as leaders see it: through the camera, if there is one.
-    fn seen(&self) -> FlockView<'_> {
-        let (view, camera) = (self.view(), self.camera.as_ref());
+    fn leaders_view(&self) -> FlockView<'_> {
+        let (view, camera) = (self.true_view(), self.camera.as_ref());
         camera.map_or(view, |camera| camera.through(view))
     }
 }
 
-/// An episode under way.
+/// A running episode.
 #[derive(Debug, Clone)]
 pub struct Episode {
     state: EpisodeState,
     observer: Observer,
-    /// The law that steers to a heading, if actions are headings.
+    /// The law that steers to an action's heading, and a reader of its inputs; `None` if actions are rudders.
     law: Option<(DampedLaw, CourseView)>,
-    /// Commands of the control step under way.
+    /// Rudder commands of the present control step, one per leader.
     commands: Vec<f64>,
 }
 
@@ -116,25 +119,25 @@ impl Episode {
         })
     }
 
-    /// The stored episode, in an environment with these settings and parameters.
+    /// Continues a stored episode in an environment with these settings and parameters.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`] if it does not belong there.
+    /// [`FlockError::Snapshot`] if the episode does not fit the environment.
     pub(crate) fn restored(
         settings: &EnvSettings,
         parameters: &FlockParameters,
         mut state: EpisodeState,
     ) -> Result<Self> {
         check_flock(&state.flock, parameters)?;
-        let why = "the state holds an episode that this environment cannot have";
-        FlockError::unless_fitting(state.fits(settings, parameters), why)?;
+        let reason = "the state holds an episode that this environment cannot have";
+        FlockError::unless_fitting(state.fits(settings, parameters), reason)?;
         let (seed, leaders) = (state.schedule.flock_seed, parameters.n_leaders);
         let camera = settings.lens().zip(state.camera);
         state.camera = camera.map(|(lens, camera)| camera.with_lens(lens, seed, leaders));
         Self::from_state(settings, state)
     }
 
-    /// The state to be stored.
+    /// The part of the episode that is stored.
     pub(crate) fn state(&self) -> &EpisodeState {
         &self.state
     }
@@ -154,7 +157,7 @@ impl Episode {
         self.state.ended
     }
 
-    /// Order parameters of the normal boats now; `None` without any.
+    /// Present order parameters of the normal boats; `None` if there are none.
     pub fn order(&self) -> Option<&OrderParameters> {
         self.state.order.as_ref()
     }
@@ -164,7 +167,7 @@ impl Episode {
         &self.state.terms
     }
 
-    /// The leaders' rudders as they stand, positive counter-clockwise.
+    /// The leaders' present rudders, positive counter-clockwise.
     pub fn rudders(&self) -> &[f64] {
         &self.state.rudders
     }
@@ -180,12 +183,12 @@ impl Episode {
         &self.state.flock.parameters().target
     }
 
-    /// Writes the leaders' present observations; returns the number of clipped values.
+    /// Writes the leaders' present observations; returns how many numbers were clipped.
     pub fn observe(&mut self, out: &mut [f32]) -> u32 {
-        self.observer.observe(&self.state.seen(), out)
+        self.observer.observe(&self.state.leaders_view(), out)
     }
 
-    /// Writes the leaders' observations, and counts clipped numbers in the episode's statistics.
+    /// Writes the leaders' present observations, and counts the clipped numbers in the episode's statistics.
     pub(crate) fn observe_and_count(&mut self, out: &mut [f32]) {
         let clipped = self.observe(out);
         self.state.statistics.count_clipped(clipped, out.len());
@@ -197,16 +200,17 @@ impl Episode {
     /// [`FlockError::Parameter`] for a layout that the flock cannot have.
     pub(crate) fn observe_in(&self, layout: ObservationLayout, out: &mut [f32]) -> Result<()> {
         let mut observer = observer(layout, self.state.flock.parameters())?;
-        observer.observe(&self.state.seen(), out);
+        observer.observe(&self.state.leaders_view(), out);
         Ok(())
     }
 
-    /// Writes the global state, which bypasses the camera.
+    /// Writes the global state, without the camera's flaws.
     pub(crate) fn observe_state(&self, observer: &StateObserver, out: &mut [f32]) {
-        observer.observe(&self.state.view(), self.state.schedule.elapsed(), out);
+        let elapsed = self.state.schedule.elapsed();
+        observer.observe(&self.state.true_view(), elapsed, out);
     }
 
-    /// Writes the features of the flock, which bypass the camera, in the frame of a target.
+    /// Writes the features of the flock in the frame of a target, without the camera's flaws.
     pub(crate) fn observe_features(
         &self,
         features: &FlockFeatures,
@@ -214,15 +218,16 @@ impl Episode {
         out: &mut [f32],
     ) {
         let elapsed = self.state.schedule.elapsed();
-        features.observe(&self.state.view(), target, elapsed, out);
+        features.observe(&self.state.true_view(), target, elapsed, out);
     }
 
-    /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end, and
-    /// writes the sums of their rewards. Without actions leaders follow the steering law at every substep.
+    /// Holds checked actions, one per leader, over the control steps until the next decision or the episode's end.
+    /// Writes each leader's reward, summed over these steps. Without actions leaders follow the steering law at every
+    /// substep.
     ///
     /// # Errors
-    /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stops in that control step, and the episode is
-    /// over.
+    /// [`FlockError::Solver`] and [`FlockError::Interrupted`]; the flock stays at the start of the control step that
+    /// failed, and the episode is over.
     pub fn step(
         &mut self,
         keep_going: KeepGoing,
@@ -243,7 +248,7 @@ impl Episode {
             }
             let elapsed = self.advance(keep_going, settings, actions.is_none())?;
             self.add_rewards(settings, rewards);
-            self.note_order(elapsed);
+            self.record_order(elapsed);
             self.advance_schedule()?;
             steps += 1;
         }
@@ -254,20 +259,24 @@ impl Episode {
         Ok(())
     }
 
-    /// Computes the rudder commands of a control step from actions, which may belong to mirrored views.
+    /// Computes the rudder commands of a control step from the leaders' actions.
+    ///
+    /// `mirror_to` holds the targets at the decision if observations are mirrored to them: leaders with a
+    /// counter-clockwise target then chose the rudder of the mirrored view, which has the opposite sign.
     fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
-        let view = self.state.seen();
+        let view = self.state.leaders_view();
         for (leader, (command, &action)) in commands.iter_mut().zip(actions).enumerate() {
             let value = settings.command(action);
-            let mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
+            let is_mirrored = mirror_to.is_some_and(|targets| targets.of(leader).sign() < 0.0);
             *command = match &self.law {
                 Some((law, courses)) => {
                     let angle = settings.action_mode.angle(value);
                     let rudder = law.rudder(&courses.course(&view, leader, angle));
+                    // Rounded to single precision, as actions are.
                     f64::from(rudder as f32)
                 }
-                None if mirrored => -value,
+                None if is_mirrored => -value,
                 None => value,
             };
         }
@@ -281,8 +290,8 @@ impl Episode {
         }
     }
 
-    /// Moves the flock through a control step, by the rudders or by the steering law; returns the time from the
-    /// episode's start to the end of this step.
+    /// Advances the flock by a control step, with the rudders or the steering law; returns the time from the episode's
+    /// start to the end of this step.
     fn advance(
         &mut self,
         keep_going: KeepGoing,
@@ -290,9 +299,9 @@ impl Episode {
         follows_law: bool,
     ) -> Result<Ticks> {
         let state = &mut self.state;
-        let [before, elapsed] =
-            [state.schedule.step, state.schedule.step + 1].map(|step| settings.time_of(step));
-        let end = state.flock.time() + elapsed - before;
+        let step = state.schedule.step;
+        let [elapsed_before, elapsed] = [step, step + 1].map(|step| settings.time_of(step));
+        let end = state.flock.time() + elapsed - elapsed_before;
         let steering = if follows_law {
             Steering::Law
         } else {
@@ -301,8 +310,8 @@ impl Episode {
         let advanced = match &mut state.credit {
             None => state.flock.advance_to(keep_going, end, steering),
             Some(credit) => {
-                credit.start();
-                let watch = &mut |flock: &Integrator| credit.add(flock);
+                credit.start_step();
+                let watch = &mut |flock: &Integrator| credit.add_contacts(flock);
                 let flock = &mut state.flock;
                 flock.advance_watched(keep_going, end, steering, watch)
             }
@@ -312,58 +321,60 @@ impl Episode {
             return Err(error);
         }
         if follows_law {
-            let law = (0..state.rudders.len()).map(|leader| state.flock.steering_law(leader));
-            state.rudders = law.collect();
+            let rudders = (0..state.rudders.len()).map(|leader| state.flock.steering_law(leader));
+            state.rudders = rudders.collect();
         }
         if let Some(credit) = &mut state.credit {
-            credit.remember(&state.flock.integrator, 1.0 / settings.control_hz);
+            credit.advance_turns(&state.flock.integrator, 1.0 / settings.control_hz);
         }
         state.order = state.flock.order_parameters(false).ok();
         Ok(elapsed)
     }
 
-    /// Adds each leader's terms and reward of the control step just taken, with the target that held in it.
+    /// Adds each leader's terms and reward of the control step just taken, for the target of that step.
     fn add_rewards(&mut self, settings: &EnvSettings, rewards: &mut [f64]) {
         let state = &mut self.state;
         let flock = &state.flock;
         let view = FlockView::new(flock, &state.rudders, state.order.as_ref());
-        let reward = Reward::new(flock.parameters(), &view);
+        let flock_reward = Reward::new(flock.parameters(), &view);
         let (share, step_s) = (1.0 / rewards.len() as f64, 1.0 / settings.control_hz);
-        for (leader, (sums, sum)) in state.terms.iter_mut().zip(rewards).enumerate() {
+        for (leader, (term_sums, reward_sum)) in state.terms.iter_mut().zip(rewards).enumerate() {
             let target = view.targets.of(leader);
             let credit = state.credit.as_ref();
             let credit = credit.map_or_else(LeaderCredit::default, |credit| {
-                credit.of(leader, &flock.integrator, target, step_s)
+                credit.of_leader(leader, &flock.integrator, target, step_s)
             });
-            let terms = reward.terms(&view, leader, &credit);
+            let terms = flock_reward.terms(&view, leader, &credit);
             let reward = settings.reward_factor() * settings.reward.total(leader, &terms);
             state.statistics.add_terms(share, &terms);
             state.statistics.add_reward(share * reward);
-            *sum += reward;
-            sums.iter_mut()
-                .zip(terms)
-                .for_each(|(sum, term)| *sum += term);
+            *reward_sum += reward;
+            for (sum, term) in term_sums.iter_mut().zip(terms) {
+                *sum += term;
+            }
         }
     }
 
-    /// Adds rewards that a user computed.
-    pub(crate) fn add_reward(&mut self, rewards: &[f64]) {
+    /// Adds rewards that a user computed, one per leader, to the episode's statistics.
+    pub(crate) fn add_user_rewards(&mut self, rewards: &[f64]) {
         let sum: f64 = rewards.iter().sum();
         let statistics = &mut self.state.statistics;
         statistics.add_reward(sum / rewards.len().max(1) as f64);
     }
 
-    /// Records the order. If the step ends in the analysis window, after the first tenth of the episode, it also adds
-    /// to the averages.
-    fn note_order(&mut self, elapsed: Ticks) {
+    /// Records the order of the control step just taken, which ends at the time `elapsed` since the episode's start.
+    /// After the first tenth of the episode, steps that end in the analysis window also count in the averages.
+    fn record_order(&mut self, elapsed: Ticks) {
         let (flock, statistics) = (&self.state.flock, &mut self.state.statistics);
         let Some(order) = self.state.order else {
             return;
         };
         let schedule = &self.state.schedule;
         let (step, steps) = (u64::from(schedule.step) + 1, u64::from(schedule.steps));
-        statistics.watch_order(&order, seconds(elapsed), 2 * step >= steps);
-        if 10 * step <= steps || !flock.schedule().in_analysis_window(flock.time()) {
+        let is_second_half = 2 * step >= steps;
+        statistics.record_order(&order, seconds(elapsed), is_second_half);
+        let is_first_tenth = 10 * step <= steps;
+        if is_first_tenth || !flock.schedule().in_analysis_window(flock.time()) {
             return;
         }
         let (hulls, velocities) = flock.measured(false);
@@ -372,10 +383,10 @@ impl Episode {
             velocities,
             order,
         };
-        statistics.add_window(&boats, flock.parameters().target.reference());
+        statistics.add_window_step(&boats, flock.parameters().target.reference());
     }
 
-    /// Advances the episode's clock by a control step: targets may change, and the camera takes a frame.
+    /// Advances the schedule by a control step: targets may change, and the camera takes a frame.
     fn advance_schedule(&mut self) -> Result<()> {
         let state = &mut self.state;
         state.schedule.step += 1;

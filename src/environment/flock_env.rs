@@ -9,7 +9,7 @@ use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
 use crate::parameters::FlockParameters;
 
-/// Stored state of an environment.
+/// Stored state of an environment, with its episode as `E`: owned when read, borrowed when written.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct StoredEnv<E = EpisodeState> {
     seeds: Option<EpisodeSeeds>,
@@ -26,9 +26,13 @@ pub struct FlockEnv {
     servo: Servo,
     state_observer: StateObserver,
     features: FlockFeatures,
+    /// Seeds of the next episodes; `None` before the first reset.
     seeds: Option<EpisodeSeeds>,
+    /// Settings of future episodes.
     upcoming: Upcoming,
+    /// The present episode, or the last one if it has ended.
     episode: Option<Episode>,
+    /// Summary of the last episode that reached its end.
     finished: Option<EpisodeSummary>,
     final_observation: Vec<f32>,
 }
@@ -59,7 +63,7 @@ impl FlockEnv {
         self.episode.as_ref()
     }
 
-    /// Whether a reset has ever given a seed.
+    /// Whether any reset so far had a seed.
     pub fn is_seeded(&self) -> bool {
         self.seeds.is_some()
     }
@@ -87,7 +91,7 @@ impl FlockEnv {
     /// Checks options of future episodes.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
+    /// [`FlockError::Parameter`] for options that this flock cannot have.
     pub(crate) fn check_upcoming(&self, settings: &EnvSettings, upcoming: &Upcoming) -> Result<()> {
         let bw_s = upcoming
             .bw_s
@@ -100,10 +104,10 @@ impl FlockEnv {
         upcoming.settings(settings).check(&parameters)
     }
 
-    /// Prepares the next episode without starting it.
+    /// Makes the next episode, which [`Self::start`] starts; the environment does not change.
     ///
     /// # Errors
-    /// [`FlockError::Episode`] without any seed yet, and errors of the request.
+    /// [`FlockError::Episode`] if neither this reset nor an earlier one has a seed, and errors of the request.
     pub(crate) fn prepare(
         &self,
         settings: &EnvSettings,
@@ -133,7 +137,7 @@ impl FlockEnv {
         self.episode = None;
     }
 
-    /// Whether a step is due, even if it only starts the next episode.
+    /// Checks that the environment can be stepped. The step may be one that only starts the next episode.
     ///
     /// # Errors
     /// [`FlockError::Episode`] if the environment has to be reset first.
@@ -148,9 +152,9 @@ impl FlockEnv {
         Err(FlockError::Episode(message.to_owned()))
     }
 
-    /// Takes one decision with checked actions and holds it over the control steps until the next one; starts the next
-    /// episode instead if that is due. Without actions leaders follow the steering law at every substep. Writes
-    /// observations and rewards of the leaders, and returns whether the episode was truncated.
+    /// Takes one decision with checked actions and holds them over the control steps until the next decision. If the
+    /// episode has ended, starts the next one instead. Without actions leaders follow the steering law at every substep.
+    /// Writes observations and rewards of the leaders; returns whether this step reached the episode's time limit.
     ///
     /// # Errors
     /// [`FlockError::Solver`], [`FlockError::Placement`], [`FlockError::Interrupted`]; the episode is over then.
@@ -185,17 +189,18 @@ impl FlockEnv {
         Ok(true)
     }
 
-    /// Adds to the leaders' rewards of the last step.
+    /// Adds rewards that a user computed, one per leader, to those of the last step.
     pub(crate) fn add_rewards(&mut self, rewards: &[f64]) {
         let Some(episode) = &mut self.episode else {
             return;
         };
-        episode.add_reward(rewards);
+        episode.add_user_rewards(rewards);
         if episode.has_ended() {
             self.finished = Some(episode.summary());
         }
     }
 
+    /// Starts the next episode, with the next seed, and writes its first observations.
     fn start_next(
         &mut self,
         keep_going: KeepGoing,
@@ -207,7 +212,7 @@ impl FlockEnv {
         Ok(())
     }
 
-    /// Writes the observations as they are now, zeros before the first reset.
+    /// Writes the leaders' present observations, zeros before the first reset.
     pub fn observe(&mut self, out: &mut [f32]) {
         match &mut self.episode {
             Some(episode) => {
@@ -231,7 +236,7 @@ impl FlockEnv {
         }
     }
 
-    /// Size of the global state.
+    /// Number of entries of the global state.
     pub fn state_size(&self) -> usize {
         self.state_observer.size()
     }
@@ -252,13 +257,15 @@ impl FlockEnv {
             return;
         };
         let targets = episode.targets();
-        let (first, others) = out.split_at_mut(FlockFeatures::SIZE.min(out.len()));
-        episode.observe_features(&self.features, targets.reference(), first);
-        let rows = others.chunks_exact_mut(FlockFeatures::SIZE);
-        for (leader, row) in (1..).zip(rows) {
-            match targets.of(leader) {
-                target if target == targets.reference() => row.copy_from_slice(first),
-                target => episode.observe_features(&self.features, target, row),
+        let (first_row, other_rows) = out.split_at_mut(FlockFeatures::SIZE.min(out.len()));
+        episode.observe_features(&self.features, targets.reference(), first_row);
+        let other_rows = other_rows.chunks_exact_mut(FlockFeatures::SIZE);
+        for (leader, row) in (1..).zip(other_rows) {
+            let target = targets.of(leader);
+            if target == targets.reference() {
+                row.copy_from_slice(first_row);
+            } else {
+                episode.observe_features(&self.features, target, row);
             }
         }
     }
@@ -274,19 +281,19 @@ impl FlockEnv {
         }
     }
 
-    /// The environment from its stored form.
+    /// A copy of this environment that continues from a stored state.
     ///
     /// # Errors
-    /// [`FlockError::Snapshot`] if the state does not belong to such an environment.
+    /// [`FlockError::Snapshot`] if the state does not fit this environment.
     pub(crate) fn restored(&self, settings: &EnvSettings, stored: StoredEnv) -> Result<Self> {
-        let whole = self.parameters.n_leaders * settings.observation.size();
         let episode = stored
             .episode
             .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
-        let found = stored.final_observation.len();
-        let is_own = [0, whole].contains(&found) && (episode.is_none() || stored.seeds.is_some());
-        FlockError::unless_fitting(is_own, "the state belongs to another environment")?;
+        let observation_size = self.parameters.n_leaders * settings.observation.size();
+        let has_size = [0, observation_size].contains(&stored.final_observation.len());
+        let fits = has_size && (episode.is_none() || stored.seeds.is_some());
+        FlockError::unless_fitting(fits, "the state belongs to another environment")?;
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.check_upcoming(settings, &stored.upcoming)?;
         (restored.seeds, restored.upcoming) = (stored.seeds, stored.upcoming);

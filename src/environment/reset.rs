@@ -9,7 +9,7 @@ use crate::parameters::FlockParameters;
 /// Start of an episode.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Start {
-    /// Placed at random from the episode's seed, at rest.
+    /// At rest, placed at random from the episode's seed.
     #[default]
     Random,
     /// A given state.
@@ -18,7 +18,7 @@ pub enum Start {
     Snapshot {
         /// The snapshot.
         bytes: Vec<u8>,
-        /// Seed of other noise; `None`: the noise of the snapshot.
+        /// Seed of new noise; `None`: the noise of the snapshot continues.
         noise_seed: Option<u64>,
     },
 }
@@ -28,30 +28,30 @@ pub enum Start {
 pub struct ResetRequest {
     /// A new seed of the environment; `None` continues with its next episode.
     pub seed: Option<u64>,
-    /// Target of this episode; `None`: as the settings say.
+    /// Target of this episode; `None`: that of the settings.
     pub target: Option<TargetChoice>,
-    /// Length of the backward phase in this episode in s; `None`: as the settings say.
+    /// Length of the backward phase in this episode in s; `None`: that of the settings.
     pub bw_s: Option<Drawn>,
-    /// Its start.
+    /// Initial state of the episode.
     pub start: Start,
 }
 
 /// Settings of future episodes, which a reset can override.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Upcoming {
-    /// Target of these episodes; `None`: as the settings say.
+    /// Target of these episodes; `None`: that of the settings.
     pub target: Option<TargetChoice>,
-    /// Length of their backward phase in s; `None`: as the settings say.
+    /// Length of their backward phase in s; `None`: that of the settings.
     pub bw_s: Option<Drawn>,
 }
 
 impl Upcoming {
-    /// The environment's settings with those of future episodes put in.
+    /// The environment's settings, overridden by these for future episodes.
     pub fn settings(&self, settings: &EnvSettings) -> EnvSettings {
         EnvSettings {
             target: self.target.as_ref().unwrap_or(&settings.target).clone(),
             bw_s: self.bw_s.or(settings.bw_s),
-            // Fixed, since the default length depends on the target.
+            // The default length depends on the target, so another target must not change it.
             episode_s: Some(settings.duration_s()),
             ..settings.clone()
         }
@@ -59,20 +59,20 @@ impl Upcoming {
 }
 
 impl ResetRequest {
-    /// This request, completed by the settings of future episodes.
+    /// This request, in which `upcoming` sets what the request leaves open.
     #[must_use]
     pub(super) fn completed_by(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();
         request.target = request.target.or_else(|| upcoming.target.clone());
-        // A snapshot has its own backward duration.
         request.bw_s = request.bw_s.or(upcoming.bw_s);
         request
     }
 
-    /// The episode and the flock that the request describes.
+    /// The schedule and the initial flock of the episode that the request describes.
     ///
     /// # Errors
-    /// [`FlockError`] for a request that cannot be met.
+    /// [`FlockError`] for targets, states and snapshots that do not fit the environment, and for flocks that cannot be
+    /// placed.
     pub fn build(
         &self,
         settings: &EnvSettings,
@@ -82,34 +82,35 @@ impl ResetRequest {
     ) -> Result<(EpisodeSchedule, Flock)> {
         let target = self.target.as_ref().unwrap_or(&settings.target);
         target.check(parameters.n_leaders)?;
-        let (schedule, share) = EpisodeSchedule::new(settings, target, flock_seed);
+        let (schedule, fraction) = EpisodeSchedule::new(settings, target, flock_seed);
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
         let bw_s = self.bw_s.or(settings.bw_s);
-        let own = FlockParameters {
-            bw_s: bw_s.map_or(parameters.bw_s, |bw_s| bw_s.at(share)),
+        let episode_parameters = FlockParameters {
+            bw_s: bw_s.map_or(parameters.bw_s, |bw_s| bw_s.at(fraction)),
             ..parameters.clone()
         };
         let mut flock = match &self.start {
+            // A snapshot has its own backward duration.
             Start::Snapshot { bytes, noise_seed } => Flock::from_snapshot(bytes, *noise_seed)?,
-            Start::Random => Flock::new_while(keep_going, own, flock_seed)?,
-            Start::State(state) => Flock::from_state(own, flock_seed, state)?,
+            Start::Random => Flock::new_while(keep_going, episode_parameters, flock_seed)?,
+            Start::State(state) => Flock::from_state(episode_parameters, flock_seed, state)?,
         };
         check_flock(&flock, parameters)?;
-        let is_early = flock.time() + settings.time_of(schedule.steps) <= LATEST;
+        let end = flock.time() + settings.time_of(schedule.steps);
         let accepted = "a time that leaves a whole episode before 1e9 s";
-        FlockError::unless(is_early, "time_s", flock.time_s(), accepted)?;
+        FlockError::unless(end <= LATEST, "time_s", flock.time_s(), accepted)?;
         flock.set_target(schedule.targets())?;
         Ok((schedule, flock))
     }
 }
 
-/// Refuses a snapshot's flock that does not fit an environment with these parameters.
+/// Refuses a stored flock whose parameters, other than target and `bw_s`, differ from the environment's.
 pub(super) fn check_flock(flock: &Flock, parameters: &FlockParameters) -> Result<()> {
-    let same = FlockParameters {
+    let flock_parameters = FlockParameters {
         target: parameters.target.clone(),
         bw_s: parameters.bw_s,
         ..flock.parameters().clone()
     };
-    let why = "the snapshot's flock has other parameters than the environment; only target and bw_s may differ";
-    FlockError::unless_fitting(same == *parameters, why)
+    let reason = "the snapshot's flock has other parameters than the environment; only target and bw_s may differ";
+    FlockError::unless_fitting(flock_parameters == *parameters, reason)
 }

@@ -9,7 +9,7 @@ use rand_chacha::rand_core::Rng;
 /// One episode: its random draws and its progress.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EpisodeSchedule {
-    /// Seed of the flock: of its start, its noise, the draws of the episode, and the camera.
+    /// Seed of the flock's placement and noise, of the episode's draws, and of the camera.
     pub flock_seed: u64,
     /// Control steps taken.
     pub step: u32,
@@ -22,12 +22,12 @@ pub struct EpisodeSchedule {
 }
 
 impl EpisodeSchedule {
-    /// Draws an episode, and a number in [0, 1) that chooses its backward duration within a range. Both are always
-    /// drawn from the flock's seed, even if unused, so that fixing one does not change the other.
+    /// Draws an episode, and a number in [0, 1) that chooses its backward duration within a range. The target and this
+    /// number are drawn from the flock's seed even if they are not used, so that fixing one does not change the other.
     pub fn new(settings: &EnvSettings, target: &TargetChoice, flock_seed: u64) -> (Self, f64) {
         let mut rng = Stream::EPISODE.rng(flock_seed);
-        let share: f64 = rng.random_range(0.0..1.0);
-        let drawn = if rng.next_u64() & 1 == 0 {
+        let fraction: f64 = rng.random_range(0.0..1.0);
+        let drawn_target = if rng.next_u64() & 1 == 0 {
             Target::Clockwise
         } else {
             Target::CounterClockwise
@@ -38,23 +38,27 @@ impl EpisodeSchedule {
             steps: settings.steps(),
             targets: match target {
                 TargetChoice::Fixed(targets) => targets.clone(),
-                TargetChoice::Random => drawn.into(),
+                TargetChoice::Random => drawn_target.into(),
                 TargetChoice::Alternate => Target::CounterClockwise.into(),
             },
             alternates: *target == TargetChoice::Alternate,
         };
-        (schedule, share)
+        (schedule, fraction)
     }
 
-    /// The targets of the next control step; after the last step, the targets of the last.
+    /// The targets of the next control step; after the last step, still its targets.
     pub fn targets(&self) -> Targets {
         if !self.alternates {
             return self.targets.clone();
         }
         let step = u64::from(self.step.min(self.steps.saturating_sub(1)));
-        let is_even = (4 * step / u64::from(self.steps.max(1))).is_multiple_of(2);
-        let first = self.targets.reference();
-        Targets::One(if is_even { first } else { first.opposite() })
+        let quarter = 4 * step / u64::from(self.steps.max(1));
+        let first_target = self.targets.reference();
+        Targets::One(if quarter.is_multiple_of(2) {
+            first_target
+        } else {
+            first_target.opposite()
+        })
     }
 
     /// Elapsed fraction of the episode, in [0, 1].
@@ -63,21 +67,23 @@ impl EpisodeSchedule {
     }
 }
 
-/// The seeds of an environment's episodes: the first is the environment's own, and the others follow from it and from
+/// The flock seeds of an environment's episodes. The first is the environment's seed; the others are drawn from it and
 /// the episode's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct EpisodeSeeds {
+    /// Seed of the environment.
     seed: u64,
+    /// Number of the next episode, from 0.
     next: u64,
 }
 
 impl EpisodeSeeds {
-    /// Episodes of an environment with this seed.
+    /// The seeds of an environment with this seed, before its first episode.
     pub fn new(seed: u64) -> Self {
         Self { seed, next: 0 }
     }
 
-    /// The seed of the next episode's flock.
+    /// Returns the seed of the next episode's flock, and goes on to the episode after it.
     pub fn next_seed(&mut self) -> u64 {
         let episode = self.next;
         self.next += 1;

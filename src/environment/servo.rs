@@ -3,31 +3,33 @@
 /// A servo that moves once per control step and holds the rudder in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
-    /// Fraction of the difference to the command that a step closes.
-    follow: f64,
-    /// Largest change in a step.
-    most: f64,
+    /// Fraction of the difference between command and rudder by which the rudder moves in a step.
+    fraction: f64,
+    /// Largest change of the rudder in a step.
+    largest_change: f64,
 }
 
 impl Servo {
-    /// A servo with a time constant in s, and a fastest change in 1/s, for control steps of a length in s.
+    /// A servo with the time constant `lag_s` and the fastest change `rate_per_s` (`None`: any), for control steps of
+    /// `step_s`.
     pub fn new(lag_s: f64, rate_per_s: Option<f64>, step_s: f64) -> Self {
         Self {
-            follow: if lag_s > 0.0 {
+            fraction: if lag_s > 0.0 {
                 1.0 - libm::exp(-step_s / lag_s)
             } else {
                 1.0
             },
-            most: rate_per_s.map_or(f64::INFINITY, |rate| rate * step_s),
+            largest_change: rate_per_s.map_or(f64::INFINITY, |rate| rate * step_s),
         }
     }
 
-    /// The rudder after the step's move.
+    /// The rudder at which a step towards `command` ends, if it starts at `rudder`.
     pub fn moved(&self, rudder: f64, command: f64) -> f64 {
-        if self.follow == 1.0 && self.most >= 2.0 {
+        if self.fraction == 1.0 && self.largest_change >= 2.0 {
             return command;
         }
-        let change = self.follow * (command - rudder);
-        (rudder + change.clamp(-self.most, self.most)).clamp(-1.0, 1.0)
+        let change = self.fraction * (command - rudder);
+        let limited = change.clamp(-self.largest_change, self.largest_change);
+        (rudder + limited).clamp(-1.0, 1.0)
     }
 }

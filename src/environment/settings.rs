@@ -1,5 +1,5 @@
-//! Everything about an environment that is not the flock's own parameters, each option declared once. The bindings,
-//! their defaults and the documentation follow from this table.
+//! Options of an environment besides the flock's parameters, each declared once. The bindings, their defaults and the
+//! documentation follow from this table.
 
 use super::action::{self, ActionMode};
 use super::observation::{Block, Lens, ObservationLayout, Observer};
@@ -63,20 +63,20 @@ declare_fields! {
     autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";
 }
 
-/// An observer, with this layout, of flocks with these parameters.
+/// An observer with this layout for flocks with these parameters.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] for a layout that they cannot have.
+/// [`FlockError::Parameter`] for a layout that these flocks cannot have.
 pub(super) fn observer(
     layout: ObservationLayout,
     parameters: &FlockParameters,
 ) -> Result<Observer> {
     let observer = Observer::new(layout, parameters)?;
+    let has_normal_boats = parameters.n_leaders < parameters.n_boats;
     for block in [Block::Order, Block::LeanFeatures] {
-        let has_normal = parameters.n_leaders < parameters.n_boats;
+        let is_accepted = has_normal_boats || !layout.has(block);
         let accepted = "order parameters need a normal boat: n_boats > n_leaders";
-        let is_met = has_normal || !layout.has(block);
-        FlockError::unless(is_met, block.option(), true, accepted)?;
+        FlockError::unless(is_accepted, block.option(), true, accepted)?;
     }
     Ok(observer)
 }
@@ -93,14 +93,14 @@ impl EnvSettings {
         let duration = self.duration_s();
         let steps = duration * self.control_hz;
         let accepted = "at least one control step, at most 1e6 s";
-        let is_long_enough = duration <= 1e6 && (0.5..=1e9).contains(&steps);
-        FlockError::unless(is_long_enough, "episode_s", duration, accepted)?;
-        let shortest = 1.0 / self.control_hz;
-        let horizon = self.reward_horizon_s.unwrap_or(shortest);
-        let accepted = format!("at least one control step of {shortest} s");
+        let is_in_range = duration <= 1e6 && (0.5..=1e9).contains(&steps);
+        FlockError::unless(is_in_range, "episode_s", duration, accepted)?;
+        let step_s = 1.0 / self.control_hz;
+        let horizon = self.reward_horizon_s.unwrap_or(step_s);
+        let accepted = format!("at least one control step of {step_s} s");
         // With ten control steps per second, 0.1 s must be accepted in spite of rounding.
-        let is_whole = horizon >= (1.0 - 1e-9) * shortest;
-        FlockError::unless(is_whole, "reward_horizon_s", horizon, accepted)?;
+        let is_long_enough = horizon >= (1.0 - 1e-9) * step_s;
+        FlockError::unless(is_long_enough, "reward_horizon_s", horizon, accepted)?;
         self.bw_s.map_or(Ok(()), |bw_s| bw_s.check("bw_s"))?;
         self.target.check(parameters.n_leaders)?;
         self.observation.check()?;
@@ -137,32 +137,33 @@ impl EnvSettings {
             .map_or(1, |period| (period * self.control_hz).round() as u32)
     }
 
-    /// Time from an episode's start to the end of a number of control steps. Only the sum is rounded to a tick, so that
-    /// rounding errors of single steps do not add up.
+    /// Time from an episode's start to the end of its first `steps` control steps. Only the sum is rounded to a tick, so
+    /// that rounding errors of single steps do not add up.
     pub(crate) fn time_of(&self, steps: u32) -> Ticks {
         ticks(f64::from(steps) / self.control_hz)
     }
 
-    /// Factor of the weighted sum of a control step's terms.
+    /// The factor that turns the weighted sum of a control step's terms into its reward: the step's length over the
+    /// reward horizon.
     pub(crate) fn reward_factor(&self) -> f64 {
         self.reward_horizon_s
             .map_or(1.0, |horizon| 1.0 / (self.control_hz * horizon))
     }
+
     /// Checks one action.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for NaN and for choices that do not exist. Rudders beyond ±1 are
-    /// accepted: they are clipped.
+    /// [`FlockError::Parameter`] for NaN and for levels that do not exist. Numbers beyond ±1 are accepted and clipped.
     pub fn check_action(&self, action: f64) -> Result<()> {
         action::check(action, self.rudder_levels)
     }
 
-    /// The rudder of a checked action, in [−1, 1].
+    /// The value in [−1, 1] of a checked action: the action clipped, or the value of its level.
     pub fn command(&self, action: f64) -> f64 {
         action::command(action, self.rudder_levels)
     }
 
-    /// The servo, for control steps of this environment.
+    /// The rudder servo for control steps of this environment.
     pub fn servo(&self) -> Servo {
         Servo::new(
             self.rudder_lag_s,
@@ -171,7 +172,7 @@ impl EnvSettings {
         )
     }
 
-    /// The lens between the flock and the leaders; `None` if they see it as it is.
+    /// Flaws of the leaders' camera; `None` if leaders see the flock as it is.
     pub(crate) fn lens(&self) -> Option<Lens> {
         Lens::new(self.dropout_rate, self.delay_frames)
     }

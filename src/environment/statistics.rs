@@ -1,4 +1,4 @@
-//! Sums over an episode, and the summary given at its end.
+//! Sums over an episode, and the summary at its end.
 
 use super::reward::stored_terms;
 use super::{EpisodeSchedule, RewardTerm, RewardTerms};
@@ -13,11 +13,11 @@ use std::f64::consts::PI;
 
 /// A flock with a signed order above this moves in the target direction.
 pub const TOWARDS_TARGET: f64 = 0.5;
-/// Largest angle off the tangent at which a flock counts as ordered: as printed in eq. (7), and a wider one, since
+/// Largest angle in rad from the tangent at which a flock counts as ordered: the angle of eq. (7), and a wider one, since
 /// boats that slide along the wall head somewhat outward.
 pub const ORDERED_WITHIN: [f64; 2] = [PI / 20.0, PI / 4.0];
 
-/// Sums of the summarized quantities, or their means.
+/// Means of the summarized quantities, or their sums while the episode runs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Averages([f64; SUMMARIZED]);
 
@@ -29,16 +29,16 @@ impl Averages {
 }
 
 impl Serialize for Averages {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        by_name::write(self.named().collect::<Vec<_>>(), to)
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        by_name::write(self.named().collect::<Vec<_>>(), serializer)
     }
 }
 
 /// A quantity that is missing was not recorded: its mean is NaN.
 impl<'de> Deserialize<'de> for Averages {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut averages = Self([f64::NAN; SUMMARIZED]);
-        by_name::read(from, "the averages of an episode", |name, value| {
+        by_name::read(deserializer, "the averages of an episode", |name, value| {
             let index = summarized().position(|quantity| quantity.name == name);
             index.map(|index| averages.0[index] = value).is_some()
         })?;
@@ -49,24 +49,32 @@ impl<'de> Deserialize<'de> for Averages {
 /// Sums over the control steps of an episode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct EpisodeStatistics {
+    /// Sum of each reward term, mean over leaders.
     #[serde(with = "stored_terms")]
     terms: RewardTerms,
+    /// Sum of the rewards, mean over leaders.
     reward: f64,
+    /// Control steps in the analysis window.
     window_steps: u32,
+    /// Sums of the summarized quantities over these steps.
     averages: Averages,
+    /// How many of these steps have a signed order above [`TOWARDS_TARGET`].
     steps_towards_target: u32,
+    /// For each angle of [`ORDERED_WITHIN`], when the flock was ordered.
     ordering: [OrderingWatch; 2],
+    /// Observed numbers that were clipped.
     clipped: u64,
+    /// All observed numbers.
     observed: u64,
 }
 
 impl EpisodeStatistics {
-    /// Adds to the episode's reward, which is a mean over leaders.
+    /// Adds a reward, mean over leaders, to the episode's sum.
     pub(super) fn add_reward(&mut self, reward: f64) {
         self.reward += reward;
     }
 
-    /// Adds a leader's terms of one step, divided by the number of leaders.
+    /// Adds a leader's terms of one step times `share`, one over the number of leaders.
     pub(super) fn add_terms(&mut self, share: f64, terms: &RewardTerms) {
         for (sum, term) in self.terms.iter_mut().zip(terms) {
             *sum += share * term;
@@ -74,7 +82,7 @@ impl EpisodeStatistics {
     }
 
     /// Adds a step inside the analysis window.
-    pub(super) fn add_window(&mut self, boats: &Boats, target: Target) {
+    pub(super) fn add_window_step(&mut self, boats: &Boats, target: Target) {
         self.window_steps += 1;
         let values = summarized_values(boats, target);
         for (sum, value) in self.averages.0.iter_mut().zip(values) {
@@ -83,37 +91,42 @@ impl EpisodeStatistics {
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
-    /// Records the order at a time since the episode started; `is_late` marks the second half.
-    pub(super) fn watch_order(&mut self, order: &OrderParameters, time_s: f64, is_late: bool) {
+    /// Records the order at a time since the episode started, for the ordering times.
+    pub(super) fn record_order(
+        &mut self,
+        order: &OrderParameters,
+        time_s: f64,
+        is_second_half: bool,
+    ) {
         for (watch, within) in self.ordering.iter_mut().zip(ORDERED_WITHIN) {
-            watch.note(time_s, order, within, is_late);
+            watch.note(time_s, order, within, is_second_half);
         }
     }
 
-    /// Counts observed numbers, and how many of them were clipped.
+    /// Adds to the counts of observed and of clipped numbers.
     pub(super) fn count_clipped(&mut self, clipped: u32, observed: usize) {
         self.clipped += u64::from(clipped);
         self.observed += observed as u64;
     }
 
-    /// The summary of an episode with these statistics and this flock.
+    /// The summary of the episode with this schedule and flock.
     pub(super) fn summary(&self, schedule: &EpisodeSchedule, flock: &Flock) -> EpisodeSummary {
-        let substeps = flock.statistics();
+        let contact_statistics = flock.statistics();
         let steps = f64::from(schedule.step);
-        let window = f64::from(self.window_steps);
+        let window_steps = f64::from(self.window_steps);
         EpisodeSummary {
             flock_seed: schedule.flock_seed,
             bw_s: flock.parameters().bw_s,
             steps: schedule.step,
             total_reward: self.reward,
             terms: self.terms.map(|sum| sum / steps),
-            averages: Averages(self.averages.0.map(|sum| sum / window)),
-            share_towards_target: f64::from(self.steps_towards_target) / window,
+            averages: Averages(self.averages.0.map(|sum| sum / window_steps)),
+            share_towards_target: f64::from(self.steps_towards_target) / window_steps,
             ordering_times_s: self.ordering.map(|watch| watch.ordering_time_s()),
             clip_rate: self.clipped as f64 / self.observed.max(1) as f64,
-            worst_overlap_cm: substeps.worst_overlap_cm,
-            unsolved: substeps.unsolved,
-            halved_substeps: substeps.halved_substeps,
+            worst_overlap_cm: contact_statistics.worst_overlap_cm,
+            unsolved: contact_statistics.unsolved,
+            halved_substeps: contact_statistics.halved_substeps,
         }
     }
 }
@@ -121,19 +134,18 @@ impl EpisodeStatistics {
 impl EpisodeSummary {
     /// The summary by name. If the episode did not reach the analysis window, its means are left out instead of NaN.
     pub fn named(&self) -> Value {
-        let terms = RewardTerm::named(&self.terms);
+        let fields = named_fields!(self; flock_seed bw_s steps total_reward clip_rate
+            worst_overlap_cm unsolved halved_substeps);
+        let terms = ("reward_terms", RewardTerm::named(&self.terms).collect());
         let share = ("share_towards_target", self.share_towards_target);
         let means = self.averages.named().chain([share]);
         let means = means.filter(|(_, mean)| !mean.is_nan());
-        let [printed, wide] = self.ordering_times_s;
-        let first = named_fields!(self; flock_seed bw_s steps total_reward clip_rate
-            worst_overlap_cm unsolved halved_substeps);
-        let times = [("ordering_time_s", printed), ("ordering_time_wide_s", wide)];
+        let [narrow, wide] = self.ordering_times_s;
+        let times = [("ordering_time_s", narrow), ("ordering_time_wide_s", wide)];
         let numbers = means
             .chain(times)
             .map(|(name, number)| (name, number.into()));
-        let first = first.into_iter().chain([("reward_terms", terms.collect())]);
-        first.chain(numbers).collect()
+        fields.into_iter().chain([terms]).chain(numbers).collect()
     }
 }
 
@@ -146,7 +158,7 @@ pub struct EpisodeSummary {
     pub bw_s: f64,
     /// Control steps taken.
     pub steps: u32,
-    /// Sum of the rewards, mean over leaders.
+    /// Sum of the rewards over the episode, mean over leaders.
     pub total_reward: f64,
     /// Each reward term, mean over steps and leaders; NaN before the first step.
     #[serde(with = "stored_terms")]
@@ -156,8 +168,8 @@ pub struct EpisodeSummary {
     pub averages: Averages,
     /// Fraction of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
-    /// Ordering time (eq. 7) in s since the episode started, with the angle as printed, π/20, and with
-    /// π/4; infinite if the flock did not order.
+    /// Ordering times (eq. 7) in s since the episode started, for each angle of [`ORDERED_WITHIN`]; infinite if the flock
+    /// did not order.
     pub ordering_times_s: [f64; 2],
     /// Fraction of the observed numbers that were clipped at their bounds; 0 without leaders.
     pub clip_rate: f64,
