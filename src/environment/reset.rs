@@ -12,7 +12,7 @@ pub enum Start {
     /// At rest, placed at random from the episode's seed.
     #[default]
     Random,
-    /// A given state.
+    /// A state that the user gives.
     State(State),
     /// A flock's snapshot, with its backward duration.
     Snapshot {

@@ -8,7 +8,7 @@ use wide::f64x4;
 const AT_ONCE: usize = 4;
 /// Up to this many boats are found and sorted without branches.
 const FEW: usize = 16;
-/// A leader's search has as its limit the largest squared distance that the last search found, times this factor.
+/// A leader's search has a limit: the squared distance of the farthest wanted boat in its last search, times this factor.
 const GROWTH: f64 = 1.1;
 
 /// Finds the nearest boats; remembers the limits of the last search.
