@@ -27,7 +27,7 @@ pub struct Field<S: 'static> {
 /// Accepted values of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Range {
-    /// Whatever its type can hold.
+    /// Any value of the field's type.
     Any,
     /// Above 0, at most [`Range::LARGE`].
     Positive,
@@ -35,7 +35,7 @@ pub enum Range {
     NonNegative,
     /// Least and greatest number, and the range in words.
     Within(f64, f64, &'static str),
-    /// The range that other fields allow, in words.
+    /// A range that depends on other fields, in words.
     Dependent(&'static str),
 }
 
@@ -68,8 +68,8 @@ impl<S> Field<S> {
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
-    pub(crate) fn check(&self, of: &S) -> Result<()> {
-        let value = (self.get)(of);
+    pub(crate) fn check(&self, settings: &S) -> Result<()> {
+        let value = (self.get)(settings);
         match (value.number(), self.range.bounds()) {
             // A NaN lies in no range.
             (Some(number), Some((low, high))) if !(low..=high).contains(&number) => {
@@ -79,9 +79,7 @@ impl<S> Field<S> {
             _ => Ok(()),
         }
     }
-}
 
-impl<S> Field<S> {
     /// Accepted values in words.
     pub fn accepted(&self) -> String {
         let quoted = |names: fn() -> Vec<&'static str>| {
@@ -95,7 +93,7 @@ impl<S> Field<S> {
         }
     }
 
-    /// The declaration's fields by name, with the type in Python's words.
+    /// The declaration as values by name. Its kind is named by a Python type.
     #[cfg(feature = "python")]
     pub(crate) fn named(&self) -> Value
     where
@@ -113,26 +111,28 @@ impl<S> Field<S> {
                 format!("tuple of ({})", vec!["float"; columns.len()].join(", "))
             }
         };
-        let own = [
+        let computed = [
             ("kind", kind.into()),
             ("default", (self.get)(&S::default())),
             ("accepted", self.accepted().into()),
             ("doc", self.doc.trim().into()),
         ];
         let declared = super::named_fields!(self; name unit);
-        declared.into_iter().chain(own).collect()
+        declared.into_iter().chain(computed).collect()
     }
 
-    /// The values of some fields by name, in the order of documentation.
+    /// The values of these fields by name, in the given order.
     #[cfg(feature = "python")]
-    pub(crate) fn values(fields: &[Self], of: &S) -> Value {
-        let values = fields.iter().map(|field| (field.name, (field.get)(of)));
+    pub(crate) fn values(fields: &[Self], settings: &S) -> Value {
+        let values = fields
+            .iter()
+            .map(|field| (field.name, (field.get)(settings)));
         values.collect()
     }
 }
 
-/// Declares a struct of fields, each once: name, type, default, unit, range, where the default comes from unless it is
-/// chosen, and meaning. Its table, the bindings and the documentation follow.
+/// Declares a struct. A row declares each field once: meaning, name, type, default, unit, range, and the source of the
+/// default. The table `FIELDS`, the bindings and the documentation follow from the rows.
 macro_rules! declare_fields {
     ($(#[$meta:meta])* pub struct $struct:ident;
     $($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {
@@ -143,17 +143,17 @@ macro_rules! declare_fields {
         }
 
         impl serde::Serialize for $struct {
-            fn serialize<S: serde::Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
                 use serde::ser::SerializeMap;
-                let mut fields = to.serialize_map(Some(Self::FIELDS.len()))?;
+                let mut fields = serializer.serialize_map(Some(Self::FIELDS.len()))?;
                 $(fields.serialize_entry(stringify!($name), &self.$name)?;)+
                 fields.end()
             }
         }
 
         impl<'de> serde::Deserialize<'de> for $struct {
-            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-                $crate::by_name::fields(from)
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+                $crate::by_name::fields(deserializer)
             }
         }
 
@@ -182,9 +182,9 @@ macro_rules! declare_fields {
                 range: $range,
                 source: $source,
                 doc: concat!($($doc),+),
-                get: |of| $crate::parameters::Setting::value(&of.$name),
-                set: |of, value| {
-                    of.$name = $crate::parameters::Setting::from_value(stringify!($name), value)?;
+                get: |settings| $crate::parameters::Setting::value(&settings.$name),
+                set: |settings, value| {
+                    settings.$name = $crate::parameters::Setting::from_value(stringify!($name), value)?;
                     Ok(())
                 },
             },)+];

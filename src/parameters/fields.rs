@@ -117,7 +117,7 @@ impl FlockParameters {
         }
     }
 
-    /// Whether boats with other parameters have the same water: the pool and its obstacles.
+    /// Whether other parameters have the same pool and the same obstacles.
     pub(crate) fn has_same_water(&self, other: &Self) -> bool {
         (self.pool, &self.discs, &self.walls) == (other.pool, &other.discs, &other.walls)
     }
@@ -147,11 +147,12 @@ impl FlockParameters {
         self.check_timing()
     }
 
-    /// Gaps are differences of coordinates, and contacts are solved to 1e-10 cm/s.
+    /// The least tolerance is limited by the rounding of coordinates, and by contacts that are solved to 1e-10 cm/s.
     fn check_tolerance(&self) -> Result<()> {
         let outer = self.pool.outer_radius_cm;
-        let size = if outer.is_finite() { outer } else { 0.0 };
-        let reachable = Self::SMALLEST_TOLERANCE_CM.max(16.0 * f64::EPSILON * size);
+        let largest_coordinate = if outer.is_finite() { outer } else { 0.0 };
+        let rounding = 16.0 * f64::EPSILON * largest_coordinate;
+        let reachable = Self::SMALLEST_TOLERANCE_CM.max(rounding);
         let accepted = format!(
             "{reachable:e} cm or more, which double precision holds in this pool, or infinity: gaps are linearized once"
         );
@@ -186,8 +187,8 @@ impl FlockParameters {
     fn check_timing(&self) -> Result<()> {
         let cycle_s = self.fw_s + self.nop1_s + self.bw_s + self.nop2_s;
         let accepted = "a cycle of at least 1e-6 s (a single phase may last 0 s)";
-        let phases = "fw_s + nop1_s + bw_s + nop2_s";
-        FlockError::unless(cycle_s >= 1e-6, phases, cycle_s, accepted)?;
+        let cycle = "fw_s + nop1_s + bw_s + nop2_s";
+        FlockError::unless(cycle_s >= 1e-6, cycle, cycle_s, accepted)?;
         let (longest, scheme) = (self.scheme.longest_dt_s(), self.scheme.name());
         let accepted = format!("1e-6 to {longest} s, the stable range of scheme {scheme:?}");
         let is_stable = (1e-6..=longest).contains(&self.dt_s);

@@ -1,7 +1,7 @@
 //! Choices that users make by name.
 
-/// Declares an enum whose variants have public names; the parser's error lists the names. A choice may need a feature
-/// of the crate.
+/// Declares an enum whose variants have public names; the parser's error lists the names. A row that ends with
+/// `if "feature"` exists only with this feature of the crate.
 macro_rules! named_choice {
     ($(#[$meta:meta])* $visibility:vis enum $type:ident ($field:literal) {
         $($(#[doc = $doc:literal])+ $variant:ident = $name:literal $(if $feature:literal)?,)+
@@ -19,12 +19,12 @@ macro_rules! named_choice {
                 Self::ALL.iter().map(|choice| choice.name()).collect()
             }
 
-            /// Its meaning, for documentation.
+            /// The meaning of the choice, for documentation.
             pub fn doc(self) -> &'static str {
                 match self { $($(#[cfg(feature = $feature)])? Self::$variant => concat!($($doc),+),)+ }.trim_ascii_start()
             }
 
-            /// The public name.
+            /// The public name of the choice.
             pub const fn name(self) -> &'static str {
                 match self { $($(#[cfg(feature = $feature)])? Self::$variant => $name,)+ }
             }
@@ -43,14 +43,14 @@ macro_rules! named_choice {
         }
 
         impl serde::Serialize for $type {
-            fn serialize<S: serde::Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
-                to.serialize_str(Self::name(*self))
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+                serializer.serialize_str(Self::name(*self))
             }
         }
 
         impl<'de> serde::Deserialize<'de> for $type {
-            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-                let name = <String as serde::Deserialize>::deserialize(from)?;
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+                let name = <String as serde::Deserialize>::deserialize(deserializer)?;
                 name.parse().map_err(|error: $crate::error::FlockError| {
                     $crate::sealed_bytes::refused(error.to_string())
                 })

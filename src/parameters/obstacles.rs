@@ -38,9 +38,9 @@ macro_rules! obstacle_row {
 obstacle_row! {
     /// A disc that stands in the water.
     Disc in "discs" {
-        /// Its center in cm, world axes.
+        /// x of the center in cm.
         x_cm,
-        /// Its center in cm, world axes.
+        /// y of the center in cm.
         y_cm,
         /// Its radius in cm.
         radius_cm,
@@ -50,18 +50,18 @@ obstacle_row! {
 obstacle_row! {
     /// A straight wall without thickness from one point to another.
     Wall in "walls" {
-        /// Where it starts, in cm, world axes.
+        /// x of the first end in cm.
         x0_cm,
-        /// Where it starts, in cm, world axes.
+        /// y of the first end in cm.
         y0_cm,
-        /// Where it ends, in cm, world axes.
+        /// x of the second end in cm.
         x1_cm,
-        /// Where it ends, in cm, world axes.
+        /// y of the second end in cm.
         y1_cm,
     }
 }
 
-/// A row of numbers.
+/// A row of numbers that have names.
 pub(super) trait Row: Copy {
     /// The field that holds such rows.
     const FIELD: &'static str;
@@ -69,20 +69,20 @@ pub(super) trait Row: Copy {
     const COLUMNS: &'static [&'static str];
     /// The numbers.
     fn numbers(&self) -> Vec<f64>;
-    /// The row from one number per column.
+    /// The row with these numbers; `None` unless there is one number per column.
     fn from_numbers(numbers: &[f64]) -> Option<Self>;
 }
 
 /// A row that describes an obstacle.
 pub(super) trait ObstacleRow: Row {
-    /// The reason why the shape is refused, if it is.
-    fn flaw(&self) -> Option<&'static str>;
-    /// The least and the largest distance of the obstacle's points from the pool's center.
+    /// The rule that the shape breaks, if it breaks one.
+    fn broken_rule(&self) -> Option<&'static str>;
+    /// The least and the greatest distance in cm of the obstacle's points from the pool's center.
     fn distances(&self) -> (f64, f64);
 }
 
 impl ObstacleRow for Disc {
-    fn flaw(&self) -> Option<&'static str> {
+    fn broken_rule(&self) -> Option<&'static str> {
         let radius = self.radius_cm;
         (!(radius > 0.0 && radius <= Range::LARGE)).then_some("a positive radius, at most 1e6")
     }
@@ -94,22 +94,23 @@ impl ObstacleRow for Disc {
 }
 
 impl ObstacleRow for Wall {
-    fn flaw(&self) -> Option<&'static str> {
+    fn broken_rule(&self) -> Option<&'static str> {
         (self.length_cm() < SHORTEST_CM).then_some("two ends at least 0.001 cm apart")
     }
 
     fn distances(&self) -> (f64, f64) {
         let (x, y) = (self.x1_cm - self.x0_cm, self.y1_cm - self.y0_cm);
-        let along = -(self.x0_cm * x + self.y0_cm * y) / (x * x + y * y);
-        let along = along.clamp(0.0, 1.0);
-        let nearest = libm::hypot(self.x0_cm + along * x, self.y0_cm + along * y);
-        let start = libm::hypot(self.x0_cm, self.y0_cm);
-        (nearest, start.max(libm::hypot(self.x1_cm, self.y1_cm)))
+        // The wall's point nearest to the center, as a fraction of the way from the first end to the second.
+        let fraction = -(self.x0_cm * x + self.y0_cm * y) / (x * x + y * y);
+        let fraction = fraction.clamp(0.0, 1.0);
+        let nearest = libm::hypot(self.x0_cm + fraction * x, self.y0_cm + fraction * y);
+        let first_end = libm::hypot(self.x0_cm, self.y0_cm);
+        (nearest, first_end.max(libm::hypot(self.x1_cm, self.y1_cm)))
     }
 }
 
 impl Wall {
-    /// Its length in cm.
+    /// The wall's length in cm.
     pub fn length_cm(&self) -> f64 {
         libm::hypot(self.x1_cm - self.x0_cm, self.y1_cm - self.y0_cm)
     }
@@ -132,7 +133,8 @@ impl<T: Row> Setting for Vec<T> {
         for row in rows {
             let numbers = match row {
                 Value::List(numbers) => numbers.iter().map(Value::number).collect(),
-                other if other.number().is_some() => Some(Vec::new()),
+                // A lone number counts as a row of the wrong length, not as a value of the wrong type.
+                lone if lone.number().is_some() => Some(Vec::new()),
                 _ => None,
             };
             let Some(numbers) = numbers else {
@@ -145,7 +147,7 @@ impl<T: Row> Setting for Vec<T> {
     }
 }
 
-/// Checks the obstacles of one kind: finite, well formed, and with a part in the water.
+/// Checks the obstacles of one kind: finite numbers, an accepted shape, and a part in the water.
 pub(super) fn check<T: ObstacleRow>(obstacles: &[T], pool: Pool) -> Result<()> {
     let (count, most) = (obstacles.len(), MOST_OBSTACLES);
     let accepted = format!("at most {most} rows");
@@ -162,14 +164,15 @@ pub(super) fn check<T: ObstacleRow>(obstacles: &[T], pool: Pool) -> Result<()> {
             .all(|number| number.abs() <= Range::LARGE);
         let columns = T::COLUMNS.join(", ");
         check(are_near, format!("({columns}), each from -1e6 to 1e6"))?;
-        let flaw = obstacle.flaw();
-        check(flaw.is_none(), flaw.unwrap_or_default().to_owned())?;
-        let (least, largest) = obstacle.distances();
+        let broken_rule = obstacle.broken_rule();
+        let accepted = broken_rule.unwrap_or_default().to_owned();
+        check(broken_rule.is_none(), accepted)?;
+        let (nearest, farthest) = obstacle.distances();
         let (inner, outer) = (pool.inner_radius_cm, pool.outer_radius_cm);
         let accepted = format!(
             "an obstacle with a part in the water, between {inner} and {outer} cm from the pool's center"
         );
-        check(least < outer && largest > inner, accepted)?;
+        check(nearest < outer && farthest > inner, accepted)?;
     }
     Ok(())
 }

@@ -27,13 +27,13 @@ impl Pool {
     pub(crate) const NAMED: [(&'static str, Self); 2] =
         [("wide", Self::WIDE), ("narrow", Self::NARROW)];
 
-    /// The pool of that name.
+    /// The pool with this name.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] lists the known names.
     pub fn named(name: &str) -> Result<Self> {
-        let found = Self::NAMED.iter().find(|(known, _)| *known == name);
-        found.map(|&(_, pool)| pool).ok_or_else(|| {
+        let entry = Self::NAMED.iter().find(|(known, _)| *known == name);
+        entry.map(|&(_, pool)| pool).ok_or_else(|| {
             let accepted = "\"wide\", \"narrow\" or (outer_radius_cm, inner_radius_cm)";
             FlockError::parameter("pool", format!("{name:?}"), accepted)
         })

@@ -27,11 +27,11 @@ named_choice! {
 }
 
 impl Physics {
-    /// The substep in s and the tolerance in cm that it sets; `None` leaves both alone.
+    /// The substep in s and the tolerance in cm of this choice; `None`: those of the parameters.
     ///
-    /// Source: the cheapest setting of `docs/speed_vs_error.md` whose order parameters lie within three
-    /// standard errors of the reference's, and the longest substep that divides a control step of 0.1 s; for
-    /// publications half the default substep, so that the error is a quarter.
+    /// Source: for training, the cheapest setting of `docs/speed_vs_error.md` whose order parameters lie within three
+    /// standard errors of the reference's, with the longest substep that divides a control step of 0.1 s; for
+    /// publications, half the default substep, which reduces the error to a quarter.
     pub fn stepping(self) -> Option<(f64, f64)> {
         match self {
             Self::Default => None,
@@ -41,7 +41,7 @@ impl Physics {
     }
 }
 
-/// The preset `simulation` with some changed fields, and the source of each.
+/// The preset `simulation` with changed fields, and the source of each changed value.
 macro_rules! changes {
     ($($name:ident = $value:expr, $source:literal;)*) => {{
         #[allow(unused_mut)]
@@ -52,9 +52,9 @@ macro_rules! changes {
 }
 
 impl Preset {
-    /// Critical noise of 27 boats of this preset in a named pool: the length of the backward phase, in
-    /// s, at which mean Ψ_o of leaderless runs falls through the middle between its ordered and its
-    /// disordered level. `None` for a pool in which it has not been measured.
+    /// Critical noise of 27 boats of this preset in a named pool: the duration in s of the backward phase at which the
+    /// mean Ψ_o of leaderless runs lies halfway between its ordered and its disordered level. `None` for a pool in which
+    /// it has not been measured.
     ///
     /// Source: `studies/critical_noise`, rounded to 0.01 s: results version 1 with 8 seeds of 30 minutes every 0.05 s;
     /// for the experiment version 2, every 0.2 s.
@@ -71,13 +71,14 @@ impl Preset {
 
     /// Source of this preset's value of a field; `None` for an unknown field.
     pub fn source(self, field: &str) -> Option<&'static str> {
-        let change = self.changes().1.iter().find(|(name, _)| *name == field);
-        let declared = FlockParameters::FIELDS
+        let (_, changes) = self.changes();
+        let change = changes.iter().find(|(name, _)| *name == field);
+        let declaration = FlockParameters::FIELDS
             .iter()
-            .find(|declared| declared.name == field);
+            .find(|declaration| declaration.name == field);
         change
             .map(|(_, source)| *source)
-            .or_else(|| declared.map(|field| field.source))
+            .or_else(|| declaration.map(|declaration| declaration.source))
     }
 
     /// The preset's parameters, and the sources of the values that differ from the preset `simulation`.

@@ -4,7 +4,7 @@ use super::Target;
 use super::value::{Kind, Setting, Value, text_of, wrong_kind};
 use crate::error::{FlockError, Result};
 
-/// Number of targets of a list that a message shows.
+/// Number of targets that a message shows of a list.
 const MOST_SHOWN: usize = 16;
 
 /// The targets of a flock's leaders.
@@ -17,7 +17,7 @@ pub enum Targets {
 }
 
 impl Targets {
-    /// The target of a leader; for other boats the reference direction.
+    /// The target of a leader. For normal boats it is the reference direction.
     pub fn of(&self, leader: usize) -> Target {
         match self {
             Self::One(target) => *target,
@@ -109,11 +109,11 @@ impl std::fmt::Display for Targets {
             Self::Each(targets) => {
                 let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
                 match names.get(..MOST_SHOWN) {
-                    Some(first) if names.len() > MOST_SHOWN => {
+                    Some(first_names) if names.len() > MOST_SHOWN => {
                         write!(
                             formatter,
                             "[{}, … {} in all]",
-                            first.join(", "),
+                            first_names.join(", "),
                             names.len()
                         )
                     }

@@ -9,7 +9,7 @@ use std::fmt;
 pub enum Value {
     /// None.
     None,
-    /// Yes or no.
+    /// True or false.
     Flag(bool),
     /// A whole number.
     Count(usize),
@@ -21,12 +21,12 @@ pub enum Value {
     List(Vec<Self>),
     /// Values by name.
     Map(Vec<(String, Self)>),
-    /// Something that no field has.
+    /// A value of a type that no field has.
     Other,
 }
 
 impl Value {
-    /// Real numbers.
+    /// A list of real numbers.
     pub(crate) fn reals(numbers: impl IntoIterator<Item = f64>) -> Self {
         Self::List(numbers.into_iter().map(Self::Real).collect())
     }
@@ -52,17 +52,18 @@ impl Value {
     }
 }
 
-macro_rules! made_of {
-    ($($given:ident: $type:ty => $value:expr;)+) => {
+/// Declares the types that convert to [`Value`].
+macro_rules! value_from {
+    ($($argument:ident: $type:ty => $value:expr;)+) => {
         $(impl From<$type> for Value {
-            fn from($given: $type) -> Self {
+            fn from($argument: $type) -> Self {
                 $value
             }
         })+
     };
 }
 
-made_of! {
+value_from! {
     flag: bool => Self::Flag(flag);
     count: usize => Self::Count(count);
     count: u32 => Self::Count(count as usize);
@@ -92,8 +93,8 @@ impl<T: Into<Self>> FromIterator<(&'static str, T)> for Value {
 
 /// Some fields of a struct by their names: pairs that [`Value`] collects.
 macro_rules! named_fields {
-    ($of:expr; $($name:ident)+) => {
-        [$((stringify!($name), $crate::parameters::Value::from($of.$name))),+]
+    ($struct:expr; $($name:ident)+) => {
+        [$((stringify!($name), $crate::parameters::Value::from($struct.$name))),+]
     };
 }
 
@@ -129,7 +130,7 @@ pub enum Kind {
     Count,
     /// A real number.
     Real,
-    /// Yes or no.
+    /// True or false.
     Flag,
     /// One of these names.
     Choice(fn() -> Vec<&'static str>),
@@ -137,15 +138,15 @@ pub enum Kind {
     Pool,
     /// One of these names, or a list with one of them per leader.
     Choices(fn() -> Vec<&'static str>),
-    /// Rows of real numbers with these names.
+    /// Rows of real numbers, with the names of the columns.
     Rows(&'static [&'static str]),
-    /// Values by these names.
+    /// A value for each of some of these names.
     Map(fn() -> Vec<&'static str>),
 }
 
-/// A type that fields have.
+/// A type of fields.
 pub(crate) trait Setting: Sized {
-    /// Kind of its values.
+    /// Kind of the values.
     const KIND: Kind;
 
     /// The value as users see it.
@@ -158,7 +159,7 @@ pub(crate) trait Setting: Sized {
     fn from_value(name: &'static str, value: &Value) -> Result<Self>;
 }
 
-/// The error for a value of another kind.
+/// The error for a field's value of the wrong kind.
 pub(crate) fn wrong_kind<T>(field: &'static str, accepted: impl Into<String>) -> Result<T> {
     let accepted = accepted.into();
     Err(FlockError::Kind { field, accepted })
@@ -185,7 +186,7 @@ impl Setting for usize {
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         match value {
             Value::Count(count) => Ok(*count),
-            // Arithmetic and tables give whole numbers as 8.0. The cast is exact: the bound rounds to 2^64.
+            // Arithmetic and tables may return the whole number 8 as 8.0. The cast is exact: the bound rounds to 2^64.
             Value::Real(real) if real.fract() == 0.0 && (0.0..Self::MAX as f64).contains(real) => {
                 Ok(*real as Self)
             }
@@ -236,7 +237,7 @@ impl<T: Setting> Setting for Option<T> {
     fn from_value(name: &'static str, value: &Value) -> Result<Self> {
         match value {
             Value::None => Ok(None),
-            given => T::from_value(name, given).map(Some),
+            some => T::from_value(name, some).map(Some),
         }
     }
 }
