@@ -9,14 +9,14 @@ use crate::geometry::Vec2;
 pub struct ContactForce {
     /// The contact, with its gap at the present poses.
     pub contact: Contact,
-    /// Point of the hull of `contact.boat` where the force acts, at the current poses.
+    /// Point of the hull of `contact.boat` on which the force acts, at the present poses.
     pub point: Vec2,
-    /// Mean force over the last substep in cm/s² (mass 1), along the normal on `contact.boat`.
+    /// Mean force on `contact.boat` over the last substep in cm/s² (mass 1), along the contact's normal.
     pub force: f64,
 }
 
 impl Flock {
-    /// Contacts and near-contacts of the last substep: gaps now, forces as means over the last change of velocity.
+    /// Contacts and near-contacts of the last substep, with their gaps at the present poses and their mean forces.
     pub fn contacts(&self) -> Vec<ContactForce> {
         let resolver = &self.integrator.contacts;
         let detector = &resolver.detector;
@@ -26,8 +26,8 @@ impl Flock {
             .iter()
             .zip(&resolver.solver.impulses)
             .enumerate()
-            .map(|(k, (contact, &impulse))| {
-                let gap = detector.moved_gap(&resolver.contacts, k, &self.integrator.boats);
+            .map(|(index, (contact, &impulse))| {
+                let gap = detector.moved_gap(&resolver.contacts, index, &self.integrator.boats);
                 let force = if impulse > 0.0 {
                     impulse / self.integrator.step_length_s
                 } else {

@@ -25,15 +25,15 @@ pub struct Flock {
     /// `dt_s` when the flock was made, which determines the paths of white noise.
     pub(super) noise_dt_s: f64,
     pub(crate) integrator: Integrator,
-    /// The motion before the last advance, to return to if it fails.
-    before: Box<Checkpoint>,
+    /// The motion before the last advance, which is restored if the advance fails.
+    before_advance: Box<Checkpoint>,
 }
 
 /// Work between two calls of `keep_going`, counted in boats moved, contacts and factored rows. It takes some
 /// milliseconds, unless a single substep takes longer.
 const WORK_BETWEEN_CHECKS: u64 = 20_000;
-/// Part of `dt_s` (one over this number) below which no substep is cut to protect walls without thickness.
-const SHORTEST_SHARE: Ticks = 1024;
+/// A substep that is too long is halved, but not below `dt_s` over this number.
+const SHORTEST_FRACTION: Ticks = 1024;
 const TOO_FAST: &str = "a boat is so fast that it might pass through a wall: it would move by more than half \
                         boat_radius_cm within dt_s / 1024; slower boats or a smaller dt_s help";
 const TOO_MUCH: &str = "the contacts of a substep are too many and too entangled to be solved; a smaller dt_s, slower \
@@ -71,11 +71,12 @@ impl Flock {
         Ok(flock)
     }
 
+    /// A flock whose boats have no poses yet.
     pub(crate) fn unplaced(parameters: FlockParameters, seed: u64) -> Self {
         Self {
             schedule: PhaseSchedule::new(&parameters),
             integrator: Integrator::new(&parameters, seed),
-            before: Box::default(),
+            before_advance: Box::default(),
             seed,
             noise_seed: None,
             time: 0,
@@ -108,8 +109,8 @@ impl Flock {
         self.noise_seed
     }
 
-    /// Continues with the noise of a branch. All flocks with the same noise seed have the same noise, which differs
-    /// from that of a flock whose own seed is this number. `None` leaves the noise as it is.
+    /// Continues with the noise of another seed. All flocks with the same noise seed get the same noise. A flock that
+    /// was made with this number as its seed gets other noise. `None` leaves the noise as it is.
     pub(super) fn branch(&mut self, noise_seed: Option<u64>) {
         if let Some(seed) = noise_seed {
             self.noise_seed = noise_seed;
@@ -132,7 +133,7 @@ impl Flock {
         &self.schedule
     }
 
-    /// Time in the cycle of phases.
+    /// The present phase, with the time since it started and the time until it ends.
     pub fn phase(&self) -> PhaseMoment {
         self.schedule.at(self.time)
     }
@@ -153,7 +154,8 @@ impl Flock {
         &self.integrator.velocities
     }
 
-    /// Speed of the water's current in cm/s at the time of the velocities, counter-clockwise positive (Section 4.5).
+    /// Speed of the water's current in cm/s (Section 4.5), at the time of the velocities. It is positive if
+    /// counter-clockwise.
     pub fn current_cm_s(&self) -> f64 {
         self.integrator.current_cm_s()
     }
@@ -193,7 +195,7 @@ impl Flock {
         self.advance_to(&|| true, end, steering)
     }
 
-    /// Time at which a duration that starts now ends.
+    /// End of a duration in s that starts now.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a bad duration.
@@ -229,8 +231,8 @@ impl Flock {
         })
     }
 
-    /// Advances to a time with checked steering, asking now and then whether to continue. Substeps end on multiples of dt,
-    /// on phase switches and at `end`.
+    /// Advances to a time with checked steering. Substeps end on multiples of dt, on phase switches and at `end`. Calls
+    /// `keep_going` now and then.
     ///
     /// # Errors
     /// [`FlockError::Solver`] if the motion left the range or the water, [`FlockError::Interrupted`] if `keep_going`
@@ -252,11 +254,11 @@ impl Flock {
         steering: Steering,
         watch: &mut impl FnMut(&Integrator),
     ) -> Result<()> {
-        self.integrator.save(&mut self.before);
+        self.integrator.save(&mut self.before_advance);
         let start = self.time;
         let result = self.take_substeps(keep_going, end, steering, watch);
         if result.is_err() {
-            self.integrator.return_to(&self.before);
+            self.integrator.return_to(&self.before_advance);
             self.time = start;
         }
         result
@@ -272,38 +274,40 @@ impl Flock {
     ) -> Result<()> {
         let dt = ticks(self.parameters.dt_s);
         let unsolved = self.integrator.statistics.unsolved;
-        let (mut seen, mut refilled) = (self.work(), 0);
+        let (mut work_at_check, mut budget_end) = (self.work(), 0);
         while self.time < end {
-            let grid = (self.time / dt + 1) * dt;
-            if grid > refilled {
+            let next_multiple = (self.time / dt + 1) * dt;
+            if next_multiple > budget_end {
                 let solver = &mut self.integrator.contacts.solver;
                 solver.refill(self.parameters.n_boats);
-                refilled = grid;
+                budget_end = next_multiple;
             }
-            self.take_substep(end.min(grid), steering)?;
+            self.take_substep(end.min(next_multiple), steering)?;
             watch(&self.integrator);
-            if self.work() - seen >= WORK_BETWEEN_CHECKS {
-                seen = self.work();
+            if self.work() - work_at_check >= WORK_BETWEEN_CHECKS {
+                work_at_check = self.work();
                 if !keep_going() {
                     return Err(FlockError::Interrupted);
                 }
             }
-            // With numbers out of range, contacts would fail only after long work, so stop here.
+            // Contacts of boats out of range would fail only after long work, so stop here.
             if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
                 break;
             }
         }
-        let fault = match self.integrator.left_the_water(&self.before.poses) {
-            _ if !self.integrator.is_in_range() => OUT_OF_RANGE.to_owned(),
-            Some(boat) => format!("boat {boat} {LEFT_THE_WATER}"),
-            None => return Ok(()),
-        };
-        Err(FlockError::Solver(fault))
+        if !self.integrator.is_in_range() {
+            return Err(FlockError::Solver(OUT_OF_RANGE.to_owned()));
+        }
+        match self.integrator.left_the_water(&self.before_advance.poses) {
+            Some(boat) => Err(FlockError::Solver(format!("boat {boat} {LEFT_THE_WATER}"))),
+            None => Ok(()),
+        }
     }
 
-    /// Takes a substep that ends at `end`, at the next phase switch, or before, if it has to be shortened.
+    /// Takes a substep that ends at `end` or at the next phase switch. A substep that is too long is halved until it can be
+    /// taken.
     fn take_substep(&mut self, end: Ticks, steering: Steering) -> Result<()> {
-        let shortest = (ticks(self.parameters.dt_s) / SHORTEST_SHARE).max(1);
+        let shortest = (ticks(self.parameters.dt_s) / SHORTEST_FRACTION).max(1);
         let moment = self.schedule.at(self.time);
         let mut substep = Substep {
             start: self.time,
@@ -334,14 +338,14 @@ impl Flock {
         moved + statistics.contacts + statistics.factored_rows
     }
 
-    /// About how many multiplications the contacts of all substeps have taken, failed ones included. Each whole substep
-    /// has a bound.
+    /// Approximate number of multiplications that the contacts of all substeps took, failed substeps included. It is
+    /// bounded for each interval of dt.
     pub fn contact_work(&self) -> u64 {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Time after about `boat_substeps` / n_boats more substeps, at most `end`. It is a multiple of dt, so that a stop
-    /// there does not change the run.
+    /// Time after about `boat_substeps` / n_boats more substeps, at most `end`. It is `end` or a multiple of dt, so that a
+    /// stop there does not change the run.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
@@ -357,7 +361,7 @@ impl Flock {
         OrderParameters::from_hulls(hulls, velocities)
     }
 
-    /// The recorded quantities of the normal boats, or of all, in the order of the table.
+    /// The recorded quantities of the normal boats, or of all, in the order of `QUANTITIES`.
     ///
     /// # Errors
     /// As for [`Self::order_parameters`].

@@ -1,8 +1,8 @@
-//! Random initial conditions: non-overlapping, uniform headings (Section 2.5's random start).
+//! Random initial conditions: hulls without overlap, with uniform headings (the random start of Section 2.5).
 //!
 //! Dilute flocks are placed by rejection: uniform positions and headings, one boat after another. If that fails, hulls
 //! start small at uniform positions, grow, and are pushed apart by the least displacement. Their headings stay random,
-//! except for what the pushing turns.
+//! but pushing turns them a little.
 
 use crate::contact::{ContactDetector, KeepGoing, push_apart};
 use crate::error::{FlockError, Result};
@@ -18,20 +18,20 @@ use std::f64::consts::{PI, TAU};
 const TRIES_PER_BOAT: usize = 200;
 /// Number of attempts to grow hulls before placement fails.
 const ATTEMPTS: usize = 6;
-/// Fraction of the water that hulls may cover; beyond it placement is not even tried.
+/// Fraction of the water that hulls may cover. If they would cover more, placement fails.
 const LARGEST_COVER: f64 = 0.92;
-/// Fraction of the water that hulls can cover at random.
-const WELL_COVERED: f64 = 0.78;
-/// Hull sizes, relative, at which growing hulls are pushed apart.
+/// Fraction of the water that randomly placed hulls can cover without overlap.
+const REACHABLE_COVER: f64 = 0.78;
+/// Sizes at which growing hulls are pushed apart, as fractions of the full size.
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
 const CLEARANCE: f64 = 1e-3;
 /// Area of open water per boat, in hull areas: as dilute as 20 boats in the pool `wide`.
 const OPEN_WATER_AREAS: f64 = 25.0;
-/// Bisections between an outer radius of open water that suffices and one that does not.
+/// Number of bisections between an outer radius of open water that suffices and one that does not.
 const HALVINGS: u32 = 10;
 /// Number of points that sample the area of obstacles, to about a percent.
-const SURVEYED: u32 = 1024;
+const SURVEY_POINTS: u32 = 1024;
 
 /// Places all boats of checked parameters.
 ///
@@ -54,7 +54,7 @@ pub(super) fn place(
     if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng, keep_going) {
         return Ok(poses);
     }
-    let (boats, attempts) = region.worth_growing(parameters.n_boats);
+    let (boats, attempts) = region.growth_plan(parameters.n_boats);
     let mut most = 0;
     for _ in 0..attempts {
         let poses = by_growth(parameters, boats, &region, &mut rng, keep_going);
@@ -78,24 +78,24 @@ struct Region {
     hull: Hull,
     pool: Pool,
     obstacles: Vec<Obstacle>,
-    /// Radii between which centers are drawn.
+    /// Radii in cm between which centers are drawn.
     inner: f64,
     outer: f64,
-    /// In cm², without the area of obstacles.
+    /// Area of the water in cm², without obstacles.
     area: f64,
     /// Number of draws of a boat's position after which rejection fails.
     tries: usize,
 }
 
 impl Region {
-    /// How many boats to grow, and in how many attempts. Hulls that cover nearly all of the water must overlap. Then
-    /// there is one attempt, which counts the boats without overlap for the error message.
-    fn worth_growing(&self, boats: usize) -> (usize, usize) {
-        let full = self.area / self.hull.area();
-        if boats as f64 <= LARGEST_COVER * full {
+    /// Number of boats to grow, and number of attempts. Hulls that cover nearly all of the water must overlap. Then a
+    /// single attempt with fewer boats counts those without overlap, for the error message.
+    fn growth_plan(&self, boats: usize) -> (usize, usize) {
+        let full_count = self.area / self.hull.area();
+        if boats as f64 <= LARGEST_COVER * full_count {
             (boats, ATTEMPTS)
         } else {
-            ((WELL_COVERED * full) as usize, 1)
+            ((REACHABLE_COVER * full_count) as usize, 1)
         }
     }
 
@@ -126,16 +126,18 @@ impl Region {
     /// Sets the region to the smallest disc about the center of open water in which an area in cm² is free of
     /// obstacles.
     fn enclose(&mut self, area: f64) {
-        let inner = self.inner * self.inner;
-        let share = |outer: f64| self.free_share(inner, outer * outer, self.hull.radius);
-        // Up to rounding, and to the spacing of the survey's points.
-        let suffices = |outer: f64| share(outer) * PI * (outer * outer - inner) >= 0.999 * area;
-        let least = (area / PI + inner).sqrt();
+        let inner_square = self.inner * self.inner;
+        let share = |outer: f64| self.free_share(inner_square, outer * outer, self.hull.radius);
+        // The factor allows for rounding, and for the spacing of the survey's points.
+        let suffices =
+            |outer: f64| share(outer) * PI * (outer * outer - inner_square) >= 0.999 * area;
+        let least = (area / PI + inner_square).sqrt();
         let (mut low, mut high) = (least, least);
         while !suffices(high) {
             (low, high) = (high, 2.0 * high);
         }
-        for _ in 0..if low < high { HALVINGS } else { 0 } {
+        let halvings = if low < high { HALVINGS } else { 0 };
+        for _ in 0..halvings {
             let middle = 0.5 * (low + high);
             if suffices(middle) {
                 high = middle;
@@ -147,30 +149,33 @@ impl Region {
         (self.outer, self.tries) = (high, tries.ceil() as usize);
     }
 
+    /// Area in cm² that hulls can cover.
     fn free_area(&self) -> f64 {
-        let (inner, outer) = (self.inner - self.hull.radius, self.outer + self.hull.radius);
-        let (inner, outer) = (inner.max(0.0) * inner.max(0.0), outer * outer);
-        PI * (outer - inner) * self.free_share(inner, outer, 0.0)
+        let inner = (self.inner - self.hull.radius).max(0.0);
+        let outer = self.outer + self.hull.radius;
+        let (inner_square, outer_square) = (inner * inner, outer * outer);
+        PI * (outer_square - inner_square) * self.free_share(inner_square, outer_square, 0.0)
     }
 
-    /// Fraction of the water between two squared radii that is at least this far from every obstacle, sampled at points
-    /// along a spiral.
-    fn free_share(&self, inner: f64, outer: f64, clearance: f64) -> f64 {
+    /// Fraction of the water between two squared radii that is at least `clearance` from every obstacle. It is sampled
+    /// at points along a spiral.
+    fn free_share(&self, inner_square: f64, outer_square: f64, clearance: f64) -> f64 {
         if self.obstacles.is_empty() {
             return 1.0;
         }
-        // The golden angle: every turn of the spiral falls between earlier ones.
+        // The golden angle spreads the points evenly: each turn of the spiral lies between earlier turns.
         let golden = PI * (3.0 - 5.0_f64.sqrt());
-        let free = (0..SURVEYED).filter(|&index| {
-            let share = (f64::from(index) + 0.5) / f64::from(SURVEYED);
+        let free = (0..SURVEY_POINTS).filter(|&index| {
+            let share = (f64::from(index) + 0.5) / f64::from(SURVEY_POINTS);
             let (sin, cos) = libm::sincos(golden * f64::from(index));
-            let point = Vec2::new(cos, sin) * (inner + share * (outer - inner)).sqrt();
+            let radius = (inner_square + share * (outer_square - inner_square)).sqrt();
+            let point = Vec2::new(cos, sin) * radius;
             self.is_open(point, clearance)
         });
-        free.count() as f64 / f64::from(SURVEYED)
+        free.count() as f64 / f64::from(SURVEY_POINTS)
     }
 
-    /// Whether a point is at least this far from every obstacle.
+    /// Whether a point is at least `clearance` from every obstacle.
     fn is_open(&self, point: Vec2, clearance: f64) -> bool {
         let mut obstacles = self.obstacles.iter();
         obstacles.all(|obstacle| obstacle.distance(point) >= clearance)
@@ -187,32 +192,33 @@ impl Region {
         )
     }
 
+    /// Whether all gaps between a boat and the walls and obstacles are larger than `clearance`.
     fn is_inside(&self, boat: &HullPose, clearance: f64) -> bool {
         let (outer, inner) = (self.pool.outer_radius_cm, self.pool.inner_radius_cm);
-        let is_clear_of_outer = |side| outer_wall_gap(boat, side, self.hull, outer).gap > clearance;
-        let clear_of_outer =
-            !self.pool.has_outer_wall() || [-1.0, 1.0].into_iter().all(is_clear_of_outer);
-        let clear_of_walls = clear_of_outer
-            && (!self.pool.has_inner_wall()
-                || inner_wall_gap(boat, self.hull, inner).gap > clearance);
-        clear_of_walls
-            && self.obstacles.iter().all(|obstacle| {
-                let mut clear = true;
-                obstacle.gaps(boat, self.hull, clearance, &mut |_, _| clear = false);
-                clear
-            })
+        let is_end_clear = |side| outer_wall_gap(boat, side, self.hull, outer).gap > clearance;
+        if self.pool.has_outer_wall() && ![-1.0, 1.0].into_iter().all(is_end_clear) {
+            return false;
+        }
+        let is_clear_of_inner = || inner_wall_gap(boat, self.hull, inner).gap > clearance;
+        if self.pool.has_inner_wall() && !is_clear_of_inner() {
+            return false;
+        }
+        self.obstacles.iter().all(|obstacle| {
+            let mut is_clear = true;
+            obstacle.gaps(boat, self.hull, clearance, &mut |_, _| is_clear = false);
+            is_clear
+        })
     }
 
+    /// Whether all gaps between a boat and the walls, obstacles and other boats are larger than `clearance`.
     fn is_clear(&self, boat: &HullPose, others: &[HullPose], clearance: f64) -> bool {
-        let mut clear = self.is_inside(boat, clearance);
-        for other in others {
-            if !clear {
-                break;
-            }
-            let (first, second) = ((boat, self.hull), (other, self.hull));
-            pair_gaps(first, second, clearance, |_, _| clear = false);
-        }
-        clear
+        self.is_inside(boat, clearance)
+            && others.iter().all(|other| {
+                let mut is_clear = true;
+                let (first, second) = ((boat, self.hull), (other, self.hull));
+                pair_gaps(first, second, clearance, |_, _| is_clear = false);
+                is_clear
+            })
     }
 
     /// Number of boats that can be placed in turn without overlapping those already placed.
@@ -228,15 +234,15 @@ impl Region {
     }
 }
 
-/// Adds boats one by one; `None` if one finds no free position.
+/// Adds boats one by one at random; `None` if a boat finds no free position.
 fn by_rejection(
     boats: usize,
     region: &Region,
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Option<Vec<Pose>> {
-    // Adding stadiums at random stalls near half the area, so it is not tried there. Its quadratic search would also be
-    // slow for very large flocks, for which growing works.
+    // Near half the area, adding hulls at random stalls. For very large flocks its quadratic search would be slow, and
+    // growing works.
     if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
@@ -255,6 +261,7 @@ fn by_rejection(
     (poses.len() == boats).then_some(poses)
 }
 
+/// Lets small hulls grow and pushes them apart. Hulls may still overlap at the end.
 fn by_growth(
     parameters: &FlockParameters,
     boats: usize,
@@ -262,19 +269,19 @@ fn by_growth(
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Vec<Pose> {
-    let mut start = || loop {
+    let mut draw_start = || loop {
         let pose = region.draw(rng);
         // A hull that starts deep inside an obstacle of open water would have to move far.
         if region.pool.has_outer_wall() || region.is_open(pose.position, region.hull.radius) {
             return pose;
         }
     };
-    let mut poses: Vec<Pose> = (0..boats).map(|_| start()).collect();
+    let mut poses: Vec<Pose> = (0..boats).map(|_| draw_start()).collect();
     for size in GROWTH {
-        // The last sizes are a little more than the hull, so that gaps stay open.
-        let radius = parameters.boat_radius_cm * size * (1.0 + CLEARANCE);
+        // The last size is a little more than the hull's, so that gaps stay open.
+        let boat_radius_cm = parameters.boat_radius_cm * size * (1.0 + CLEARANCE);
         let grown = FlockParameters {
-            boat_radius_cm: radius,
+            boat_radius_cm,
             ..parameters.clone()
         };
         let mut detector = ContactDetector::new(&grown);

@@ -68,7 +68,7 @@ pub trait Real: Copy + Default + nalgebra::RealField {}
 impl Real for f64 {}
 impl Real for f32 {}
 
-/// Contacts that carried a force, sample after sample.
+/// The contacts that carried a force, sample after sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactSamples {
     /// Number of contacts in each sample.
@@ -79,11 +79,11 @@ pub struct ContactSamples {
 
 impl ContactSamples {
     fn push(&mut self, flock: &Flock) {
-        let before = self.contacts.len();
+        let earlier = self.contacts.len();
         let contacts = flock.contacts().into_iter();
         self.contacts
             .extend(contacts.filter(|contact| contact.force > 0.0));
-        self.count.push(self.contacts.len() - before);
+        self.count.push(self.contacts.len() - earlier);
     }
 }
 
@@ -100,10 +100,10 @@ pub struct Recording<T> {
     pub pose: Vec<T>,
     /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
     pub velocity: Vec<T>,
-    /// Rudder commands of the leaders, sample after sample: the commands held up to each time, or, under the
-    /// steering law, its commands at the recorded poses.
+    /// Rudder commands of the leaders, sample after sample: those held until the sample's time or, if the steering law
+    /// steers, its commands at the recorded poses.
     pub rudder: Vec<f64>,
-    /// Recorded quantities of the normal boats; all NaN without any.
+    /// Recorded quantities of the normal boats; NaN in a flock without normal boats.
     pub order: Vec<Recorded>,
     /// Contacts, if they are recorded.
     pub contacts: Option<ContactSamples>,
@@ -113,28 +113,30 @@ impl<T: Real> Recording<T> {
     /// Recordings beyond this many bytes (16 GiB) are taken for a mistake.
     pub const MOST_BYTES: u64 = 16 << 30;
 
-    /// An empty recording with memory for a run.
+    /// An empty recording with reserved memory for a run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if that is more than [`Self::MOST_BYTES`], or more than the memory left.
+    /// [`FlockError::Parameter`] if the run needs more than [`Self::MOST_BYTES`], or more than the free memory.
     pub fn with_capacity_for(sampling: &Sampling, parameters: &FlockParameters) -> Result<Self> {
         let samples = sampling.count();
-        let state = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
-        let rudders = parameters.n_leaders * size_of::<f64>();
-        let other = (size_of::<Recorded>() + size_of::<f64>() + 2 + rudders) as u64;
-        let bytes = samples.saturating_mul(state + other);
+        let bytes_of_poses_and_velocities = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
+        let bytes_of_rudders = parameters.n_leaders * size_of::<f64>();
+        let bytes_of_time_and_order = size_of::<Recorded>() + size_of::<f64>() + 2;
+        let other_bytes = (bytes_of_time_and_order + bytes_of_rudders) as u64;
+        let bytes = samples.saturating_mul(bytes_of_poses_and_velocities + other_bytes);
         let mut recording = Self::default();
         let fits = bytes <= Self::MOST_BYTES && recording.reserve(samples, parameters).is_some();
-        let found = format!("{} samples of {} boats", samples, parameters.n_boats);
+        let run = format!("{samples} samples of {} boats", parameters.n_boats);
         let accepted = format!(
-            "a recording of {bytes} bytes does not fit; at most {} bytes, and the memory there is: record a shorter run, \
-             at a lower rate or in float32",
+            "a recording of {bytes} bytes does not fit; at most {} bytes, and no more than the free memory: record a \
+             shorter run, at a lower rate or in float32",
             Self::MOST_BYTES
         );
-        FlockError::unless(fits, "duration_s * sample_hz", found, accepted)?;
+        FlockError::unless(fits, "duration_s * sample_hz", run, accepted)?;
         Ok(recording)
     }
 
+    /// Reserves memory for samples; `None` if there is too little.
     fn reserve(&mut self, samples: u64, parameters: &FlockParameters) -> Option<()> {
         let samples = usize::try_from(samples).ok()?;
         let numbers = samples.checked_mul(parameters.n_boats)?.checked_mul(3)?;
@@ -148,8 +150,8 @@ impl<T: Real> Recording<T> {
         self.velocity.try_reserve_exact(numbers).ok()
     }
 
-    /// Takes a sample of a flock in its present state. `rudder` holds the leaders' commands; with `None` they
-    /// follow the steering law.
+    /// Adds a sample of a flock in its present state. `rudder` holds the leaders' commands; `None`: they follow the
+    /// steering law.
     pub fn push(&mut self, flock: &Flock, rudder: Option<&[f64]>) {
         self.time_s.push(flock.time_s());
         self.phase.push(flock.phase().phase);
@@ -166,7 +168,9 @@ impl<T: Real> Recording<T> {
         let leaders = 0..flock.parameters().n_leaders;
         match rudder {
             Some(rudder) => self.rudder.extend(rudder),
-            None => self.rudder.extend(leaders.map(|k| flock.steering_law(k))),
+            None => self
+                .rudder
+                .extend(leaders.map(|leader| flock.steering_law(leader))),
         }
         self.order
             .push(flock.recorded(false).unwrap_or([f64::NAN; RECORDED]));
@@ -179,7 +183,7 @@ impl<T: Real> Recording<T> {
 /// Reason for a pause of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pause {
-    /// The allowed amount of work is done; the run can continue at any time.
+    /// The requested amount of work is done; the run can continue at any time.
     Work,
     /// A control step starts: [`Recorder::steer`] may set other rudder commands.
     Control,
@@ -191,23 +195,27 @@ pub enum Pause {
 #[derive(Debug, Clone)]
 struct Control {
     hz: f64,
-    control_steps: u64,
+    /// Number of control steps that have started.
+    started_steps: u64,
     rudder: Vec<f64>,
 }
 
 impl Control {
-    fn next(&self) -> Ticks {
-        ticks(self.control_steps as f64 / self.hz)
+    /// When the next control step starts, counted from the start of the run.
+    fn next_start(&self) -> Ticks {
+        ticks(self.started_steps as f64 / self.hz)
     }
 }
 
-/// A flock that moves by a schedule while it is recorded.
+/// A run of a flock, with its changes and its control steps, that is recorded.
 #[derive(Debug, Clone)]
 pub struct Recorder<T> {
     flock: Flock,
     sampling: Sampling,
+    /// The flock's time at the start of the run.
     start: Ticks,
-    samples: u64,
+    samples_taken: u64,
+    /// The changes to come, with their times since the start of the run.
     changes: VecDeque<(Ticks, Change)>,
     control: Option<Control>,
     recording: Recording<T>,
@@ -223,7 +231,7 @@ impl<T: Real> Recorder<T> {
         Ok(Self {
             recording: Recording::with_capacity_for(&sampling, flock.parameters())?,
             start: flock.time(),
-            samples: 0,
+            samples_taken: 0,
             changes: VecDeque::new(),
             control: None,
             flock,
@@ -231,15 +239,15 @@ impl<T: Real> Recorder<T> {
         })
     }
 
-    /// Records contacts, too.
+    /// Records contacts as well.
     #[must_use]
     pub fn with_contacts(mut self) -> Self {
         self.recording.contacts = Some(ContactSamples::default());
         self
     }
 
-    /// Adds changes to the run. Times count from its start, and each change comes after the sample at its time. A
-    /// ramp may end with the run.
+    /// Adds changes to the run, each with its time since the start of the run. A change comes after a sample at the same
+    /// time. The last changes may come after the last sample, as at the end of a ramp.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a change after the end, and if no sample would show any of the changes.
@@ -252,15 +260,15 @@ impl<T: Real> Recorder<T> {
                 "changes before the last sample, at {} s",
                 seconds(last_sample)
             );
-            let found = format!("a change at {} s", seconds(refused));
-            let is_shown = first < last_sample && last <= self.sampling.end;
-            FlockError::unless(is_shown, "schedule", found, accepted)?;
+            let change = format!("a change at {} s", seconds(refused));
+            let are_accepted = first < last_sample && last <= self.sampling.end;
+            FlockError::unless(are_accepted, "schedule", change, accepted)?;
         }
         self.changes = changes.into();
         Ok(self)
     }
 
-    /// Holds rudders between control steps; they start amidships (0).
+    /// Holds rudder commands between control steps. They are 0 until [`Self::steer`] is called.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a rate out of range.
@@ -270,7 +278,7 @@ impl<T: Real> Recorder<T> {
         FlockError::unless(is_rate, "control_hz", control_hz, accepted)?;
         self.control = Some(Control {
             hz: control_hz,
-            control_steps: 0,
+            started_steps: 0,
             rudder: vec![0.0; self.flock.parameters().n_leaders],
         });
         Ok(self)
@@ -281,7 +289,7 @@ impl<T: Real> Recorder<T> {
         &self.flock
     }
 
-    /// The rudder commands that are held; none under the steering law.
+    /// The rudder commands that are held; empty if the steering law steers.
     pub fn rudder(&self) -> &[f64] {
         self.control
             .as_ref()
@@ -300,47 +308,50 @@ impl<T: Real> Recorder<T> {
         Ok(())
     }
 
-    /// Continues for about this many substeps times boats, to the next control step, or to the end. Pauses do not
-    /// change the run.
+    /// Continues until about `boat_substeps` (substeps times boats) are done, a control step starts, or the run ends.
+    /// Pauses do not change the run.
     ///
     /// # Errors
     /// As for [`Flock::advance_to`] and [`Flock::change`].
     pub fn run(&mut self, keep_going: KeepGoing, boat_substeps: u64) -> Result<Pause> {
-        let mut left = boat_substeps;
+        let mut work_left = boat_substeps;
         loop {
             let now = self.flock.time() - self.start;
             self.sample_and_change(now)?;
             if let Some(control) = &mut self.control
-                && control.next() <= now
+                && control.next_start() <= now
                 && !control.rudder.is_empty()
             {
-                control.control_steps += 1;
+                control.started_steps += 1;
                 return Ok(Pause::Control);
             }
-            if self.samples == self.sampling.count() {
+            if self.samples_taken == self.sampling.count() {
                 return Ok(Pause::End);
             }
-            if left == 0 {
+            if work_left == 0 {
                 return Ok(Pause::Work);
             }
-            let next = self.start + self.next_event();
             let steering = match &self.control {
                 Some(control) => Steering::Held(&control.rudder),
                 None => Steering::Law,
             };
-            let before = self.flock.statistics().substeps;
-            let stop = self.flock.stop_towards(next, left);
+            let substeps_before = self.flock.statistics().substeps;
+            let next_event = self.start + self.next_event();
+            let stop = self.flock.stop_towards(next_event, work_left);
             self.flock.advance_to(keep_going, stop, steering)?;
-            let substeps = self.flock.statistics().substeps - before;
-            left = left.saturating_sub(substeps * self.flock.parameters().n_boats as u64);
+            let substeps = self.flock.statistics().substeps - substeps_before;
+            work_left = work_left.saturating_sub(substeps * self.flock.parameters().n_boats as u64);
         }
     }
 
+    /// Takes the sample that is due, then applies the changes that are due.
     fn sample_and_change(&mut self, now: Ticks) -> Result<()> {
-        if self.samples < self.sampling.count() && self.sampling.time(self.samples) == now {
-            let held = self.control.as_ref().map(|control| &control.rudder[..]);
-            self.recording.push(&self.flock, held);
-            self.samples += 1;
+        let is_due = self.samples_taken < self.sampling.count()
+            && self.sampling.time(self.samples_taken) == now;
+        if is_due {
+            let rudder = self.control.as_ref().map(|control| &control.rudder[..]);
+            self.recording.push(&self.flock, rudder);
+            self.samples_taken += 1;
         }
         while let Some((_, change)) = self.changes.pop_front_if(|(time, _)| *time <= now) {
             self.flock.change(&change)?;
@@ -348,20 +359,21 @@ impl<T: Real> Recorder<T> {
         Ok(())
     }
 
+    /// When the next sample, change or control step comes, counted from the start of the run.
     fn next_event(&self) -> Ticks {
-        let mut next = self.sampling.time(self.samples);
+        let mut next = self.sampling.time(self.samples_taken);
         if let Some(&(time, _)) = self.changes.front() {
             next = next.min(time);
         }
         if let Some(control) = &self.control
             && !control.rudder.is_empty()
         {
-            next = next.min(control.next());
+            next = next.min(control.next_start());
         }
         next
     }
 
-    /// Seconds from the start of the run to where it is now.
+    /// Time in s since the start of the run.
     pub fn elapsed_s(&self) -> f64 {
         seconds(self.flock.time() - self.start)
     }

@@ -1,5 +1,5 @@
-//! Snapshots: a flock's whole state as sealed bytes, to continue from bit for bit. Reading checks the
-//! seal and then the state itself.
+//! Snapshots: a flock's whole state as bytes with a checksum. A restored flock continues bit for bit. Reading checks the
+//! bytes, and then the state in them.
 
 use super::flock::{Flock, LATEST};
 use crate::clock::Ticks;
@@ -43,14 +43,14 @@ impl Serialize for Stored {
 
 impl<'de> Deserialize<'de> for Stored {
     fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        from.deserialize_tuple(2, Parts).map(Self)
+        from.deserialize_tuple(2, StoredVisitor).map(Self)
     }
 }
 
-/// Reads the parts of a snapshot.
-struct Parts;
+/// Reads a snapshot and, if the water has inertia, its speed.
+struct StoredVisitor;
 
-impl<'de> Visitor<'de> for Parts {
+impl<'de> Visitor<'de> for StoredVisitor {
     type Value = Snapshot;
 
     fn expecting(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
@@ -58,10 +58,10 @@ impl<'de> Visitor<'de> for Parts {
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> std::result::Result<Snapshot, A::Error> {
-        let ended = || A::Error::invalid_length(0, &self);
-        let mut state: Snapshot = parts.next_element()?.ok_or_else(ended)?;
+        let too_short = || A::Error::invalid_length(0, &self);
+        let mut state: Snapshot = parts.next_element()?.ok_or_else(too_short)?;
         if state.has_inert_water() {
-            state.motion.water_cm_s = parts.next_element()?.ok_or_else(ended)?;
+            state.motion.water_cm_s = parts.next_element()?.ok_or_else(too_short)?;
         }
         Ok(state)
     }
@@ -72,27 +72,27 @@ impl Snapshot {
         self.parameters.current_relaxation_s > 0.0
     }
 
-    /// The flock's parameters with the step that it was made with.
-    fn as_made(&self) -> FlockParameters {
+    /// The flock's parameters with the `dt_s` that it was made with.
+    fn parameters_as_made(&self) -> FlockParameters {
         FlockParameters {
             dt_s: self.noise_dt_s,
             ..self.parameters.clone()
         }
     }
 
-    /// A state that a flock can hold: right sizes, everything finite, indices in range.
+    /// Returns the snapshot if a flock can have its state: numbers of boats agree, and all values are in range.
     fn checked(self) -> Result<Self> {
         self.parameters.check()?;
-        self.as_made().check()?;
+        self.parameters_as_made().check()?;
         let n = self.parameters.n_boats;
         let motion = &self.motion;
         let last = &motion.last;
         let (reference, cutoff) = &motion.neighbor_reference;
-        let none_or_all = |vectors: usize| vectors == 0 || vectors == n;
-        let sizes = motion.poses.len() == n
+        let is_zero_or_n = |length: usize| length == 0 || length == n;
+        let fits_flock = motion.poses.len() == n
             && motion.velocities.len() == n
-            && none_or_all(last.persistent_acceleration.len())
-            && none_or_all(reference.len())
+            && is_zero_or_n(last.persistent_acceleration.len())
+            && is_zero_or_n(reference.len())
             && last
                 .rudder
                 .as_ref()
@@ -104,32 +104,36 @@ impl Snapshot {
                 .iter()
                 .all(|entry| (entry.boat as usize) < n);
         let vectors = last.persistent_acceleration.iter().chain(reference);
-        let finite = motion.poses.iter().all(Pose::is_in_range)
+        let is_in_range = motion.poses.iter().all(Pose::is_in_range)
             && motion.velocities.iter().all(Velocity::is_in_range)
             && motion.warm_start.iter().all(CachedImpulse::is_finite)
-            && last.rudder.iter().flatten().all(|s| s.abs() <= 1.0)
+            && last
+                .rudder
+                .iter()
+                .flatten()
+                .all(|rudder| rudder.abs() <= 1.0)
             && motion.water_cm_s.abs() <= self.parameters.current_cap_cm_s
             && vectors
                 .flatten()
                 .chain([&motion.step_length_s, cutoff])
                 .all(|value| value.is_finite());
         let why = "the snapshot holds a state that no flock can have";
-        FlockError::unless_fitting(sizes && finite && self.time <= LATEST, why)?;
+        FlockError::unless_fitting(fits_flock && is_in_range && self.time <= LATEST, why)?;
         Ok(self)
     }
 }
 
-/// Stores a flock like its snapshot, but without a seal: whatever contains it is sealed.
+/// Stores a flock as in its snapshot, but without a checksum: the bytes that contain the flock have one.
 impl Serialize for Flock {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
-        Stored(self.state()).serialize(to)
+        Stored(self.snapshot_content()).serialize(to)
     }
 }
 
 impl<'de> Deserialize<'de> for Flock {
     fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        let state = Stored::deserialize(from)?.0.checked();
-        let state = state.map_err(|error| match error {
+        let checked = Stored::deserialize(from)?.0.checked();
+        let state = checked.map_err(|error| match error {
             FlockError::Snapshot(why) => refused(why),
             other => refused(other.to_string()),
         })?;
@@ -140,10 +144,10 @@ impl<'de> Deserialize<'de> for Flock {
 impl Flock {
     /// The whole state as bytes.
     pub fn snapshot(&self) -> Vec<u8> {
-        seal(&MAGIC, &Stored(self.state()))
+        seal(&MAGIC, &Stored(self.snapshot_content()))
     }
 
-    fn state(&self) -> Snapshot {
+    fn snapshot_content(&self) -> Snapshot {
         Snapshot {
             parameters: self.parameters.clone(),
             seed: self.seed,
@@ -154,9 +158,9 @@ impl Flock {
         }
     }
 
-    /// The flock of a checked state.
+    /// A flock from a checked snapshot, with its noise or that of another seed.
     fn from_checked(state: Snapshot, noise_seed: Option<u64>) -> Self {
-        let mut flock = Self::unplaced(state.as_made(), state.seed);
+        let mut flock = Self::unplaced(state.parameters_as_made(), state.seed);
         flock.replace_step(state.parameters.dt_s);
         flock.time = state.time;
         flock.integrator.return_to(&state.motion);
@@ -164,25 +168,25 @@ impl Flock {
         flock
     }
 
-    /// Continues from a snapshot of a flock with the same parameters (except for the target, which the snapshot holds),
-    /// with the noise of the snapshot or that of another seed.
+    /// Continues from a snapshot, with its noise or that of another seed. The snapshot's flock must have the same
+    /// parameters, except for the target, which is restored.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`]; the flock is unchanged then.
     pub fn restore(&mut self, bytes: &[u8], noise_seed: Option<u64>) -> Result<()> {
         let restored = Self::from_snapshot(bytes, noise_seed)?;
-        let same = FlockParameters {
-            target: self.parameters.target.clone(),
-            ..restored.parameters.clone()
+        let expected = FlockParameters {
+            target: restored.parameters.target.clone(),
+            ..self.parameters.clone()
         };
         let why = "the snapshot's flock has other parameters";
-        FlockError::unless_fitting(same == self.parameters, why)?;
+        FlockError::unless_fitting(restored.parameters == expected, why)?;
         *self = restored;
         Ok(())
     }
 
-    /// A flock from a snapshot alone, with the noise of the snapshot or that of another seed. The same noise seed
-    /// gives all flocks the same noise.
+    /// A flock from a snapshot alone, with its noise or that of another seed. All flocks with the same noise seed get
+    /// the same noise.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged snapshot.

@@ -1,4 +1,4 @@
-//! Flocks in a given state.
+//! Setting the poses, velocities and time of a flock.
 
 use super::flock::{Flock, LATEST};
 use crate::clock::{Ticks, seconds, ticks};
@@ -17,7 +17,7 @@ pub struct State {
     pub velocities: Vec<Velocity>,
     /// The flock's time in s.
     pub time_s: f64,
-    /// Whether hulls may overlap by more than a hundredth of their radius, which is more than contacts leave.
+    /// Whether hulls may overlap by more than a hundredth of their radius. Contacts leave smaller overlaps.
     pub allow_overlap: bool,
 }
 
@@ -38,9 +38,9 @@ impl Flock {
         Ok(flock)
     }
 
-    /// Overlap in cm that a state from outside may have. It is more than contacts leave, so that states taken from a
-    /// flock are accepted.
-    fn overlap_of_contacts(&self) -> f64 {
+    /// Largest overlap in cm of an accepted state. It is more than contacts leave, so that states taken from a flock are
+    /// accepted.
+    fn largest_overlap_cm(&self) -> f64 {
         0.01 * self.parameters.boat_radius_cm
     }
 
@@ -51,10 +51,10 @@ impl Flock {
         !(pool.inner_radius_cm - width..=pool.outer_radius_cm + width).contains(&distance)
     }
 
-    /// Refuses boats that overlap an obstacle by more than contacts would leave.
+    /// Refuses the flock if a boat overlaps an obstacle by more than contacts leave.
     pub(super) fn refuse_overlapped_obstacles(&self) -> Result<()> {
-        let allowed = self.overlap_of_contacts();
-        refuse_overlap(&mut self.integrator.clone(), allowed, |contact| {
+        let allowed_cm = self.largest_overlap_cm();
+        refuse_overlap(&mut self.integrator.clone(), allowed_cm, |contact| {
             matches!(contact.partner, Partner::Obstacle(_))
         })
     }
@@ -77,13 +77,13 @@ impl Flock {
         let mut integrator = self.integrator.clone();
         integrator.place(poses, velocities);
         if !allow_overlap {
-            refuse_overlap(&mut integrator, self.overlap_of_contacts(), |_| true)?;
+            refuse_overlap(&mut integrator, self.largest_overlap_cm(), |_| true)?;
         }
         (self.integrator, self.time) = (integrator, time);
         Ok(())
     }
 
-    /// Refuses a wrong number of boats, and poses and velocities that a flock may not have.
+    /// Refuses a wrong number of boats, and poses and velocities out of range.
     fn check_boats(&self, poses: &[Pose], velocities: &[Velocity]) -> Result<()> {
         let n = self.parameters.n_boats;
         for (field, length) in [("pose", poses.len()), ("velocity", velocities.len())] {
@@ -116,6 +116,7 @@ impl Flock {
     }
 }
 
+/// A checked time in ticks.
 fn time_from(time_s: f64) -> Result<Ticks> {
     let is_time = time_s >= 0.0 && time_s <= seconds(LATEST);
     let accepted = "a finite time of at least 0 s, at most 1e9 s";
@@ -123,11 +124,11 @@ fn time_from(time_s: f64) -> Result<Ticks> {
     Ok(ticks(time_s))
 }
 
-/// Refuses contacts that overlap by more than `allowed`, among those that a filter selects.
+/// Refuses boats whose selected contacts overlap by more than `allowed_cm`.
 fn refuse_overlap(
     integrator: &mut Integrator,
-    allowed: f64,
-    counts: impl Fn(&Contact) -> bool,
+    allowed_cm: f64,
+    is_selected: impl Fn(&Contact) -> bool,
 ) -> Result<()> {
     let mut contacts = Vec::new();
     integrator
@@ -137,12 +138,12 @@ fn refuse_overlap(
     integrator.contacts.forget();
     let deepest = contacts
         .iter()
-        .filter(|contact| counts(contact))
+        .filter(|contact| is_selected(contact))
         .min_by(|a, b| a.gap.gap.total_cmp(&b.gap.gap));
     match deepest {
-        Some(contact) if contact.gap.gap < -allowed => Err(FlockError::Overlap {
+        Some(contact) if contact.gap.gap < -allowed_cm => Err(FlockError::Overlap {
             what: match contact.partner {
-                Partner::Boat(second) => format!("boats {} and {second}", contact.boat),
+                Partner::Boat(other) => format!("boats {} and {other}", contact.boat),
                 Partner::OuterWall => format!("boat {} and the outer wall", contact.boat),
                 Partner::InnerWall => format!("boat {} and the inner wall", contact.boat),
                 Partner::Obstacle(number) => {

@@ -1,4 +1,4 @@
-//! A flock's step: changes it during a run while the noise stays the same, and measures the error that it causes.
+//! The length of a flock's substeps: its changes during a run with the same noise, and the error that it causes.
 
 use super::flock::Flock;
 use crate::clock::Ticks;
@@ -9,7 +9,7 @@ use crate::integrator::Steering;
 use crate::parameters::{FlockParameters, Noise};
 
 /// The error is the distance from a run with substeps this many times shorter. Substeps of half the length would not
-/// show it: the error of an impact depends on when in a substep it happens, and may be as large in both runs.
+/// show the error of an impact: it depends on when in a substep the impact happens, and may be as large in both runs.
 const FINER: f64 = 8.0;
 /// The shortest substep in s.
 const SHORTEST_S: f64 = 1e-6;
@@ -74,17 +74,18 @@ impl Flock {
         Ok(error)
     }
 
+    /// A copy of the flock with substeps an eighth as long.
     fn with_finer_step(&self) -> Result<Self> {
         let p = &self.parameters;
         let has_path = p.noise_scheme == Noise::White || p.c4 == 0.0;
         let accepted = "\"white\", or c4 = 0: noise that is drawn for each step has no path that shorter steps could \
                         follow, so that no error can be stated";
         FlockError::unless(has_path, "noise_scheme", p.noise_scheme.name(), accepted)?;
-        let least = FINER * SHORTEST_S;
+        let shortest = FINER * SHORTEST_S;
         let accepted = format!(
-            "{least:e} s or more: an error is stated against substeps of an eighth, at least {SHORTEST_S:e} s"
+            "{shortest:e} s or more: an error is stated against substeps of an eighth, at least {SHORTEST_S:e} s"
         );
-        FlockError::unless(p.dt_s >= least, "dt_s", p.dt_s, accepted)?;
+        FlockError::unless(p.dt_s >= shortest, "dt_s", p.dt_s, accepted)?;
         let mut finer = self.clone();
         finer.replace_step(p.dt_s / FINER);
         Ok(finer)
