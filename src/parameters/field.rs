@@ -131,8 +131,8 @@ impl<S> Field<S> {
     }
 }
 
-/// Declares a struct. A row declares each field once: meaning, name, type, default, unit, range, and the source of the
-/// default. The table `FIELDS`, the bindings and the documentation follow from the rows.
+/// Declares a struct from rows. A row declares one field: meaning, name, type, default, unit, range, and the source of
+/// the default. The table `FIELDS`, the bindings and the documentation follow from the rows.
 macro_rules! declare_fields {
     ($(#[$meta:meta])* pub struct $struct:ident;
     $($(#[doc = $doc:literal])+ $name:ident: $type:ty = $default:expr, $unit:literal, $range:expr, $source:literal;)+) => {

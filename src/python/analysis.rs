@@ -1,5 +1,4 @@
-//! Recorded quantities at many times, quantities that are derived from them, and the structure of recorded poses (t, n,
-//! 3).
+//! Quantities at many times: recorded ones, those derived from them, and those of structure, from poses (t, n, 3).
 
 use super::arrays::{rows_of, same_length, wrong_shape};
 use super::value::argument;
@@ -19,10 +18,10 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A number at each time.
+/// An array (t,) with a number at each time.
 type Series<'py> = PyResult<Bound<'py, PyArray1<f64>>>;
 
-/// Columns of the table's recorded quantities, by name: arrays (t,).
+/// The recorded quantities as columns by name, each an array (t,).
 pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     for (index, quantity) in QUANTITIES[..RECORDED].iter().enumerate() {
@@ -41,10 +40,12 @@ pub(super) fn order_columns<'py>(
     velocity: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (poses, velocities) = (samples(&pose, "pose")?, samples(&velocity, "velocity")?);
-    let ((times, boats), (found, others)) = (poses.shape(), velocities.shape());
-    if (times, boats) != (found, others) {
+    if velocities.shape() != poses.shape() {
+        let ((times, boats), (velocity_times, velocity_boats)) =
+            (poses.shape(), velocities.shape());
         let expected = format!("({times}, {boats}, 3), as pose has");
-        return Err(wrong_shape("velocity", &[found, others, 3], &expected));
+        let found = [velocity_times, velocity_boats, 3];
+        return Err(wrong_shape("velocity", &found, &expected));
     }
     columns(py, &poses.recorded(&velocities)?)
 }
@@ -59,6 +60,7 @@ pub(super) struct Orders<'py> {
 }
 
 impl Orders<'_> {
+    /// The columns as order parameters at each time. Order parameters without a column are 0.
     fn rows(&self) -> PyResult<Vec<OrderParameters>> {
         let (psi_o, phi_o) = (self.psi_o.as_array(), self.phi_o.as_array());
         let psi_v = self.psi_v.as_array();
@@ -74,6 +76,7 @@ impl Orders<'_> {
     }
 }
 
+/// The error for a quantity whose formula takes other arguments.
 fn wrong_formula(name: &str, accepted: &str) -> PyErr {
     FlockError::parameter("quantity", format!("{name:?}"), accepted).into()
 }
@@ -91,11 +94,11 @@ pub(super) fn derived_series<'py>(
     };
     let targets: Targets = argument(target, "target")?;
     let accepted = "\"cw\", \"ccw\", or a list with one of them per leader";
-    let is_any = targets != Targets::Each(Vec::new());
-    FlockError::unless(is_any, "target", &targets, accepted)?;
+    let has_target = targets != Targets::Each(Vec::new());
+    FlockError::unless(has_target, "target", &targets, accepted)?;
     let target = targets.reference();
-    let values = orders.rows()?.into_iter();
-    let values = values.map(|order| formula(&order, target));
+    let orders = orders.rows()?.into_iter();
+    let values = orders.map(|order| formula(&order, target));
     Ok(PyArray1::from_iter(py, values))
 }
 
@@ -111,8 +114,8 @@ pub(super) fn structure_series<'py>(
         return Err(wrong_formula(name, "a quantity of structure"));
     };
     let samples = samples(&pose, "pose")?;
-    let measured = |poses: Vec<Pose>| formula(&poses, &parameters);
-    let values: Vec<f64> = py.detach(|| samples.present().map(measured).collect());
+    let measure = |poses: Vec<Pose>| formula(&poses, &parameters);
+    let values: Vec<f64> = py.detach(|| samples.present().map(measure).collect());
     Ok(PyArray1::from_vec(py, values))
 }
 
@@ -126,13 +129,15 @@ pub(super) fn collective_states<'py>(
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let (orders, clusters) = (orders.rows()?, largest_cluster.to_vec()?);
     same_length("largest_cluster", clusters.len(), orders.len())?;
-    let states = orders.iter().zip(clusters);
-    let states =
-        states.map(|(order, share)| CollectiveState::from_order(order, speed_cm_s, share) as i64);
+    let times = orders.iter().zip(clusters);
+    let states = times.map(|(order, largest_cluster)| {
+        CollectiveState::from_order(order, speed_cm_s, largest_cluster) as i64
+    });
     Ok(PyArray1::from_iter(py, states))
 }
 
-/// Ordering time τ of a run, eq. (7), in s; infinite if the run does not order.
+/// Ordering time τ of a run, eq. (7), in s; infinite if the run does not order. `within` is the angle in rad off the
+/// tangent below which an orientation counts as tangential.
 #[pyfunction]
 pub(super) fn ordering_time_s(
     orders: Orders<'_>,
@@ -144,7 +149,8 @@ pub(super) fn ordering_time_s(
     Ok(ordering_time(&times, &orders, within))
 }
 
-/// Whether each of some times (s) lies in the analysis window, given the phase at each: names, shape (t,).
+/// Whether each time lies in the analysis window, from the times in s and the names of the phases at these times, both
+/// of shape (t,).
 #[pyfunction]
 pub(super) fn sampled_analysis_window<'py>(
     py: Python<'py>,
@@ -182,7 +188,7 @@ pub(super) fn lap_orientation<'py>(
     rows_of(py, angles.collect(), samples.shape().1)
 }
 
-/// Velocities (t·n, 3) of tracked boats with times of shape (t, n), and the number of steps that were too fast.
+/// Velocities (t·n, 3) of tracked boats, and the number of steps faster than `fastest_cm_s`. Times have shape (t, n).
 #[pyfunction]
 pub(super) fn track_velocities<'py>(
     py: Python<'py>,
@@ -193,13 +199,13 @@ pub(super) fn track_velocities<'py>(
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, usize)> {
     let (times, samples) = (time_s.as_slice()?, samples(&pose, "pose")?);
     same_length("time_s", times.len(), samples.rows().len())?;
-    let (found, broken) = samples.velocities(times, longest_s, fastest_cm_s);
-    let rows = found.rows().iter();
+    let (velocities, too_fast) = samples.velocities(times, longest_s, fastest_cm_s);
+    let rows = velocities.rows().iter();
     let numbers = rows.flat_map(|row| [row.position.x, row.position.y, row.heading]);
-    Ok((rows_of(py, numbers.collect(), 3)?, broken))
+    Ok((rows_of(py, numbers.collect(), 3)?, too_fast))
 }
 
-/// Poses, or velocities, from an array of shape (t, n, 3).
+/// Poses or velocities from an array of shape (t, n, 3).
 fn samples(array: &PyReadonlyArray3<'_, f64>, name: &str) -> PyResult<Samples> {
     let array = array.as_array();
     let (times, boats, numbers) = array.dim();

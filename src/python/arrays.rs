@@ -1,6 +1,6 @@
 //! Arrays of real numbers from Python, of any library, with a given shape.
 
-use super::error::refusal;
+use super::error::parameter_error;
 use super::value::{sequence_length, value_from, wrong_type};
 use numpy::{
     Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods,
@@ -13,20 +13,27 @@ use pyo3::types::PyInt;
 /// Largest number of axes of a NumPy array.
 const MOST_AXES: usize = 64;
 
-/// The shape of an array of any library.
+/// The shape of an array of any library; `None` for other objects.
 fn array_shape(object: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
     object.getattr("shape").ok()?.extract().ok()
 }
 
-/// The shape of an array-like, judged by its first items, up to a number of axes. An error if the first item is not a
-/// real number.
+/// The shape of an array-like, judged by its first items, up to a number of axes.
+///
+/// # Errors
+/// A `TypeError` if the first number is not real.
 fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<usize>> {
     if let Some(shape) = array_shape(object) {
-        let dtype = object.getattr("dtype").ok();
-        let kind = dtype.as_ref().and_then(|dtype| dtype.getattr("kind").ok());
-        return match (kind.and_then(|kind| kind.extract().ok()), dtype) {
-            (Some('f' | 'i' | 'u') | None, _) | (_, None) => Ok(shape),
-            (Some(_), Some(dtype)) => Err(wrong_dtype(name, dtype)),
+        let Ok(dtype) = object.getattr("dtype") else {
+            return Ok(shape);
+        };
+        let kind = dtype
+            .getattr("kind")
+            .and_then(|kind| kind.extract::<char>());
+        return match kind {
+            // Other libraries' dtypes have no kind.
+            Ok('f' | 'i' | 'u') | Err(_) => Ok(shape),
+            Ok(_) => Err(wrong_dtype(name, dtype)),
         };
     }
     match sequence_length(object) {
@@ -39,29 +46,32 @@ fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResu
     }
 }
 
+/// The error for an array of numbers that are not real.
 fn wrong_dtype(name: &str, dtype: impl std::fmt::Display) -> PyErr {
     let message = format!("{name} must be an array of real numbers, not of dtype {dtype}");
     PyTypeError::new_err(message)
 }
 
+/// A real number from an object.
 fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
     let number = value_from(object).number();
     number.ok_or_else(|| wrong_type(object, name, "a number"))
 }
 
-/// The numbers of an array-like of a given shape, row by row, and whether all are integers. Sequences are read item by
-/// item. NumPy would copy them before their shape is known, but a short tuple of views or a `range` may stand for more
-/// numbers than memory can hold.
+/// The numbers of an array-like of a given shape, row by row, and whether all are of integer type.
+///
+/// Sequences are read item by item. NumPy would copy them before their shape is known, and a short tuple of views or a
+/// `range` may stand for more numbers than memory can hold.
 struct Numbers {
     values: Vec<f64>,
-    are_whole: bool,
+    are_integers: bool,
 }
 
 impl Numbers {
     fn from_object(object: &Bound<'_, PyAny>, name: &str, expected: &[usize]) -> PyResult<Self> {
         let mut numbers = Self {
             values: Vec::with_capacity(expected.iter().product()),
-            are_whole: true,
+            are_integers: true,
         };
         if numbers.read(object, name, expected)? {
             return Ok(numbers);
@@ -70,22 +80,26 @@ impl Numbers {
         Err(wrong_shape(name, &found, &shape_text(expected)))
     }
 
-    /// Reads a part that should have this shape; returns false if it has another one.
-    fn read(&mut self, part: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<bool> {
-        if let Some(found) = array_shape(part) {
-            return Ok(found == shape && self.read_array(part, name)?);
+    /// Reads an item that should have this shape; returns whether it has.
+    fn read(&mut self, item: &Bound<'_, PyAny>, name: &str, shape: &[usize]) -> PyResult<bool> {
+        if let Some(item_shape) = array_shape(item) {
+            let has_shape = item_shape == shape;
+            if has_shape {
+                self.read_array(item, name)?;
+            }
+            return Ok(has_shape);
         }
-        match (sequence_length(part), shape) {
+        match (sequence_length(item), shape) {
             (None, []) => {
-                self.are_whole &= part.is_instance_of::<PyInt>();
-                self.values.push(real(part, name)?);
+                self.are_integers &= item.is_instance_of::<PyInt>();
+                self.values.push(real(item, name)?);
                 Ok(true)
             }
-            (None, _) if value_from(part).number().is_some() => Ok(false),
-            (None, _) => Err(wrong_type(part, name, "an array of real numbers")),
-            (Some(length), [first, rest @ ..]) if length == *first => {
+            (None, _) if value_from(item).number().is_some() => Ok(false),
+            (None, _) => Err(wrong_type(item, name, "an array of real numbers")),
+            (Some(length), [expected_length, inner_shape @ ..]) if length == *expected_length => {
                 for index in 0..length {
-                    if !self.read(&part.get_item(index)?, name, rest)? {
+                    if !self.read(&item.get_item(index)?, name, inner_shape)? {
                         return Ok(false);
                     }
                 }
@@ -95,7 +109,8 @@ impl Numbers {
         }
     }
 
-    fn read_array(&mut self, array: &Bound<'_, PyAny>, name: &str) -> PyResult<bool> {
+    /// Reads all numbers of an array.
+    fn read_array(&mut self, array: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
         let py = array.py();
         let mask = array.getattr("mask");
         // On other types `mask` may be a method, which has no `any`.
@@ -103,7 +118,7 @@ impl Numbers {
             && any.is_truthy()?
         {
             let message = format!("{name} is masked; fill its gaps first");
-            return Err(refusal(message));
+            return Err(parameter_error(message));
         }
         if array.hasattr("columns")? {
             return Err(wrong_type(array, name, "an array, as a table's to_numpy()"));
@@ -114,11 +129,11 @@ impl Numbers {
         if !matches!(dtype.kind(), b'f' | b'i' | b'u') {
             return Err(wrong_dtype(name, dtype));
         }
-        self.are_whole &= dtype.kind() != b'f';
+        self.are_integers &= dtype.kind() != b'f';
         let array = array.call_method1("astype", (numpy::dtype::<f64>(py),))?;
         let array = array.cast::<PyArrayDyn<f64>>()?.readonly();
         self.values.extend(array.as_array());
-        Ok(true)
+        Ok(())
     }
 }
 
@@ -141,8 +156,8 @@ pub(super) fn rows_from(
     Ok(numbers.as_chunks::<3>().0.to_vec())
 }
 
-/// Actions of a given shape, one number per leader: rudders, or numbers of levels if there are levels. A rudder of 1.0
-/// is not level 1, so levels must be integers. Messages call the actions by `name`.
+/// Actions of a given shape, one number per leader: rudders, or indices of levels if there are `levels`. A rudder of 1.0
+/// is not level 1, so indices must be integers. Messages call the actions by `name`.
 #[pyfunction]
 #[pyo3(signature = (actions, shape, levels, name="actions"))]
 pub(super) fn flat_actions<'py>(
@@ -151,17 +166,20 @@ pub(super) fn flat_actions<'py>(
     levels: Option<usize>,
     name: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let Numbers { values, are_whole } = Numbers::from_object(actions, name, &shape)?;
-    if let Some(levels) = levels.filter(|_| !are_whole) {
+    let Numbers {
+        values,
+        are_integers,
+    } = Numbers::from_object(actions, name, &shape)?;
+    if let Some(levels) = levels.filter(|_| !are_integers) {
         let last = levels.saturating_sub(1);
         let accepted = format!("whole numbers from 0 to {last}, the levels of the rudder");
-        return Err(refusal(format!("{name} must be {accepted}")));
+        return Err(parameter_error(format!("{name} must be {accepted}")));
     }
     Ok(PyArray1::from_vec(actions.py(), values))
 }
 
-/// Rows times a matrix plus a bias. Each row is summed alone and in one order; a matrix product would round a row
-/// differently at another index.
+/// Rows times a matrix plus a bias. Each row is summed by itself and in a fixed order, so that the sums do not depend on
+/// the other rows. A matrix product may round the same row differently at another index.
 #[pyfunction]
 pub(super) fn linear<'py>(
     rows: PyReadonlyArray2<'py, f32>,
@@ -179,10 +197,10 @@ pub(super) fn linear<'py>(
         .collect();
     let mut sums = numpy::ndarray::Array2::<f64>::zeros((rows.shape()[0], bias.len()));
     sums += &bias.as_array().mapv(f64::from);
-    for (row, mut sums) in rows.as_array().outer_iter().zip(sums.outer_iter_mut()) {
-        for (&seen, weights) in row.iter().zip(weight.chunks_exact(bias.len().max(1))) {
-            for (sum, weight) in sums.iter_mut().zip(weights) {
-                *sum += f64::from(seen) * weight;
+    for (row, mut row_sums) in rows.as_array().outer_iter().zip(sums.outer_iter_mut()) {
+        for (&input, weights) in row.iter().zip(weight.chunks_exact(bias.len().max(1))) {
+            for (sum, weight) in row_sums.iter_mut().zip(weights) {
+                *sum += f64::from(input) * weight;
             }
         }
     }
@@ -192,9 +210,10 @@ pub(super) fn linear<'py>(
 /// The error for an array of another shape.
 pub(super) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
     let found = shape_text(found);
-    refusal(format!("{name} has shape {found}, expected {expected}"))
+    parameter_error(format!("{name} has shape {found}, expected {expected}"))
 }
 
+/// A shape as NumPy writes it.
 fn shape_text(shape: &[usize]) -> String {
     match shape {
         [length] => format!("({length},)"),
@@ -202,7 +221,7 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Refuses a series of another length than its companions.
+/// Refuses an array of a length other than the expected one.
 pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
     if found == expected {
         return Ok(());
@@ -210,7 +229,7 @@ pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult
     Err(wrong_shape(name, &[found], &shape_text(&[expected])))
 }
 
-/// Numbers as rows of a given length.
+/// An array of rows from numbers in row order.
 pub(super) fn rows_of<T: Element>(
     py: Python<'_>,
     numbers: Vec<T>,

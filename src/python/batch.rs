@@ -5,7 +5,7 @@ use super::exclusive::{Exclusive, interruptible};
 use super::flock::{PyFlock, pose_numbers, state_from, velocity_numbers};
 use super::observation::layout_from;
 use super::parameters::PyParameters;
-use super::value::{argument, noise_seed_from, seed_from, set_given, value_from};
+use super::value::{argument, noise_seed_from, seed_from, set_fields, value_from};
 use crate::analysis::quantities::RECORDED;
 use crate::environment::observation::FlockFeatures;
 use crate::environment::{
@@ -25,10 +25,10 @@ type Step<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// Numbers with one row per flock, boat or leader.
+/// An array with one row per flock, boat or leader.
 type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
 
-/// Many flocks with their episodes, stepped at once; one row per leader, flock after flock.
+/// Many flocks with their episodes, stepped at once. Arrays have one row per leader, flock after flock.
 #[pyclass(name = "EnvBatch", module = "flockenv._core", frozen)]
 pub(super) struct PyEnvBatch(Exclusive<EnvBatch>);
 
@@ -37,8 +37,8 @@ impl PyEnvBatch {
         Self(Exclusive::new(batch, "the environment"))
     }
 
-    /// Reads a flock's environment.
-    fn env<T>(&self, flock: usize, read: impl FnOnce(&FlockEnv) -> T) -> Result<T> {
+    /// Applies `read` to a flock's environment.
+    fn read_env<T>(&self, flock: usize, read: impl FnOnce(&FlockEnv) -> T) -> Result<T> {
         let batch = self.0.read()?;
         let refuse = || {
             let accepted = format!("0 to {}", batch.envs().len() - 1);
@@ -47,34 +47,35 @@ impl PyEnvBatch {
         batch.envs().get(flock).map(read).ok_or_else(refuse)
     }
 
-    /// Reads a flock's episode.
-    fn episode_of<T>(&self, flock: usize, read: impl FnOnce(&Episode) -> T) -> Result<T> {
-        let found = self.env(flock, |env| env.episode().map(read))?;
-        found.ok_or_else(never_reset)
+    /// Applies `read` to a flock's episode.
+    fn read_episode<T>(&self, flock: usize, read: impl FnOnce(&Episode) -> T) -> Result<T> {
+        let result = self.read_env(flock, |env| env.episode().map(read))?;
+        result.ok_or_else(never_reset)
     }
 
-    /// Numbers of every flock's episode, as rows of a given length.
-    fn gathered<'py, T: Element>(
+    /// Collects numbers from every flock's episode, as rows of `columns` numbers.
+    fn collect_rows<'py, T: Element>(
         &self,
         py: Python<'py>,
         columns: usize,
         numbers: impl Fn(&FlockEnv, &Episode) -> Vec<T>,
     ) -> Rows<'py, T> {
         let batch = self.0.read()?;
-        let mut gathered = Vec::new();
+        let mut collected = Vec::new();
         for env in batch.envs() {
-            gathered.extend(numbers(env, env.episode().ok_or_else(never_reset)?));
+            collected.extend(numbers(env, env.episode().ok_or_else(never_reset)?));
         }
-        rows_of(py, gathered, columns)
+        rows_of(py, collected, columns)
     }
 }
 
+/// The error for a flock without an episode.
 fn never_reset() -> FlockError {
     FlockError::Episode("reset has not been called yet".to_owned())
 }
 
-/// A vector of `count` numbers, written by `fill`.
-fn filled(count: usize, fill: impl FnOnce(&mut [f32])) -> Vec<f32> {
+/// A vector of `count` numbers that `fill` writes.
+fn filled_vec(count: usize, fill: impl FnOnce(&mut [f32])) -> Vec<f32> {
     let mut numbers = vec![0.0; count];
     fill(&mut numbers);
     numbers
@@ -85,7 +86,7 @@ impl PyEnvBatch {
     #[new]
     fn new(parameters: Vec<FlockParameters>, options: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut settings = EnvSettings::default();
-        set_given(&mut settings, EnvSettings::FIELDS, options)?;
+        set_fields(&mut settings, EnvSettings::FIELDS, options)?;
         Ok(Self::wrap(EnvBatch::new(settings, parameters)?))
     }
 
@@ -104,7 +105,7 @@ impl PyEnvBatch {
     }
 
     fn parameters(&self, flock: usize) -> Result<PyParameters> {
-        self.env(flock, |env| PyParameters(env.parameters().clone()))
+        self.read_env(flock, |env| PyParameters(env.parameters().clone()))
     }
 
     /// Takes one decision in every flock. The actions are copied, since other Python threads may write to them
@@ -150,13 +151,13 @@ impl PyEnvBatch {
     fn reset(&self, py: Python<'_>, requests: Vec<Option<Bound<'_, PyDict>>>) -> PyResult<()> {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
-        let parsed = requests.iter().enumerate().map(|(flock, request)| {
-            let boats = batch.envs().get(flock);
-            let boats = boats.map_or(0, |env| env.parameters().n_boats);
+        let requests = requests.iter().enumerate().map(|(flock, request)| {
+            let env = batch.envs().get(flock);
+            let boats = env.map_or(0, |env| env.parameters().n_boats);
             let request = request.as_ref().map(|request| request_from(request, boats));
             request.transpose()
         });
-        let requests: Vec<_> = parsed.collect::<PyResult<_>>()?;
+        let requests: Vec<_> = requests.collect::<PyResult<_>>()?;
         interruptible(py, |keep_going| batch.reset_while(keep_going, &requests))
     }
 
@@ -170,7 +171,7 @@ impl PyEnvBatch {
     /// The target and the bw_s of a flock's future episodes.
     fn upcoming(&self, flock: usize) -> Result<Value> {
         let batch = self.0.read()?;
-        self.env(flock, |env| {
+        self.read_env(flock, |env| {
             let EnvSettings { target, bw_s, .. } = env.upcoming().settings(batch.settings());
             let bw_s = bw_s.map_or(env.parameters().bw_s.value(), |bw_s| bw_s.value());
             [("target", target.value()), ("bw_s", bw_s)]
@@ -185,7 +186,7 @@ impl PyEnvBatch {
             return Err(never_reset().into());
         }
         let size = batch.observation_size();
-        let observations = filled(batch.rows() * size, |out| batch.observe(out));
+        let observations = filled_vec(batch.rows() * size, |out| batch.observe(out));
         rows_of(py, observations, size)
     }
 
@@ -203,9 +204,9 @@ impl PyEnvBatch {
         rows_of(py, observations, layout.size())
     }
 
-    /// The signs of the leaders' targets now: (rows, 1), 1 for clockwise.
+    /// The signs of the leaders' present targets: (rows, 1), 1 for clockwise, −1 for counter-clockwise.
     fn target_signs<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, 1, |env, episode| {
+        self.collect_rows(py, 1, |env, episode| {
             let leaders = 0..env.parameters().n_leaders;
             let signs = leaders.map(|leader| episode.targets().of(leader).sign());
             signs.collect()
@@ -215,37 +216,36 @@ impl PyEnvBatch {
     /// The observations that the last episode ended with: (leaders, size).
     fn final_observation<'py>(&self, py: Python<'py>, flock: usize) -> Rows<'py, f32> {
         let size = self.0.read()?.observation_size();
-        let observations = self.env(flock, |env| env.final_observation().to_vec())?;
+        let observations = self.read_env(flock, |env| env.final_observation().to_vec())?;
         rows_of(py, observations, size)
     }
 
-    /// Features of every flock in the frame of its target: (flocks, features). With `each_leader`, the features of
-    /// each leader's flock in the frame of the leader's target: (rows, features).
+    /// Features of every flock in the frame of its target: (flocks, features). With `each_leader`, in the frame of each
+    /// leader's target: (rows, features).
     fn flock_features<'py>(&self, py: Python<'py>, each_leader: bool) -> Rows<'py, f32> {
-        self.gathered(py, FlockFeatures::SIZE, |env, _| {
+        self.collect_rows(py, FlockFeatures::SIZE, |env, _| {
             let leaders = env.parameters().n_leaders;
             let rows = if each_leader { leaders } else { 1 };
-            filled(rows * FlockFeatures::SIZE, |out| env.observe_features(out))
+            filled_vec(rows * FlockFeatures::SIZE, |out| env.observe_features(out))
         })
     }
 
-    /// Global states of every flock, which have equally many boats: (flocks, state size).
+    /// Global state of every flock: (flocks, state size). All flocks must have the same number of boats.
     fn states<'py>(&self, py: Python<'py>) -> Rows<'py, f32> {
-        let size = self.env(0, FlockEnv::state_size)?;
-        self.gathered(py, size, |env, _| {
-            filled(env.state_size(), |out| env.observe_state(out))
+        let size = self.read_env(0, FlockEnv::state_size)?;
+        self.collect_rows(py, size, |env, _| {
+            filled_vec(env.state_size(), |out| env.observe_state(out))
         })
     }
 
     /// Reward terms of the last step: (rows, terms).
     fn reward_terms<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, TERMS, |_, episode| episode.terms().concat())
+        self.collect_rows(py, TERMS, |_, episode| episode.terms().concat())
     }
 
-    /// The recorded quantities of the normal boats: a row per flock, a column per quantity; NaN for a flock without normal
-    /// boats.
+    /// The recorded quantities of the normal boats: (flocks, quantities). They are NaN for a flock without normal boats.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, RECORDED, |_, episode| {
+        self.collect_rows(py, RECORDED, |_, episode| {
             let recorded = episode.flock().recorded(false);
             recorded.unwrap_or([f64::NAN; RECORDED]).to_vec()
         })
@@ -253,7 +253,7 @@ impl PyEnvBatch {
 
     /// Poses of all boats, flock after flock.
     fn poses<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, 3, |_, episode| {
+        self.collect_rows(py, 3, |_, episode| {
             pose_numbers(episode.flock().poses()).collect()
         })
     }
@@ -261,52 +261,53 @@ impl PyEnvBatch {
     /// Velocities of all boats, flock after flock.
     fn velocities<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
         let numbers = |episode: &Episode| velocity_numbers(episode.flock().velocities()).collect();
-        self.gathered(py, 3, |_, episode| numbers(episode))
+        self.collect_rows(py, 3, |_, episode| numbers(episode))
     }
 
     /// Whether each flock is in the analysis window: (flocks, 1).
     fn in_analysis_window<'py>(&self, py: Python<'py>) -> Rows<'py, bool> {
-        self.gathered(py, 1, |_, episode| {
+        self.collect_rows(py, 1, |_, episode| {
             let flock = episode.flock();
             vec![flock.schedule().in_analysis_window(flock.time())]
         })
     }
 
-    /// Rudders as they stand: (rows, 1), positive counter-clockwise.
+    /// The leaders' present rudders: (rows, 1), positive counter-clockwise.
     fn rudders<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
-        self.gathered(py, 1, |_, episode| episode.rudders().to_vec())
+        self.collect_rows(py, 1, |_, episode| episode.rudders().to_vec())
     }
 
     /// Whether a flock has ever been given a seed.
     fn is_seeded(&self, flock: usize) -> Result<bool> {
-        self.env(flock, FlockEnv::is_seeded)
+        self.read_env(flock, FlockEnv::is_seeded)
     }
 
     /// Whether a flock has an episode under way.
     fn is_running(&self, flock: usize) -> Result<bool> {
         let is_running = |episode: &Episode| !episode.has_ended();
-        self.env(flock, |env| env.episode().is_some_and(is_running))
+        self.read_env(flock, |env| env.episode().is_some_and(is_running))
     }
 
     /// A copy of a flock.
     fn flock(&self, flock: usize) -> Result<PyFlock> {
-        self.episode_of(flock, |episode| PyFlock::wrap(episode.flock().clone()))
+        self.read_episode(flock, |episode| PyFlock::wrap(episode.flock().clone()))
     }
 
-    /// A flock's target, step, backward duration and seed.
+    /// Target, backward duration, seed and step of a flock's episode.
     fn episode(&self, flock: usize) -> Result<Value> {
-        self.episode_of(flock, |episode| {
+        self.read_episode(flock, |episode| {
             let schedule = episode.schedule();
             let target = ("target", schedule.targets().value());
             let bw_s = named_fields!(episode.flock().parameters(); bw_s);
-            let own = named_fields!(schedule; flock_seed step);
-            [target].into_iter().chain(bw_s).chain(own).collect()
+            let seed_and_step = named_fields!(schedule; flock_seed step);
+            let fields = [target].into_iter().chain(bw_s).chain(seed_and_step);
+            fields.collect()
         })
     }
 
     /// Summary of the last episode that reached its end.
     fn finished(&self, flock: usize) -> Result<Option<Value>> {
-        self.env(flock, |env| env.finished().map(EpisodeSummary::named))
+        self.read_env(flock, |env| env.finished().map(EpisodeSummary::named))
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
@@ -335,7 +336,7 @@ impl PyEnvBatch {
     }
 }
 
-/// The reset request for a flock with this number of boats.
+/// A reset request from options, for a flock with this number of boats.
 fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequest> {
     let mut request = ResetRequest::default();
     let (mut snapshot, mut noise_seed) = (None, None);
@@ -350,16 +351,20 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
             "noise_seed" => noise_seed = noise_seed_from(&value)?,
             other => {
                 let accepted = "target, bw_s, state, snapshot or noise_seed";
-                let found = format!("{other:?}");
-                return Err(FlockError::parameter("reset option", found, accepted).into());
+                let option = format!("{other:?}");
+                return Err(FlockError::parameter("reset option", option, accepted).into());
             }
         }
     }
-    let starts_twice = options.contains("state")? && options.contains("snapshot")?;
-    let noise_twice = options.contains("bw_s")? && options.contains("snapshot")?;
+    let has_snapshot = options.contains("snapshot")?;
     let accepted = "a snapshot alone: it brings its own state and bw_s along";
-    let is_alone = !starts_twice && !noise_twice;
-    FlockError::unless(is_alone, "reset options", "snapshot and others", accepted)?;
+    let contradicts = has_snapshot && (options.contains("state")? || options.contains("bw_s")?);
+    FlockError::unless(
+        !contradicts,
+        "reset options",
+        "snapshot and others",
+        accepted,
+    )?;
     if let Some(seed) = noise_seed.filter(|_| snapshot.is_none()) {
         let accepted = "a noise_seed only together with a snapshot";
         return Err(FlockError::parameter("noise_seed", seed, accepted).into());

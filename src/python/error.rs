@@ -1,5 +1,4 @@
-//! The exceptions that users meet. Only this file turns errors of the core into exceptions; elsewhere `?`
-//! does it.
+//! The exceptions that users meet. Other files convert errors of the core with `?`, which calls the conversion here.
 
 use crate::error::FlockError;
 use pyo3::exceptions::{
@@ -9,8 +8,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{IntoPyDict, PyTuple, PyType};
 
-/// Names and meanings of the exceptions. The first is the base of the others; each is a built-in
-/// exception, too.
+/// Names and docstrings of the exceptions. The first is the base of the others. Each also derives from a built-in
+/// exception.
 const DECLARED: [(&str, &str); 5] = [
     (
         "FlockError",
@@ -27,7 +26,8 @@ const DECLARED: [(&str, &str); 5] = [
     ),
     (
         "SolverError",
-        "The motion left the range of 1e9 (cm, cm/s, rad, rad/s).\n\n\
+        "The motion could not be continued: boats left the water or the range of 1e9 (cm, cm/s, rad, rad/s), moved \
+         too far in a substep, or had contacts that took too much work.\n\n\
          The flock is where it was before the call.",
     ),
     (
@@ -35,7 +35,7 @@ const DECLARED: [(&str, &str); 5] = [
         "A flock or an environment is at work in another thread: each thread needs one of its own.",
     ),
 ];
-/// Indices of the exceptions.
+/// Indices of the exceptions in `DECLARED`.
 const PARAMETER: usize = 1;
 const EPISODE: usize = 2;
 const SOLVER: usize = 3;
@@ -43,24 +43,25 @@ const IN_USE: usize = 4;
 
 static EXCEPTIONS: PyOnceLock<Vec<Py<PyType>>> = PyOnceLock::new();
 
+/// The exception classes, which the first call makes.
 fn exceptions(py: Python<'_>) -> PyResult<&Vec<Py<PyType>>> {
     EXCEPTIONS.get_or_try_init(py, || {
-        let mut made: Vec<Py<PyType>> = Vec::new();
+        let mut classes: Vec<Py<PyType>> = Vec::new();
         for (name, doc) in DECLARED {
-            let built_in = match made.len() {
+            let built_in = match classes.len() {
                 0 => py.get_type::<PyException>(),
                 PARAMETER => py.get_type::<PyValueError>(),
                 _ => py.get_type::<PyRuntimeError>(),
             };
-            let first = made.first().map(|first| first.bind(py).clone());
-            let bases = PyTuple::new(py, first.into_iter().chain([built_in]).collect::<Vec<_>>())?;
+            let base = classes.first().map(|base| base.bind(py).clone());
+            let bases = PyTuple::new(py, base.into_iter().chain([built_in]).collect::<Vec<_>>())?;
             let body = [("__module__", "flockenv.errors"), ("__doc__", doc)].into_py_dict(py)?;
-            // Made by `type`, as in Python's `class` statement, since an exception may have several
-            // bases.
+            // `type` makes the class, as Python's `class` statement does: unlike an exception declared with pyo3, it may
+            // have several bases.
             let class = py.get_type::<PyType>().call1((name, bases, body))?;
-            made.push(class.cast_into::<PyType>()?.unbind());
+            classes.push(class.cast_into::<PyType>()?.unbind());
         }
-        Ok(made)
+        Ok(classes)
     })
 }
 
@@ -71,11 +72,12 @@ pub(super) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// The `ParameterError` with a message.
-pub(super) fn refusal(message: String) -> PyErr {
-    raised(PARAMETER, message)
+pub(super) fn parameter_error(message: String) -> PyErr {
+    exception(PARAMETER, message)
 }
 
-fn raised(index: usize, message: String) -> PyErr {
+/// The exception of the class with this index.
+fn exception(index: usize, message: String) -> PyErr {
     Python::attach(|py| match exceptions(py) {
         Ok(classes) => PyErr::from_type(classes[index].bind(py).clone(), message),
         Err(failure) => failure,
@@ -96,6 +98,6 @@ impl From<FlockError> for PyErr {
             FlockError::Kind { .. } => return PyTypeError::new_err(error.to_string()),
             FlockError::Interrupted => return PyKeyboardInterrupt::new_err(()),
         };
-        raised(index, error.to_string())
+        exception(index, error.to_string())
     }
 }

@@ -39,6 +39,7 @@ impl<T> Exclusive<T> {
         self.unless_in_use(self.object.try_write())
     }
 
+    /// The guard of a lock that was tried, even if a panic has poisoned the lock.
     fn unless_in_use<G>(&self, lock: std::result::Result<G, TryLockError<G>>) -> Result<G> {
         match lock {
             Ok(object) => Ok(object),
@@ -51,26 +52,26 @@ impl<T> Exclusive<T> {
 /// Time between two checks of Python's signals.
 const SIGNAL_PERIOD: Duration = Duration::from_millis(20);
 
-/// Does work without the interpreter lock; the work ends if a signal's handler raises. It calls `keep_going` now and
-/// then. Python handles signals only in the calling thread: that thread checks for them in this call, and the other
-/// threads read its result.
+/// Runs `work` without the interpreter lock, and ends it if the handler of a signal raises. `work` calls `keep_going` now
+/// and then, from any thread. Only calls from this thread check for signals: Python does not handle them in threads that
+/// `work` starts. Calls from the other threads return the result of the last check.
 pub(super) fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(KeepGoing) -> Result<T> + Send,
 ) -> PyResult<T> {
     let caller = thread::current().id();
-    let last_look = Mutex::new((Instant::now(), None));
+    let last_check = Mutex::new((Instant::now(), None));
     let keep_going = || {
-        let mut last_look = last_look.lock().unwrap_or_else(PoisonError::into_inner);
-        let (at, raised) = &mut *last_look;
-        if raised.is_none() && thread::current().id() == caller && at.elapsed() >= SIGNAL_PERIOD {
+        let mut last_check = last_check.lock().unwrap_or_else(PoisonError::into_inner);
+        let (time, raised) = &mut *last_check;
+        if raised.is_none() && thread::current().id() == caller && time.elapsed() >= SIGNAL_PERIOD {
             *raised = Python::attach(|py| py.check_signals().err());
-            *at = Instant::now();
+            *time = Instant::now();
         }
         raised.is_none()
     };
     let outcome = py.detach(|| work(&keep_going));
-    let (_, raised) = last_look
+    let (_, raised) = last_check
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
     raised.map_or_else(|| Ok(outcome?), Err)

@@ -28,7 +28,7 @@ impl PyFlock {
         Self(Exclusive::new(flock, "the flock"))
     }
 
-    /// Advances by a duration without the interpreter lock.
+    /// Calls `advance` with the end of a duration and with checked rudders, without the interpreter lock.
     fn advance_by<T: Send>(
         &self,
         py: Python<'_>,
@@ -193,7 +193,7 @@ impl PyFlock {
 
     /// Contacts and near-contacts of the last substep, by column.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        contact_columns::<i64, f64>(py, &self.0.read()?.contacts(), |x| x)
+        contact_columns::<i64, f64>(py, &self.0.read()?.contacts(), |number| number)
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyBytes>> {
@@ -240,11 +240,12 @@ pub(super) fn rudders_from(
     Ok(rudders)
 }
 
-/// {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}; only the pose is required.
+/// A state from the dictionary {"pose": (n, 3), "velocity": (n, 3), "time_s": float, "allow_overlap": bool}. Only the pose
+/// is required.
 pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<State> {
     let accepted = "a dictionary with pose and, if you like, velocity, time_s and allow_overlap";
-    let state = value.cast::<PyDict>();
-    let dict = state.map_err(|_| wrong_type(value, "state", accepted))?;
+    let dict = value.cast::<PyDict>();
+    let dict = dict.map_err(|_| wrong_type(value, "state", accepted))?;
     let refuse = |found: &str| FlockError::parameter("state", found, accepted);
     let mut state = State {
         poses: Vec::new(),
@@ -257,12 +258,14 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
         match text_of("state", &value_from(&name))? {
             "pose" => {
                 let rows = rows_from(&value, "pose", boats)?.into_iter();
-                state.poses = rows.map(|[x, y, a]| Pose::new(x, y, a)).collect();
+                let pose = |[x, y, heading]: [f64; 3]| Pose::new(x, y, heading);
+                state.poses = rows.map(pose).collect();
                 has_pose = true;
             }
             "velocity" => {
                 let rows = rows_from(&value, "velocity", boats)?.into_iter();
-                state.velocities = rows.map(|[x, y, w]| Velocity::new(x, y, w)).collect();
+                let velocity = |[x, y, angular]: [f64; 3]| Velocity::new(x, y, angular);
+                state.velocities = rows.map(velocity).collect();
             }
             "time_s" => state.time_s = argument(&value, "time_s")?,
             "allow_overlap" => state.allow_overlap = argument(&value, "allow_overlap")?,
@@ -275,36 +278,49 @@ pub(super) fn state_from(value: &Bound<'_, PyAny>, boats: usize) -> PyResult<Sta
     Ok(state)
 }
 
-/// Contacts by column: i, j, gap_cm, normal, force, point_cm and along_cm. `rounded` sets their precision.
+/// Contacts as columns: i, j, gap_cm, normal, force, point_cm and along_cm. `round` converts to the columns' precision.
 pub(super) fn contact_columns<'py, I: Element + From<i32>, T: Element>(
     py: Python<'py>,
     contacts: &[ContactForce],
-    rounded: fn(f64) -> T,
+    round: fn(f64) -> T,
 ) -> PyResult<Bound<'py, PyDict>> {
     let numbers = |value: fn(&ContactForce) -> f64| {
-        PyArray1::from_iter(py, contacts.iter().map(value).map(rounded))
+        PyArray1::from_iter(py, contacts.iter().map(value).map(round))
     };
     let boats = |boat: fn(&ContactForce) -> i32| {
         PyArray1::from_iter(py, contacts.iter().map(boat).map(I::from))
     };
     let vectors = |vector: fn(&ContactForce) -> Vec2| {
         let numbers = contacts.iter().map(vector).flat_map(|v| [v.x, v.y]);
-        rows_of(py, numbers.map(rounded).collect(), 2)
+        rows_of(py, numbers.map(round).collect(), 2)
     };
     let columns = PyDict::new(py);
-    columns.set_item("i", boats(|pushed| pushed.contact.boat as i32))?;
-    columns.set_item("j", boats(partner))?;
-    columns.set_item("gap_cm", numbers(|pushed| pushed.contact.gap.gap))?;
-    columns.set_item("normal", vectors(|pushed| pushed.contact.gap.normal)?)?;
-    columns.set_item("force", numbers(|pushed| pushed.force))?;
-    columns.set_item("point_cm", vectors(|pushed| pushed.point)?)?;
-    columns.set_item("along_cm", numbers(|pushed| pushed.contact.gap.along))?;
+    columns.set_item(
+        "i",
+        boats(|contact_force| contact_force.contact.boat as i32),
+    )?;
+    columns.set_item("j", boats(partner_number))?;
+    columns.set_item(
+        "gap_cm",
+        numbers(|contact_force| contact_force.contact.gap.gap),
+    )?;
+    columns.set_item(
+        "normal",
+        vectors(|contact_force| contact_force.contact.gap.normal)?,
+    )?;
+    columns.set_item("force", numbers(|contact_force| contact_force.force))?;
+    columns.set_item("point_cm", vectors(|contact_force| contact_force.point)?)?;
+    columns.set_item(
+        "along_cm",
+        numbers(|contact_force| contact_force.contact.gap.along),
+    )?;
     Ok(columns)
 }
 
-/// Walls are numbered −1 (outer) and −2 (inner), obstacles from −3 downwards.
-fn partner(contact: &ContactForce) -> i32 {
-    match contact.contact.partner {
+/// The number of a contact's partner: a boat's index, −1 for the outer wall, −2 for the inner wall, −3 − number for an
+/// obstacle.
+fn partner_number(contact_force: &ContactForce) -> i32 {
+    match contact_force.contact.partner {
         Partner::Boat(boat) => boat as i32,
         Partner::OuterWall => -1,
         Partner::InnerWall => -2,
@@ -312,7 +328,7 @@ fn partner(contact: &ContactForce) -> i32 {
     }
 }
 
-/// Draws flocks at one size. Threads take turns, and the interpreter lock is released meanwhile.
+/// Draws flocks in one size, without the interpreter lock. Threads take turns.
 #[pyclass(name = "FrameRenderer", module = "flockenv._core", frozen)]
 pub(super) struct PyFrameRenderer(Mutex<FrameRenderer>);
 
@@ -321,14 +337,14 @@ impl PyFrameRenderer {
     #[new]
     fn new(width: &Bound<'_, PyAny>, height: &Bound<'_, PyAny>) -> PyResult<Self> {
         let side = |object, name| {
-            // A number beyond 32 bits is refused like the largest one within.
+            // A number that does not fit 32 bits is refused like the largest that does.
             Ok::<_, PyErr>(u32::try_from(argument::<usize>(object, name)?).unwrap_or(u32::MAX))
         };
         let (width, height) = (side(width, "width")?, side(height, "height")?);
         Ok(Self(Mutex::new(FrameRenderer::new(width, height)?)))
     }
 
-    /// A flock as it is now: (height, width, 3), uint8. `colors` names the property that a boat's color shows.
+    /// A picture of a flock as it is now: (height, width, 3), uint8. `colors` names what a boat's color shows.
     #[pyo3(signature = (flock, colors="direction", caption=""))]
     fn draw<'py>(
         &self,

@@ -1,6 +1,6 @@
 //! Laws of leaders: by name, by gains or from JSON, and evaluated from observations.
 
-use super::error::refusal;
+use super::error::parameter_error;
 use super::observation::layout_from;
 use crate::boat::DampedLaw;
 use crate::error::{FlockError, Result};
@@ -15,7 +15,7 @@ pub struct PyLaw(pub(super) Law);
 
 #[pymethods]
 impl PyLaw {
-    /// The law of a name, in the pool of this name if it depends on the pool.
+    /// The law with this name. `pool` is the name of the pool, for laws that differ between pools.
     #[staticmethod]
     #[pyo3(signature = (name, pool=None))]
     fn named(name: &str, pool: Option<&str>) -> Result<Self> {
@@ -76,7 +76,7 @@ impl PyObservedLaw {
         if width != size {
             let expected = format!("(..., {size}), the size of the law's own layout");
             let message = format!("observation has shape (..., {width}), expected {expected}");
-            return Err(refusal(message));
+            return Err(parameter_error(message));
         }
         let numbers = observations.as_slice()?;
         let are_numbers = !numbers.iter().any(|number| number.is_nan());

@@ -102,7 +102,7 @@ mod _core {
     }
 }
 
-/// Colors by name, as in a style sheet.
+/// Colors by name, in the notation of style sheets.
 fn by_name(colors: impl Iterator<Item = (&'static str, Rgb)>) -> Value {
     let texts = colors.map(|(name, color)| (name, Value::from(color.to_string())));
     texts.collect()

@@ -10,14 +10,18 @@ use crate::parameters::{FlockParameters, Value};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-/// A checked layout from the blocks that differ from the default one, and whether it is mirrored.
-pub(super) fn layout_from(blocks: &Bound<'_, PyAny>, mirror: bool) -> PyResult<ObservationLayout> {
+/// A checked layout from the blocks that differ from the default layout. With `is_mirrored`, observations are mirrored to
+/// the target.
+pub(super) fn layout_from(
+    blocks: &Bound<'_, PyAny>,
+    is_mirrored: bool,
+) -> PyResult<ObservationLayout> {
     let layout: ObservationLayout = argument(blocks, "observation")?;
     layout.check()?;
-    Ok(layout.mirrored(mirror))
+    Ok(layout.mirrored(is_mirrored))
 }
 
-/// Every entry of an observation with these blocks, in order.
+/// The entries of an observation with these blocks, in order.
 #[pyfunction]
 pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let entries = layout_from(blocks, false)?.entries().into_iter();
@@ -25,7 +29,7 @@ pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value
     Ok(rows.collect())
 }
 
-/// Every entry of the global state of a number of boats, in order.
+/// The entries of the global state of a flock with `n_boats` boats, in order.
 #[pyfunction]
 pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let n_boats = argument(n_boats, "n_boats")?;
@@ -51,11 +55,12 @@ pub(super) fn observe<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
     let flock = flock.0.read()?;
     let rudders = rudders_from(rudder, &flock)?.unwrap_or_default();
-    observed(py, &flock, layout_from(blocks, mirror_to_target)?, &rudders)
+    let layout = layout_from(blocks, mirror_to_target)?;
+    observation_rows(py, &flock, layout, &rudders)
 }
 
-/// Observations of a flock's leaders, given the rudders as they stand.
-pub(super) fn observed<'py>(
+/// Observations of a flock's leaders, (k, size) float32, given their present rudders.
+pub(super) fn observation_rows<'py>(
     py: Python<'py>,
     flock: &Flock,
     layout: ObservationLayout,

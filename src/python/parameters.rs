@@ -1,6 +1,6 @@
 //! The checked parameters behind `flockenv.FlockParameters`.
 
-use super::value::{argument, set_given, wrong_type};
+use super::value::{argument, set_fields, wrong_type};
 use crate::geometry::{Hull, resized_gyration_radius_cm};
 use crate::parameters::{Field, FlockParameters, Value};
 use pyo3::prelude::*;
@@ -12,8 +12,8 @@ pub(super) struct PyParameters(pub(super) FlockParameters);
 
 #[pymethods]
 impl PyParameters {
-    /// Given parameters, or a preset by name, with some fields changed. If the hull is resized, the radius of gyration
-    /// scales with it, unless it is among the changes.
+    /// Changes fields of `base`, which is parameters or the name of a preset. If the changes resize the hull and do not set
+    /// the radius of gyration, it scales with the hull.
     #[new]
     fn new(base: &Bound<'_, PyAny>, changes: &Bound<'_, PyDict>) -> PyResult<Self> {
         let base = match base.cast::<Self>() {
@@ -21,7 +21,7 @@ impl PyParameters {
             Err(_) => FlockParameters::preset(argument(base, "preset")?),
         };
         let mut changed = base.clone();
-        set_given(&mut changed, FlockParameters::FIELDS, changes)?;
+        set_fields(&mut changed, FlockParameters::FIELDS, changes)?;
         if !changes.contains("gyration_radius_cm")? {
             let (radius_cm, shape) = (changed.boat_radius_cm, changed.boat_shape);
             changed.gyration_radius_cm = resized_gyration_radius_cm(&base, radius_cm, shape);
@@ -43,7 +43,7 @@ impl PyParameters {
     }
 }
 
-/// The parameters that a `flockenv.FlockParameters` holds.
+/// Extracts the parameters that a `flockenv.FlockParameters` holds.
 impl<'py> FromPyObject<'_, 'py> for FlockParameters {
     type Error = PyErr;
 

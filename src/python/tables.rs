@@ -1,4 +1,4 @@
-//! Declarations of parameters and options, and values that are computed from them without a flock.
+//! Tables of presets and of physics, and values that are computed from options without a flock.
 
 use super::value::argument;
 use crate::clock::whole_steps;
@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::parameters::{FlockParameters, Physics, Pool, Preset, Value};
 use pyo3::prelude::*;
 
-/// Source of each field of a preset.
+/// The source of each field of a preset, by name.
 #[pyfunction]
 pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
     let preset: Preset = argument(preset, "preset")?;
@@ -17,7 +17,7 @@ pub(super) fn preset_sources(preset: &Bound<'_, PyAny>) -> PyResult<Value> {
         .collect())
 }
 
-/// The fields that a choice of physics sets.
+/// The fields that a choice of physics sets, by name.
 #[pyfunction]
 pub(super) fn physics_fields(physics: &Bound<'_, PyAny>) -> PyResult<Value> {
     let stepping = argument::<Physics>(physics, "physics")?.stepping();
@@ -30,7 +30,7 @@ pub(super) fn physics_fields(physics: &Bound<'_, PyAny>) -> PyResult<Value> {
     Ok(fields.into_iter().flatten().collect())
 }
 
-/// The critical noise of a preset in a pool, or `None` if it has not been measured.
+/// The critical noise of a preset in a pool: bw_s in s, or `None` if it has not been measured.
 #[pyfunction]
 pub(super) fn critical_bw_s(
     preset: &Bound<'_, PyAny>,
@@ -40,21 +40,21 @@ pub(super) fn critical_bw_s(
     Ok(preset.critical_bw_s(&argument(pool, "pool")?))
 }
 
-/// Outer and inner radius in cm of a pool, which is given by its name or by two radii.
+/// Outer and inner radius in cm of a pool, from its name or from its two radii.
 #[pyfunction]
 pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     let pool: Pool = argument(pool, "pool")?;
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
 
-/// Number of decisions at a rate in a time (s). It must be a whole number.
+/// Number of decisions in a time in s at a rate in 1/s. It is an error if that is not a whole number.
 #[pyfunction]
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
     let hold_s = argument(hold_s, "hold_s")?;
     Ok(whole_steps("hold_s", hold_s, rate_hz, "decisions")?)
 }
 
-/// The rudders that numbers of levels stand for, in an environment with `rudder_levels`.
+/// The rudders of levels with these indices, in an environment with `rudder_levels`.
 #[pyfunction]
 pub(super) fn rudders_of_levels(levels: Vec<f64>, rudder_levels: usize) -> Result<Vec<f64>> {
     let settings = EnvSettings {

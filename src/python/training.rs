@@ -1,9 +1,9 @@
-//! Trainings in paired branches.
+//! Training in paired branches.
 
 use super::exclusive::{Exclusive, interruptible};
 use super::law::PyLaw;
 use super::parameters::PyParameters;
-use super::value::set_given;
+use super::value::set_fields;
 use crate::error::Result;
 use crate::parameters::{Field, FlockParameters, Value};
 use crate::policies::Law;
@@ -23,7 +23,7 @@ impl PyTrainer {
 
 #[pymethods]
 impl PyTrainer {
-    /// A training at its start; its flocks have consecutive seeds from the first one on.
+    /// A training at its start. Its flocks have the consecutive seeds from `first_seed` on.
     #[new]
     fn new(
         parameters: FlockParameters,
@@ -31,16 +31,17 @@ impl PyTrainer {
         seed: u64,
         first_seed: u64,
     ) -> PyResult<Self> {
+        // The options are set twice, since the defaults of the others depend on the action mode.
         let mut settings = BranchSettings::default();
-        set_given(&mut settings, BranchSettings::FIELDS, options)?;
+        set_fields(&mut settings, BranchSettings::FIELDS, options)?;
         settings = BranchSettings::usual(settings.action_mode);
-        set_given(&mut settings, BranchSettings::FIELDS, options)?;
+        set_fields(&mut settings, BranchSettings::FIELDS, options)?;
         Ok(Self::wrap(Trainer::new(
             settings, parameters, seed, first_seed,
         )?))
     }
 
-    /// A training from its bytes, to end at other `flock_hours` if these are given.
+    /// A training from its bytes. If `flock_hours` is given, the training ends there.
     #[staticmethod]
     #[pyo3(signature = (state, flock_hours=None))]
     fn from_bytes(state: &[u8], flock_hours: Option<f64>) -> Result<Self> {
@@ -65,19 +66,19 @@ impl PyTrainer {
         Ok(self.0.read()?.has_ended())
     }
 
-    /// Flock-hours until now and at the end.
+    /// Flock-hours so far, and at the end of the training.
     #[getter]
     fn flock_hours(&self) -> Result<(f64, f64)> {
         Ok(self.0.read()?.flock_hours())
     }
 
-    /// Flock-hours and mean order of each round.
+    /// Flock-hours and mean order at each round.
     #[getter]
     fn curve(&self) -> Result<Vec<(f64, f64)>> {
         Ok(self.0.read()?.curve().collect())
     }
 
-    /// Branches, those that left overlaps deeper than the tolerance, and the deepest overlap in cm.
+    /// Number of branches, number of branches that left overlaps deeper than the tolerance, and the deepest overlap in cm.
     #[getter]
     fn overlaps(&self) -> Result<(u64, u64, f64)> {
         Ok(self.0.read()?.overlaps())

@@ -1,5 +1,5 @@
-//! Values of parameters, options and arguments, from Python and to Python. Every error names the field and shows the
-//! value. A value out of range is a `ParameterError`, one of the wrong type a `TypeError`.
+//! Conversion of parameters, options and arguments from Python and to Python. Every error names the field and shows the
+//! value. It is a `ParameterError` for a value out of range, and a `TypeError` for a value of the wrong type.
 
 use crate::error::FlockError;
 use crate::parameters::{Field, FlockParameters, Setting, Value};
@@ -8,8 +8,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyBytes, PyDict, PyFloat, PyInt, PySequence, PyString, PyTuple};
 
-/// The most items of a list, such as targets of leaders or rows of obstacles, and of a list in it: longer lists are
-/// not copied.
+/// The most items of a list, such as targets of leaders or rows of obstacles, and of a list within it. Longer lists are not
+/// converted.
 const MOST_ITEMS: [usize; 2] = [FlockParameters::MOST_BOATS, 16];
 
 /// A value from a Python object.
@@ -17,6 +17,7 @@ pub(super) fn value_from(object: &Bound<'_, PyAny>) -> Value {
     nested_value(object, &MOST_ITEMS)
 }
 
+/// A value from a Python object. `most_items` are the most items of a list, of a list within it, and so on.
 fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
     if object.is_none() {
         Value::None
@@ -44,7 +45,7 @@ fn nested_value(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Value {
     }
 }
 
-/// Whether it is NumPy's complex number: extracting a float would drop the imaginary part.
+/// Whether an object is a complex number of NumPy: extracting a float from it would drop the imaginary part.
 fn is_complex(object: &Bound<'_, PyAny>) -> bool {
     let kind = object
         .getattr("dtype")
@@ -52,20 +53,23 @@ fn is_complex(object: &Bound<'_, PyAny>) -> bool {
     kind.is_ok_and(|kind| kind.eq("c").unwrap_or(false))
 }
 
+/// The items of a sequence; `None` for other objects and for sequences that are too long.
 fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Value>> {
-    let (most, inner) = most_items.split_first()?;
-    let length = sequence_length(object).filter(|length| length <= most)?;
+    let (most_here, most_within) = most_items.split_first()?;
+    let length = sequence_length(object).filter(|length| length <= most_here)?;
     let items = (0..length).map(|index| object.get_item(index).ok());
     items
-        .map(|item| Some(nested_value(&item?, inner)))
+        .map(|item| Some(nested_value(&item?, most_within)))
         .collect()
 }
 
 /// The length of a sequence that is not a string, or of an array of any library.
 pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
-    let text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
+    let is_text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
     let is_sequence = object.cast::<PySequence>().is_ok() || object.hasattr("shape").ok()?;
-    (is_sequence && !text).then(|| object.len().ok()).flatten()
+    (is_sequence && !is_text)
+        .then(|| object.len().ok())
+        .flatten()
 }
 
 /// Converts a value to a Python object.
@@ -90,7 +94,7 @@ impl<'py> IntoPyObject<'py> for Value {
 /// The value of the argument `name`.
 pub(super) fn argument<T: Setting>(object: &Bound<'_, PyAny>, name: &'static str) -> PyResult<T> {
     let value = value_from(object);
-    T::from_value(name, &value).map_err(|error| refused(error, &value, object))
+    T::from_value(name, &value).map_err(|error| conversion_error(error, &value, object))
 }
 
 /// A seed.
@@ -98,18 +102,18 @@ pub(super) fn seed_from(object: &Bound<'_, PyAny>) -> PyResult<u64> {
     Ok(argument::<usize>(object, "seed")? as u64)
 }
 
-/// A seed of other noise, or `None`.
+/// A seed of the noise, or `None`.
 pub(super) fn noise_seed_from(object: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
     Ok(argument::<Option<usize>>(object, "noise_seed")?.map(|seed| seed as u64))
 }
 
-/// The error of a field's conversion, with the value from Python.
-fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
+/// The Python exception for a failed conversion of a field. It shows the object as Python does.
+fn conversion_error(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr {
     match error {
         FlockError::Kind { field, accepted } => {
             let is_long = sequence_length(object).is_some_and(|length| length > MOST_ITEMS[0]);
             match value {
-                // An int within 64 bits would have a value.
+                // An int of at most 64 bits would have been converted.
                 Value::Other if object.is_instance_of::<PyInt>() => {
                     return not_accepted(field, object, "a number that fits 64 bits");
                 }
@@ -124,23 +128,24 @@ fn refused(error: FlockError, value: &Value, object: &Bound<'_, PyAny>) -> PyErr
     }
 }
 
-fn set<S>(of: &mut S, field: &Field<S>, object: &Bound<'_, PyAny>) -> PyResult<()> {
+/// Sets one field of `settings`, without checking the value against the field's range.
+fn set_field<S>(settings: &mut S, field: &Field<S>, object: &Bound<'_, PyAny>) -> PyResult<()> {
     let value = value_from(object);
-    let outcome = (field.set)(of, &value);
-    outcome.map_err(|error| refused(error, &value, object))
+    let outcome = (field.set)(settings, &value);
+    outcome.map_err(|error| conversion_error(error, &value, object))
 }
 
-/// Sets fields to the values of a dictionary, without checking them.
-pub(super) fn set_given<S>(
-    of: &mut S,
+/// Sets the fields that a dictionary names, without checking the values against the fields' ranges.
+pub(super) fn set_fields<S>(
+    settings: &mut S,
     fields: &[Field<S>],
     values: &Bound<'_, PyDict>,
 ) -> PyResult<()> {
     for (name, value) in values {
-        let is_meant = |field: &&Field<S>| name.eq(field.name).is_ok_and(|same| same);
-        let field = fields.iter().find(is_meant);
+        let has_name = |field: &&Field<S>| name.eq(field.name).unwrap_or(false);
+        let field = fields.iter().find(has_name);
         let field = field.ok_or_else(|| not_accepted("option", &name, "a known option"))?;
-        set(of, field, &value)?;
+        set_field(settings, field, &value)?;
     }
     Ok(())
 }
@@ -150,13 +155,13 @@ fn not_accepted(name: &'static str, value: &Bound<'_, PyAny>, accepted: &str) ->
     FlockError::parameter(name, short_repr(value), accepted).into()
 }
 
-/// The `TypeError` for an argument.
+/// The `TypeError` for an argument of the wrong type.
 pub(super) fn wrong_type(object: &Bound<'_, PyAny>, name: &str, accepted: &str) -> PyErr {
-    let kind = object.get_type().name();
-    let kind = kind.map_or_else(|_| "?".to_owned(), |name| name.to_string());
-    let found = short_repr(object);
+    let type_name = object.get_type().name();
+    let type_name = type_name.map_or_else(|_| "?".to_owned(), |name| name.to_string());
+    let value = short_repr(object);
     PyTypeError::new_err(format!(
-        "{name} must be {accepted}, not {found} of type {kind}"
+        "{name} must be {accepted}, not {value} of type {type_name}"
     ))
 }
 
