@@ -1,4 +1,4 @@
-//! The boats: hulls (segments swept by a disc) with a mark towards the bow.
+//! The boats: hulls (segments swept by a disc) with a mark that points to the bow.
 
 use super::palette::{Coloring, LEADER, LEADER_MARK, MARK, NORMAL, OPPONENT, OUTLINE, Rgb, tint};
 use super::view::View;
@@ -11,12 +11,12 @@ use tiny_skia::{PathBuilder, Pixmap};
 const EDGE: (f32, f32) = (0.14, 1.0);
 /// Width of a leader's ring as a fraction of the hull's radius, and the least width in pixels.
 const RING: (f32, f32) = (0.34, 1.8);
-/// Least drawn radius in pixels: boats of a huge pool stay visible.
+/// Least drawn radius in pixels, so that boats in a huge pool stay visible.
 const LEAST_RADIUS: f32 = 1.0;
-/// The radius from which on marks are legible, in pixels.
+/// Least radius in pixels at which marks are drawn.
 const LEAST_MARKED: f32 = 2.5;
 
-/// The colors of a boat: a ring, if it has one, its body and its mark.
+/// The colors of a boat's ring (if it has one), body and mark.
 struct Colors {
     ring: Option<Rgb>,
     body: Rgb,
@@ -29,10 +29,11 @@ pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View, coloring: Co
     let target = &flock.parameters().target;
     // In open water there is no center to circle around.
     let is_tinted = coloring == Coloring::Direction && flock.parameters().pool.has_walls();
-    // Leaders come first, and are drawn last.
+    // Leaders have the first indices. The reversed order draws them last.
     for (boat, (hull_pose, pose)) in flock.hulls().iter().zip(flock.poses()).enumerate().rev() {
-        let role = (boat < flock.parameters().n_leaders).then(|| color_of(target, boat));
-        let colors = match (is_tinted, role) {
+        let is_leader = boat < flock.parameters().n_leaders;
+        let leader_color = is_leader.then(|| leader_color(target, boat));
+        let colors = match (is_tinted, leader_color) {
             (true, ring) => Colors {
                 ring,
                 body: tint(pose),
@@ -55,8 +56,8 @@ pub(super) fn draw(canvas: &mut Pixmap, flock: &Flock, view: &View, coloring: Co
     }
 }
 
-/// The color of a leader: the same for all, unless they head against each other.
-fn color_of(targets: &Targets, leader: usize) -> Rgb {
+/// The color of a leader. All leaders have the same color unless their targets differ.
+fn leader_color(targets: &Targets, leader: usize) -> Rgb {
     if targets.are_opposed() && targets.of(leader) == Target::CounterClockwise {
         OPPONENT
     } else {
@@ -64,7 +65,7 @@ fn color_of(targets: &Targets, leader: usize) -> Rgb {
     }
 }
 
-/// A hull as thick lines with round ends, one within the other: outline, ring, body; and its mark.
+/// Draws a hull as thick lines with round ends, one on top of the other (outline, ring, body), and then its mark.
 fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colors: &Colors) {
     let radius = view.length(hull.radius).max(LEAST_RADIUS);
     let outline = (EDGE.0 * radius).max(EDGE.1).min(0.3 * radius);
@@ -81,17 +82,21 @@ fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colo
     }
     if radius >= LEAST_MARKED {
         let share = f64::from(inner / radius);
-        let (along, across) = (hull.half_length + share * hull.radius, share * hull.radius);
-        colors.mark.fill(canvas, mark(view, boat, along, across));
+        let half_width = share * hull.radius;
+        let half_length = hull.half_length + half_width;
+        colors
+            .mark
+            .fill(canvas, mark(view, boat, half_length, half_width));
     }
 }
 
-/// An arrowhead in the bow half of a hull with these half lengths along and across, in cm.
-fn mark(view: &View, boat: &HullPose, along: f64, across: f64) -> PathBuilder {
+/// An arrowhead in the bow half of a hull with this half-length and half-width in cm.
+fn mark(view: &View, boat: &HullPose, half_length: f64, half_width: f64) -> PathBuilder {
     let corners = [(0.84, 0.0), (-0.12, 0.68), (0.1, 0.0), (-0.12, -0.68)];
     let mut path = PathBuilder::new();
     for (ahead, aside) in corners {
-        let offset = boat.axis * (ahead * along) + turned_left(boat.axis) * (aside * across);
+        let offset =
+            boat.axis * (ahead * half_length) + turned_left(boat.axis) * (aside * half_width);
         let point = view.pixel(boat.center + offset);
         if path.is_empty() {
             path.move_to(point.x, point.y);

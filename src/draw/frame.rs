@@ -1,5 +1,5 @@
-//! Frames: pool, hulls with a direction mark, in colors that show order or who leads, and a legend. A frame
-//! depends only on the flock, its look and its size.
+//! Frames: a pool, hulls with a direction mark in colors that show order or who leads, and a legend. A frame depends only
+//! on the flock, its look and its size.
 
 use super::legend::Legend;
 use super::look::{Look, target_of};
@@ -10,7 +10,7 @@ use crate::flock::Flock;
 use crate::parameters::{FlockParameters, Target};
 use tiny_skia::Pixmap;
 
-/// Draws frames of one size; the background is drawn once and kept.
+/// Draws frames of one size. The background of a pool is drawn once and kept.
 #[derive(Debug, Clone)]
 pub struct FrameRenderer {
     canvas: Pixmap,
@@ -70,7 +70,7 @@ impl FrameRenderer {
     pub fn draw_with(&mut self, flock: &Flock, look: Look<'_>) -> Vec<u8> {
         self.draw_canvas(flock, look);
         let mut frame = Vec::with_capacity(self.canvas.pixels().len() * 3);
-        // The canvas is opaque, so that premultiplied colors are plain ones.
+        // The canvas is opaque, so its premultiplied colors are the plain colors.
         for pixel in self.canvas.data().chunks_exact(4) {
             frame.extend_from_slice(&pixel[..3]);
         }
@@ -83,16 +83,16 @@ impl FrameRenderer {
     /// [`FlockError::Parameter`] if the picture cannot be encoded.
     pub fn png(&mut self, flock: &Flock) -> Result<Vec<u8>> {
         self.draw_canvas(flock, Look::default());
-        let refused = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
-        self.canvas.encode_png().map_err(refused)
+        let refuse = |error| FlockError::parameter("frame", error, "a picture that PNG can hold");
+        self.canvas.encode_png().map_err(refuse)
     }
 
     fn draw_canvas(&mut self, flock: &Flock, look: Look<'_>) {
         let view = View::from_flock(flock, self.width(), self.height());
         self.draw_background(flock, &view);
         boats::draw(&mut self.canvas, flock, &view, look.coloring);
-        let open = !flock.parameters().pool.has_outer_wall();
-        let grid_cm = open.then(|| water::grid_spacing(&view));
+        let is_open_water = !flock.parameters().pool.has_outer_wall();
+        let grid_cm = is_open_water.then(|| water::grid_spacing(&view));
         self.legend.draw(&mut self.canvas, flock, grid_cm, look);
     }
 
@@ -102,10 +102,12 @@ impl FrameRenderer {
             water::draw(&mut self.canvas, parameters, target, view);
             return;
         }
-        let same =
-            |kept: &Background| kept.target == target && kept.parameters.has_same_water(parameters);
-        if let Some(kept) = self.background.as_ref().filter(|kept| same(kept)) {
-            self.canvas.data_mut().copy_from_slice(kept.image.data());
+        if let Some(background) = &self.background
+            && background.target == target
+            && background.parameters.has_same_water(parameters)
+        {
+            let image = background.image.data();
+            self.canvas.data_mut().copy_from_slice(image);
             return;
         }
         water::draw(&mut self.canvas, parameters, target, view);

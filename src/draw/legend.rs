@@ -12,15 +12,16 @@ use tiny_skia::Pixmap;
 const SIDE_OVER_SIZE: f32 = 40.0;
 /// The smallest letters, in pixels.
 const LEGIBLE_SIZE: f32 = 9.0;
-/// Space for the text of a corner, in letter sizes, and its least distance from the middle, as a fraction of the
-/// frame's shorter side. Frames too small for it show only the boats.
+/// Width and height of the text in a corner, in letter sizes.
 const CORNER: (f32, f32) = (13.0, 4.0);
-const CLEAR: f32 = 0.39;
-/// Distance of two baselines, and distance to the frame's edge, in sizes.
+/// Least distance of that text from the middle, as a fraction of the frame's shorter side. Smaller frames have no legend.
+const LEAST_DISTANCE: f32 = 0.39;
+/// Distance of two baselines, in letter sizes.
 const LINE: f32 = 1.45;
+/// Distance of the text from the frame's edge, in letter sizes.
 const EDGE: f32 = 0.9;
 
-/// The legend of frames of one size.
+/// The legend of frames of one size; without a typeface it stays empty.
 #[derive(Debug, Clone)]
 pub(super) struct Legend {
     typeface: Option<Typeface>,
@@ -34,13 +35,13 @@ impl Legend {
         let size = (side / SIDE_OVER_SIZE).max(LEGIBLE_SIZE);
         let x = width / 2.0 - CORNER.0 * size;
         let y = (height / 2.0 - CORNER.1 * size).max(0.0);
-        let fits = x >= 0.0 && libm::hypotf(x, y) >= CLEAR * side;
+        let fits = x >= 0.0 && libm::hypotf(x, y) >= LEAST_DISTANCE * side;
         Self {
             typeface: fits.then(|| Typeface::new(size)).flatten(),
         }
     }
 
-    /// Draws the legend of a frame with or without a grid.
+    /// Draws the legend. `grid_cm` is the distance of grid lines, if the frame has a grid.
     pub(super) fn draw(
         &self,
         canvas: &mut Pixmap,
@@ -57,59 +58,58 @@ impl Legend {
         let bottom = height - edge;
         let order = flock.order_parameters(false).ok();
 
-        let mut left = |text: &str, baseline: f32, ink: Rgb| {
+        let mut write_left = |text: &str, baseline: f32, ink: Rgb| {
             typeface.write(canvas, text, edge, baseline, ink);
         };
-        let caption = cut(typeface, look.caption, CORNER.0 * size);
-        for (line, (text, ink)) in (0..).zip(clock(flock, caption, grid_cm)) {
-            left(&text, top(line), ink);
+        let caption = cut_to_width(typeface, look.caption, CORNER.0 * size);
+        for (line, (text, ink)) in (0..).zip(time_lines(flock, caption, grid_cm)) {
+            write_left(&text, top(line), ink);
         }
         let psi_o = order.map(|order| format!("{:.2}", order.psi_o));
-        left(&labeled("order Ψₒ", psi_o), bottom, INK);
+        write_left(&labeled("order Ψₒ", psi_o), bottom, INK);
 
-        let mut right = |text: &str, baseline: f32, color: Option<Rgb>| {
+        let mut write_right = |text: &str, baseline: f32, color: Option<Rgb>| {
             let x = width - edge - typeface.width(text);
             typeface.write(canvas, text, x, baseline, INK);
             if let Some(color) = color {
                 typeface.write(canvas, "■", x - 1.1 * size, baseline, color);
             }
         };
-        for (line, (text, color)) in (0..).zip(task(flock)) {
-            right(&text, top(line), color);
+        for (line, (text, color)) in (0..).zip(task_lines(flock)) {
+            write_right(&text, top(line), color);
         }
-        right(&signed_order(flock), bottom, None);
+        write_right(&signed_order(flock), bottom, None);
     }
 }
 
-/// The signed order towards the leaders' target, or the rotation if they have none in common.
+/// The signed order towards the leaders' common target, or the rotation if they have no common target.
 fn signed_order(flock: &Flock) -> String {
-    let (words, towards) = match target_of(flock) {
+    // The rotation is the signed order towards clockwise.
+    let (label, target) = match target_of(flock) {
         Some(target) => ("signed order", target),
         None => ("rotation", Target::Clockwise),
     };
     let order = flock.order_parameters(false).ok();
-    labeled(
-        words,
-        order.map(|order| signed_text(order.signed_order(towards))),
-    )
+    let number = order.map(|order| signed_text(order.signed_order(target)));
+    labeled(label, number)
 }
 
-/// Lines for the caption, the time, the phase and the grid, each if present.
-fn clock(flock: &Flock, caption: String, grid_cm: Option<f64>) -> Vec<(String, Rgb)> {
+/// Lines for the caption (if any), the time, the phase and the grid (if any), each with its color.
+fn time_lines(flock: &Flock, caption: String, grid_cm: Option<f64>) -> Vec<(String, Rgb)> {
     let mut lines = vec![];
     if !caption.is_empty() {
         lines.push((caption, INK));
     }
     lines.push((format!("{:.1} s", flock.time_s()), INK));
-    lines.push((motors(flock.phase().phase).to_owned(), INK));
+    lines.push((phase_text(flock.phase().phase).to_owned(), INK));
     if let Some(spacing_cm) = grid_cm {
         lines.push((format!("grid {spacing_cm} cm"), FAINT));
     }
     lines
 }
 
-/// Lines for the target, the backward duration, and the leaders beside their color.
-fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
+/// Lines for the target, the backward duration and the number of leaders, each with the color of a square before it.
+fn task_lines(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
     let parameters = flock.parameters();
     let count = parameters.n_leaders;
     let backward = (format!("backward {:.2} s", parameters.bw_s), None);
@@ -127,24 +127,24 @@ fn task(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
             return vec![
                 ("targets ↻ and ↺".to_owned(), None),
                 backward,
-                (leaders(clockwise) + " ↻", Some(LEADER)),
-                (leaders(count - clockwise) + " ↺", Some(OPPONENT)),
+                (leader_count(clockwise) + " ↻", Some(LEADER)),
+                (leader_count(count - clockwise) + " ↺", Some(OPPONENT)),
             ];
         }
     };
     vec![
         (target.to_owned(), None),
         backward,
-        (leaders(count), Some(LEADER)),
+        (leader_count(count), Some(LEADER)),
     ]
 }
 
-fn leaders(count: usize) -> String {
+fn leader_count(count: usize) -> String {
     format!("{count} leader{}", if count == 1 { "" } else { "s" })
 }
 
-/// The motors' work in a phase, in the replay page's words.
-fn motors(phase: Phase) -> &'static str {
+/// A phase in the words of the replay page.
+fn phase_text(phase: Phase) -> &'static str {
     match phase {
         Phase::Forward => "forward",
         Phase::Backward => "backward",
@@ -152,8 +152,8 @@ fn motors(phase: Phase) -> &'static str {
     }
 }
 
-/// A text, cut to a width in pixels.
-fn cut(typeface: &Typeface, text: &str, width: f32) -> String {
+/// A text, shortened to a width in pixels.
+fn cut_to_width(typeface: &Typeface, text: &str, width: f32) -> String {
     let mut shown = text.to_owned();
     while typeface.width(&shown) > width {
         shown.truncate(shown.trim_end_matches('…').len());
@@ -163,11 +163,12 @@ fn cut(typeface: &Typeface, text: &str, width: f32) -> String {
     shown
 }
 
-fn labeled(words: &str, number: Option<String>) -> String {
-    format!("{words} {}", number.unwrap_or("-".to_owned()))
+/// A label with its number; a dash stands for a missing number.
+fn labeled(label: &str, number: Option<String>) -> String {
+    format!("{label} {}", number.unwrap_or("-".to_owned()))
 }
 
-/// A number in [−1, 1] with its sign; one that rounds to zero has no sign.
+/// A number in [−1, 1] with its sign. A number that rounds to zero has no sign.
 fn signed_text(number: f64) -> String {
     match format!("{number:+.2}").as_str() {
         "+0.00" | "-0.00" => "0.00".to_owned(),

@@ -1,15 +1,15 @@
-//! Look of a frame.
+//! The look of a frame.
 
 use super::palette::Coloring;
 use crate::flock::Flock;
 use crate::parameters::Target;
 
-/// Look of a flock in a frame.
+/// The look of a flock in a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Look<'a> {
     /// Meaning of a boat's color.
     pub coloring: Coloring,
-    /// Title above the time, cut to fit its corner; empty: none.
+    /// Title above the time, shortened to fit its corner; empty: no title.
     pub caption: &'a str,
 }
 

@@ -11,7 +11,7 @@ impl Rgb {
         Color::from_rgba8(self.0, self.1, self.2, 0xFF)
     }
 
-    /// A paint that fills with this color and smooth edges.
+    /// A paint that fills with this color, with smooth edges.
     pub(super) fn paint(self) -> Paint<'static> {
         let mut paint = Paint::default();
         paint.set_color(self.color());
@@ -46,7 +46,7 @@ impl Rgb {
         self.stroke(canvas, path, width);
     }
 
-    /// Covers a part of a pixel, if it is in the frame.
+    /// Blends this color over a pixel by its coverage (at most 1), if the pixel is in the frame.
     pub(super) fn blend(self, canvas: &mut Pixmap, (column, row): (i64, i64), coverage: f32) {
         let (width, height) = (i64::from(canvas.width()), i64::from(canvas.height()));
         if (0..width).contains(&column) && (0..height).contains(&row) {

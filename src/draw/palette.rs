@@ -1,5 +1,5 @@
 //! The colors of frames, pages and plots, declared once: Okabe and Ito's set on pale water, which color-blind people
-//! can tell apart, and counterparts for dark ground, which only pages have.
+//! can distinguish, and counterparts for dark ground, which only pages use.
 
 use std::fmt;
 
@@ -10,6 +10,7 @@ use crate::parameters::named_choice;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rgb(pub u8, pub u8, pub u8);
 
+/// A color from its hexadecimal code, as in 0xD55E00.
 const fn hex(code: u32) -> Rgb {
     Rgb((code >> 16) as u8, (code >> 8) as u8, code as u8)
 }
@@ -48,7 +49,7 @@ pub const OKABE_ITO: &[(&str, Rgb)] = &[
     ("black", BLACK),
 ];
 
-/// A color on light ground, and on dark.
+/// A color of the palette, for light and for dark ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Swatch {
     /// Its name in pages.
@@ -59,6 +60,7 @@ pub struct Swatch {
     pub dark: Rgb,
 }
 
+/// Declares a constant for each color on light ground, and the list of all colors.
 macro_rules! declare_palette {
     ($($(#[doc = $doc:literal])+ $constant:ident = $name:literal: $light:expr, $dark:expr;)+) => {
         $($(#[doc = $doc])+ pub const $constant: Rgb = $light;)+
@@ -95,9 +97,9 @@ declare_palette! {
     NORMAL = "normal": BLUE, hex(0x3D9BD6);
     /// Direction marks of boats.
     MARK = "mark": hex(0xFFFFFF), hex(0xFFFFFF);
-    /// Leaders: their ring, or their hull where color shows the role.
+    /// Leaders: their ring, or their hull if color shows the role.
     LEADER = "leader": hex(0xF0A202), hex(0xF0A202);
-    /// Leaders with a counter-clockwise target, where others have a clockwise one.
+    /// Leaders with a counter-clockwise target, if others have a clockwise one.
     OPPONENT = "opponent": hex(0x5B1A63), hex(0xB050F8);
     /// Direction marks of leaders in amber.
     LEADER_MARK = "leader-mark": hex(0x1F2A36), hex(0x14191F);
@@ -107,7 +109,7 @@ declare_palette! {
     FORCE = "force": hex(0xC2185B), hex(0xFF5C9A);
     /// The ring around the selected boat.
     PIN = "pin": hex(0x1F2A36), hex(0xFFFFFF);
-    /// The paper's law, in pages and plots. No policy has a color of a direction.
+    /// The paper's law, in pages and plots. No policy has the color of a direction.
     PAPER_LAW = "paper-law": hex(0x5E2CA5), hex(0xD0B3FF);
     /// The damped law.
     DAMPED_LAW = "damped-law": hex(0x7A4A12), hex(0xA0705F);
@@ -135,15 +137,15 @@ named_choice! {
     }
 }
 
-/// A boat circles if |sin φ| is at least this: 30° off the radius.
+/// A boat circles if |sin φ| is at least this, where φ is its LAP orientation: if it heads at least 30° off the radius.
 pub const CIRCLES_FROM: f64 = 0.5;
 
-/// The color of the direction that a boat heads in.
+/// The color of the direction in which a boat circles.
 pub fn tint(pose: &Pose) -> Rgb {
-    let along = libm::sin(lap_frame::orientation(pose));
-    if along >= CIRCLES_FROM {
+    let clockwise = libm::sin(lap_frame::orientation(pose));
+    if clockwise >= CIRCLES_FROM {
         CLOCKWISE
-    } else if along <= -CIRCLES_FROM {
+    } else if clockwise <= -CIRCLES_FROM {
         COUNTER_CLOCKWISE
     } else {
         RADIAL
@@ -152,16 +154,16 @@ pub fn tint(pose: &Pose) -> Rgb {
 
 /// The palette as custom properties of a style sheet, for light ground and for dark.
 pub fn style_sheet() -> String {
-    let colors = |of: fn(&Swatch) -> Rgb| -> String {
-        let lines = PALETTE.iter().map(|color| (color.name, of(color)));
-        lines
-            .map(|(name, color)| format!("--{name}:{color};"))
+    let properties = |shade: fn(&Swatch) -> Rgb| -> String {
+        let swatches = PALETTE.iter();
+        swatches
+            .map(|swatch| format!("--{}:{};", swatch.name, shade(swatch)))
             .collect()
     };
     format!(
         ":root{{color-scheme:light dark;--circles-from:{CIRCLES_FROM};{}}}\n\
          @media (prefers-color-scheme:dark){{:root{{{}}}}}\n",
-        colors(|color| color.light),
-        colors(|color| color.dark),
+        properties(|swatch| swatch.light),
+        properties(|swatch| swatch.dark),
     )
 }

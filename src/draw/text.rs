@@ -9,12 +9,12 @@ use tiny_skia::Pixmap;
 pub(super) struct Typeface {
     font: FontRef<'static>,
     scale: PxScale,
-    /// The em square in pixels.
+    /// Side of the em square in pixels.
     pub size: f32,
 }
 
 impl Typeface {
-    /// The typeface at a size in pixels.
+    /// The typeface in a size in pixels; `None` if the font cannot be read.
     pub(super) fn new(size: f32) -> Option<Self> {
         let font = FontRef::try_from_slice(dejavu::sans::regular()).ok()?;
         let scale = PxScale::from(size * font.height_unscaled() / font.units_per_em()?);
@@ -33,11 +33,11 @@ impl Typeface {
     /// Writes a text that starts at x, on a baseline.
     pub(super) fn write(&self, canvas: &mut Pixmap, text: &str, x: f32, baseline: f32, ink: Rgb) {
         let font = self.font.as_scaled(self.scale);
-        let mut pen = x;
+        let mut pen_x = x;
         for character in text.chars() {
             let id = font.glyph_id(character);
-            let glyph = id.with_scale_and_position(self.scale, point(pen, baseline.round()));
-            pen += font.h_advance(id);
+            let glyph = id.with_scale_and_position(self.scale, point(pen_x, baseline.round()));
+            pen_x += font.h_advance(id);
             if let Some(outline) = font.outline_glyph(glyph) {
                 let corner = outline.px_bounds().min;
                 outline.draw(|column, row, coverage| {

@@ -1,4 +1,4 @@
-//! Part of the world in a frame: world y points up, pixel rows run down.
+//! The part of the world that a frame shows. World y points up, pixel rows run down.
 
 use crate::flock::Flock;
 use crate::geometry::{Hull, Vec2};
@@ -6,19 +6,19 @@ use tiny_skia::Point;
 
 /// Fraction of the frame's shorter side that stays free around a pool.
 const MARGIN: f64 = 0.03;
-/// Fraction of the frame's height that the legend takes, above and below, in open water.
+/// Fraction of the frame's height that the legend takes in open water, above and again below.
 const LEGEND: f64 = 0.12;
-/// The least half-width that open water shows, in hull lengths, so that a lone boat does not fill the frame.
+/// The least half-width of open water in a frame, in hull lengths. A lone boat does not fill the frame.
 const LEAST_LENGTHS: f64 = 6.0;
-/// Number of steps in which the scale of open water doubles. With coarse steps it seldom changes.
+/// Number of steps in which the scale of open water doubles. With steps the scale seldom changes.
 const STEPS: f64 = 8.0;
 
-/// A similarity from world (cm) to pixels.
+/// The map from world coordinates in cm to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
     /// World point in the middle of the frame, in cm.
     pub center: Vec2,
-    /// Pixels in a cm.
+    /// Pixels per cm.
     pub scale: f64,
     /// The frame's middle, in pixels.
     middle: Vec2,
@@ -33,7 +33,7 @@ impl View {
             let radius = size.min() * (0.5 - MARGIN);
             (Vec2::zeros(), radius / pool.outer_radius_cm)
         } else {
-            following(flock, size)
+            around_boats(flock, size)
         };
         Self {
             center,
@@ -51,31 +51,31 @@ impl View {
         }
     }
 
-    /// A length in pixels.
+    /// A length in pixels, from cm.
     pub(super) fn length(&self, cm: f64) -> f32 {
         (cm * self.scale) as f32
     }
 
-    /// Whether anything within a reach (cm) of a world point is in the frame.
+    /// Whether the frame shows anything within `reach` (cm) of a world point.
     pub(super) fn shows(&self, world: Vec2, reach: f64) -> bool {
-        let room = self.middle / self.scale + Vec2::repeat(reach);
+        let half_size = self.middle / self.scale + Vec2::repeat(reach);
         let offset = (world - self.center).abs();
-        offset.x <= room.x && offset.y <= room.y
+        offset.x <= half_size.x && offset.y <= half_size.y
     }
 }
 
-/// Center and scale that hold all boats, clear of the legend.
-fn following(flock: &Flock, size: Vec2) -> (Vec2, f64) {
-    let length = 2.0 * Hull::new(flock.parameters()).reach();
+/// Center and scale of a view that shows all boats, clear of the legend.
+fn around_boats(flock: &Flock, size: Vec2) -> (Vec2, f64) {
+    let hull_length = 2.0 * Hull::new(flock.parameters()).reach();
     let (mut low, mut high) = (Vec2::repeat(f64::INFINITY), Vec2::repeat(-f64::INFINITY));
     for hull in flock.hulls() {
         low = low.inf(&hull.center);
         high = high.sup(&hull.center);
     }
-    let half =
-        ((high - low) / 2.0 + Vec2::repeat(length)).sup(&Vec2::repeat(LEAST_LENGTHS * length));
-    let room = Vec2::new(size.x, size.y * (1.0 - 2.0 * LEGEND)) / 2.0;
-    let scale = room.component_div(&half).min();
-    let step = (libm::log2(scale) * STEPS).floor() / STEPS;
-    ((low + high) / 2.0, libm::exp2(step))
+    let half_extent = (high - low) / 2.0 + Vec2::repeat(hull_length);
+    let half_extent = half_extent.sup(&Vec2::repeat(LEAST_LENGTHS * hull_length));
+    let half_frame = Vec2::new(size.x, size.y * (1.0 - 2.0 * LEGEND)) / 2.0;
+    let scale = half_frame.component_div(&half_extent).min();
+    let exponent = (libm::log2(scale) * STEPS).floor() / STEPS;
+    ((low + high) / 2.0, libm::exp2(exponent))
 }
