@@ -1,4 +1,4 @@
-//! The collective states of Table 2, from order parameters, and the ordering time of eq. (7).
+//! The collective states of Table 2 and the ordering time of eq. (7), both from order parameters.
 
 use super::OrderParameters;
 use crate::parameters::named_choice;
@@ -24,7 +24,7 @@ named_choice! {
 
 /// Ψ_o above this is high: the level of eq. (7).
 pub(crate) const HIGH_ORDER: f64 = 0.8;
-/// Ψ_o below this is low: about the middle between an ordered and a disordered flock of 27.
+/// Ψ_o below this is low: about halfway between an ordered and a disordered flock of 27 boats.
 pub(crate) const LOW_ORDER: f64 = 0.5;
 /// Mean velocities above this fraction of the preferred forward speed count as collective motion. In the analysis
 /// window a boat that started from rest moves at 0.5 to 0.9 of that speed, a jammed one below 0.1.
@@ -36,10 +36,10 @@ impl CollectiveState {
     /// The state of a flock in the analysis window from its order parameters, its boats' preferred forward speed and
     /// the fraction of boats in its largest cluster.
     pub fn from_order(order: &OrderParameters, speed_cm_s: f64, largest_cluster: f64) -> Self {
-        let moving = order.psi_v >= MOVING * speed_cm_s;
+        let is_moving = order.psi_v >= MOVING * speed_cm_s;
         if order.psi_o > HIGH_ORDER {
-            let tangential = off_tangent(order.phi_o) < FRAC_PI_4;
-            return match (tangential, moving) {
+            let is_tangential = off_tangent(order.phi_o) < FRAC_PI_4;
+            return match (is_tangential, is_moving) {
                 (true, true) if order.phi_o > 0.0 => Self::OrderedClockwise,
                 (true, true) => Self::OrderedCounterClockwise,
                 (false, false) if order.phi_o.abs() <= FRAC_PI_4 => Self::Jamming,
@@ -57,7 +57,7 @@ impl CollectiveState {
     }
 }
 
-/// ||φ| − π/2|: how far an orientation is from tangential, in rad.
+/// ||φ| − π/2|: the angle in rad between an orientation and the tangent.
 pub fn off_tangent(phi: f64) -> f64 {
     (phi.abs() - FRAC_PI_2).abs()
 }
@@ -65,14 +65,17 @@ pub fn off_tangent(phi: f64) -> f64 {
 /// Finds the ordering time τ of eq. (7), sample by sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct OrderingWatch {
+    /// Number of samples in the second half of the run.
     late_samples: u32,
+    /// Sum of Ψ_o over these samples.
     late_order: f64,
+    /// The first time at which the flock was ordered.
     first_s: Option<f64>,
 }
 
 impl OrderingWatch {
-    /// Records the order at a time since the run started. `is_late` says whether that is in the second half of the
-    /// run, and `within` is the angle in rad off the tangent below which an orientation counts as tangential.
+    /// Records the order at a time in s since the run started. `within` is the angle in rad off the tangent below which an
+    /// orientation counts as tangential. `is_late`: the time is in the second half of the run.
     pub(crate) fn note(
         &mut self,
         time_s: f64,
@@ -90,16 +93,16 @@ impl OrderingWatch {
         }
     }
 
-    /// The first time in s at which Ψ_o > 0.8 and ||φ_o| − π/2| was less than `within`, if mean Ψ_o
-    /// over the second half exceeds 0.8; otherwise infinite.
+    /// The first time in s at which Ψ_o > 0.8 and ||φ_o| − π/2| < `within`. It is infinite unless the mean Ψ_o over the
+    /// second half of the run exceeds 0.8.
     pub fn ordering_time_s(&self) -> f64 {
         let stays = self.late_order > HIGH_ORDER * f64::from(self.late_samples);
         self.first_s.filter(|_| stays).unwrap_or(f64::INFINITY)
     }
 }
 
-/// Ordering time τ (eq. 7) of a series of samples, infinite if the run does not order. The slices are of equal length,
-/// the times increasing; the run lasts until the last of them.
+/// Ordering time τ (eq. 7) of a run in s, infinite if the run does not order. The slices have equal length. Times increase
+/// from the start of the run to its end.
 pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> f64 {
     let half = time_s.last().map_or(0.0, |last| last / 2.0);
     let mut watch = OrderingWatch::default();

@@ -34,7 +34,7 @@ impl OrderParameters {
         Self::from_hulls(&hulls, velocities)
     }
 
-    /// Order parameters of boats whose direction vectors are known (two slices of equal length).
+    /// Order parameters of boats from their hulls, which hold direction vectors (two slices of equal length).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.
@@ -64,18 +64,19 @@ impl OrderParameters {
         self.psi_o * libm::cos(self.phi_o - target.sign() * FRAC_PI_2)
     }
 
-    /// m = Ψ_o·sin φ_o: distinguishes order (±1) from a jam (0).
+    /// m = Ψ_o·sin φ_o: ±1 for rotation in order, 0 for a jam.
     pub fn rotation(&self) -> f64 {
         self.psi_o * libm::sin(self.phi_o)
     }
 
-    /// Ψ_o·cos φ_o, the mean over boats of cos φ: 1 in a jam, near 0 for streams along the pool,
-    /// also for opposed streams, which cancel in m.
+    /// Ψ_o·cos φ_o, the mean of cos φ over the boats: 1 in a jam, near 0 for streams along the pool. Two opposed streams
+    /// also give 0 here, and they cancel in m.
     pub fn outward(&self) -> f64 {
         self.psi_o * libm::cos(self.phi_o)
     }
 }
 
+/// Sums over vectors.
 #[derive(Default)]
 struct VectorSum {
     count: f64,

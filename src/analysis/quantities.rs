@@ -1,6 +1,5 @@
-//! The table of the quantities that are measured at one time, each with its name, unit, meaning and
-//! formula. Recordings, tables of sweeps, the command line, episode summaries and the replay page iterate
-//! over it.
+//! The table of the quantities that are measured at one time, each with its name, unit, meaning and formula. Recordings,
+//! tables of sweeps, the command line, episode summaries and the replay page iterate over the table.
 
 use super::OrderParameters;
 use super::structure::{largest_cluster, on_outer_wall, polarization};
@@ -21,7 +20,7 @@ pub struct Boats<'a> {
 }
 
 impl Boats<'_> {
-    /// Mean over the boats of a vector that is computed from each boat's orientation, both in LAP axes.
+    /// Mean over the boats of a vector that is computed from each boat's orientation. Both vectors are in LAP axes.
     fn mean(&self, vector: impl Fn(Vec2) -> Vec2) -> Vec2 {
         let sum = self.hulls.iter().fold(Vec2::zeros(), |sum, hull| {
             sum + vector(LapFrame::at(hull.center).components(hull.axis))
@@ -30,14 +29,14 @@ impl Boats<'_> {
     }
 }
 
-/// The arguments of a quantity's formula, and the formula.
+/// A quantity's formula; the variants differ in its arguments.
 #[derive(Debug, Clone, Copy)]
 pub enum Formula {
     /// Computed from the boats at a time. Recordings keep it with every sample.
     Recorded(fn(&Boats) -> f64),
     /// Computed from order parameters and the target direction.
     Derived(fn(&OrderParameters, Target) -> f64),
-    /// Computed from poses, hull and pool; slower, so only on request.
+    /// Computed from poses and parameters. It is slower, so it is computed only on request.
     Structure(fn(&[Pose], &FlockParameters) -> f64),
 }
 
@@ -46,7 +45,7 @@ pub enum Formula {
 pub struct Quantity {
     /// Name in recordings, tables and files.
     pub name: &'static str,
-    /// A few words for labels.
+    /// Label in a few words.
     pub label: &'static str,
     /// Symbol, empty for none.
     pub symbol: &'static str,
@@ -66,7 +65,7 @@ pub struct Quantity {
     pub formula: Formula,
 }
 
-const UNIT: Option<(f64, f64)> = Some((0.0, 1.0));
+const FRACTION: Option<(f64, f64)> = Some((0.0, 1.0));
 const SIGNED: Option<(f64, f64)> = Some((-1.0, 1.0));
 const ANGLE: Option<(f64, f64)> = Some((-PI, PI));
 
@@ -74,7 +73,7 @@ const ANGLE: Option<(f64, f64)> = Some((-PI, PI));
 #[rustfmt::skip]
 pub const QUANTITIES: &[Quantity] = &[
     Quantity {
-        name: "psi_o", label: "order", symbol: "Ψ_o", unit: "", range: UNIT, least_boats: 1, is_averaged: true,
+        name: "psi_o", label: "order", symbol: "Ψ_o", unit: "", range: FRACTION, least_boats: 1, is_averaged: true,
         meaning: "length of the mean orientation; some 0.886/√N for N disordered boats", source: "eq. (1)",
         formula: Formula::Recorded(|boats| boats.order.psi_o),
     },
@@ -105,8 +104,8 @@ pub const QUANTITIES: &[Quantity] = &[
         formula: Formula::Recorded(|boats| boats.order.c_v),
     },
     Quantity {
-        name: "nematic", label: "nematic order", symbol: "Ψ_n", unit: "", range: UNIT, least_boats: 1, is_averaged: true,
-        meaning: "|mean exp(2iφ)| of the LAP orientations φ: 1 also where boats head against each other",
+        name: "nematic", label: "nematic order", symbol: "Ψ_n", unit: "", range: FRACTION, least_boats: 1, is_averaged: true,
+        meaning: "|mean exp(2iφ)| of the LAP orientations φ: 1 also if boats head in opposite directions",
         source: "two-dimensional nematic order parameter",
         formula: Formula::Recorded(|boats| {
             boats.mean(|o| Vec2::new(o.x * o.x - o.y * o.y, 2.0 * o.x * o.y)).norm()
@@ -115,7 +114,7 @@ pub const QUANTITIES: &[Quantity] = &[
     Quantity {
         name: "milling", label: "milling", symbol: "M", unit: "", range: SIGNED, least_boats: 1, is_averaged: true,
         meaning: "angular momentum about the pool's center over its greatest value at these speeds and radii: \
-                  +1 all clockwise; 0 where nothing moves",
+                  +1 all clockwise; 0 if nothing moves",
         source: "Σ r×v / Σ|r||v|",
         formula: Formula::Recorded(|boats| {
             let (mut momentum, mut greatest) = (0.0, 0.0);
@@ -148,20 +147,20 @@ pub const QUANTITIES: &[Quantity] = &[
         formula: Formula::Derived(|order, _| super::collective_state::off_tangent(order.phi_o)),
     },
     Quantity {
-        name: "largest_cluster", label: "largest cluster", symbol: "", unit: "", range: UNIT, least_boats: 1,
+        name: "largest_cluster", label: "largest cluster", symbol: "", unit: "", range: FRACTION, least_boats: 1,
         is_averaged: false, meaning: "part of the boats that the largest cluster holds: boats joined by gaps below \
                                       0.5 cm", source: "",
         formula: Formula::Structure(largest_cluster),
     },
     Quantity {
-        name: "on_outer_wall", label: "on the outer wall", symbol: "", unit: "", range: UNIT, least_boats: 1,
+        name: "on_outer_wall", label: "on the outer wall", symbol: "", unit: "", range: FRACTION, least_boats: 1,
         is_averaged: false, meaning: "part of the boats within 0.5 cm of the outer wall", source: "",
         formula: Formula::Structure(on_outer_wall),
     },
     Quantity {
-        name: "polarization", label: "polarization", symbol: "", unit: "", range: UNIT, least_boats: 1,
-        is_averaged: false, meaning: "length of the mean heading in the axes of the world: 1 where all boats point \
-                                      the same way, wherever they are", source: "Vicsek et al. (1995)",
+        name: "polarization", label: "polarization", symbol: "", unit: "", range: FRACTION, least_boats: 1,
+        is_averaged: false, meaning: "length of the mean heading in world axes: 1 if all boats point the same way, \
+                                      wherever they are", source: "Vicsek et al. (1995)",
         formula: Formula::Structure(|poses, _| polarization(poses)),
     },
 ];
@@ -176,13 +175,11 @@ impl Quantity {
         };
         let declared = named_fields!(self; name label symbol unit meaning source range least_boats
             is_averaged);
-        declared
-            .into_iter()
-            .chain([("kind", kind.into())])
-            .collect()
+        let fields = declared.into_iter().chain([("kind", kind.into())]);
+        fields.collect()
     }
 
-    /// Whether summaries of episodes hold its mean.
+    /// Whether episode summaries hold the quantity's mean.
     const fn is_summarized(&self) -> bool {
         self.is_averaged && !matches!(self.formula, Formula::Structure(_))
     }
@@ -259,8 +256,8 @@ pub fn recorded(hulls: &[HullPose], velocities: &[Velocity]) -> Result<Recorded>
 /// # Errors
 /// [`FlockError::Parameter`] lists the known names.
 pub fn quantity(name: &str) -> Result<&'static Quantity> {
-    let found = QUANTITIES.iter().find(|quantity| quantity.name == name);
-    found.ok_or_else(|| {
+    let quantity = QUANTITIES.iter().find(|quantity| quantity.name == name);
+    quantity.ok_or_else(|| {
         let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
         let accepted = format!("one of {}", names.join(", "));
         FlockError::parameter("quantity", format!("{name:?}"), accepted)

@@ -1,4 +1,4 @@
-//! Boats at many times, some of them missing: tracks of robots and animals have gaps.
+//! Boats at many times. At some times boats may be missing, as in tracks of robots and animals.
 
 use super::quantities::{RECORDED, Recorded, recorded};
 use crate::error::Result;
@@ -42,8 +42,8 @@ impl Samples {
             .map(|rows| rows.iter().filter(|row| row.is_finite()).copied().collect())
     }
 
-    /// The recorded quantities at each time, over the boats that have both a pose and a velocity; NaN if there are
-    /// none.
+    /// The recorded quantities at each time, over the boats that have both a pose and a velocity; NaN if no boat has
+    /// both.
     ///
     /// # Errors
     /// Those of [`recorded`].
@@ -52,11 +52,11 @@ impl Samples {
         let mut hulls = Vec::new();
         let times = self.by_time().zip(velocities.by_time());
         times
-            .map(|(poses, rows)| {
-                let both = poses.iter().zip(rows);
-                let both = both.filter(|(pose, row)| pose.is_finite() && row.is_finite());
+            .map(|(poses, velocity_rows)| {
+                let boats = poses.iter().zip(velocity_rows);
+                let present = boats.filter(|(pose, row)| pose.is_finite() && row.is_finite());
                 let (poses, velocities): (Vec<_>, Vec<_>) =
-                    both.map(|(pose, row)| (*pose, velocity(row))).unzip();
+                    present.map(|(pose, row)| (*pose, velocity(row))).unzip();
                 HullPose::replace_all(&mut hulls, &poses);
                 if hulls.is_empty() {
                     return Ok([f64::NAN; RECORDED]);
@@ -69,40 +69,53 @@ impl Samples {
     /// Velocities from poses, and the number of steps that were too fast. `times_s` holds the time of each row: each
     /// boat may have its own clock.
     ///
-    /// If a boat is seen before and after a time, its velocity is the mean of both differences, each weighted by the
-    /// other one's time step. This is exact for a constant acceleration. At the ends of a track differences are
-    /// one-sided. Steps longer than `longest_s` or faster than `fastest_cm_s` give no difference; the fast ones are
-    /// counted. Rows without a difference are NaN.
+    /// A step is the motion of a boat from one time to the next. If a row has a step before and after it, its velocity is
+    /// the mean of both steps' velocities, each weighted by the other step's duration. This is exact for a constant
+    /// acceleration. If a row has one step, its velocity is that step's. If it has none, its velocity is NaN.
+    ///
+    /// Steps longer than `longest_s` and steps faster than `fastest_cm_s` are left out.
     pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
-        let (mut broken, rows) = (0, &self.rows);
-        let mut step = |row: usize| {
-            let (before, after) = (row.checked_sub(self.boats)?, row);
-            let time_s = times_s.get(after)? - times_s[before];
-            let (from, to) = (rows[before], rows[after]);
-            let velocity = (to.position - from.position) * time_s.recip();
-            let slope = Pose::new(velocity.x, velocity.y, (to.heading - from.heading) / time_s);
-            if !slope.is_finite() || time_s > longest_s {
+        let mut too_fast = 0;
+        // Velocity and duration of the step that ends at a row.
+        let mut step_to = |row: usize| {
+            let previous = row.checked_sub(self.boats)?;
+            let duration_s = times_s.get(row)? - times_s[previous];
+            let velocity = mean_velocity(&self.rows[previous], &self.rows[row], duration_s);
+            if !velocity.is_finite() || duration_s > longest_s {
                 return None;
             }
-            let is_fast = velocity.norm_squared() > fastest_cm_s * fastest_cm_s;
-            broken += usize::from(is_fast);
-            (!is_fast).then_some((slope, time_s))
+            let is_fast = velocity.position.norm_squared() > fastest_cm_s * fastest_cm_s;
+            too_fast += usize::from(is_fast);
+            (!is_fast).then_some((velocity, duration_s))
         };
-        let steps: Vec<_> = (0..rows.len() + self.boats).map(&mut step).collect();
-        let mean = |row: usize| match (steps[row], steps[row + self.boats]) {
-            (Some((a, short)), Some((b, long))) => {
-                let share = long / (short + long);
-                let mix = |x: f64, y: f64| x * share + y * (1.0 - share);
-                Pose::new(
-                    mix(a.position.x, b.position.x),
-                    mix(a.position.y, b.position.y),
-                    mix(a.heading, b.heading),
-                )
+        let steps: Vec<_> = (0..self.rows.len() + self.boats)
+            .map(&mut step_to)
+            .collect();
+        let velocity = |row: usize| match (steps[row], steps[row + self.boats]) {
+            (Some((before, before_s)), Some((after, after_s))) => {
+                weighted_mean(&before, &after, after_s / (before_s + after_s))
             }
             (Some((only, _)), None) | (None, Some((only, _))) => only,
             (None, None) => Pose::new(f64::NAN, f64::NAN, f64::NAN),
         };
-        let means = (0..rows.len()).map(mean).collect();
-        (Self::new(means, self.boats), broken)
+        let velocities = (0..self.rows.len()).map(velocity).collect();
+        (Self::new(velocities, self.boats), too_fast)
     }
+}
+
+/// The mean velocity of a motion from one pose to another, as a row.
+fn mean_velocity(from: &Pose, to: &Pose, duration_s: f64) -> Pose {
+    let velocity = (to.position - from.position) * duration_s.recip();
+    let angular = (to.heading - from.heading) / duration_s;
+    Pose::new(velocity.x, velocity.y, angular)
+}
+
+/// The mean of two rows, of which the first has this weight.
+fn weighted_mean(first: &Pose, second: &Pose, weight: f64) -> Pose {
+    let mix = |x: f64, y: f64| x * weight + y * (1.0 - weight);
+    Pose::new(
+        mix(first.position.x, second.position.x),
+        mix(first.position.y, second.position.y),
+        mix(first.heading, second.heading),
+    )
 }

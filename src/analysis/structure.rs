@@ -1,4 +1,4 @@
-//! Where boats are relative to each other and to the wall.
+//! The structure of a flock: clusters, jams, boats at the outer wall, and headings in world axes.
 
 use crate::contact::{join, root};
 use crate::geometry::lap_frame::orientation;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Hulls touch if their gap is below this, in cm.
 pub const IN_TOUCH_CM: f64 = 0.5;
 
-/// The fewest boats of a jam.
+/// The least number of boats in a jam.
 pub const JAM_BOATS: usize = 3;
 
 /// Largest angle in rad between a jammed boat's heading and the outward direction.
@@ -25,9 +25,9 @@ pub fn largest_cluster(poses: &[Pose], parameters: &FlockParameters) -> f64 {
 /// Sizes of the jams, in no particular order. A jam has at least [`JAM_BOATS`] boats that face outward within
 /// [`JAM_ANGLE`] and are joined by gaps below [`IN_TOUCH_CM`].
 pub fn jam_sizes(poses: &[Pose], parameters: &FlockParameters) -> Vec<usize> {
-    let outward = |pose: &&Pose| orientation(pose).abs() <= JAM_ANGLE;
-    let facing: Vec<Pose> = poses.iter().filter(outward).copied().collect();
-    let mut sizes = cluster_sizes(&facing, parameters);
+    let faces_outward = |pose: &&Pose| orientation(pose).abs() <= JAM_ANGLE;
+    let outward_poses: Vec<Pose> = poses.iter().filter(faces_outward).copied().collect();
+    let mut sizes = cluster_sizes(&outward_poses, parameters);
     sizes.retain(|&size| size >= JAM_BOATS);
     sizes
 }
@@ -63,8 +63,8 @@ pub fn on_outer_wall(poses: &[Pose], parameters: &FlockParameters) -> f64 {
     at_wall.count() as f64 / poses.len() as f64
 }
 
-/// Length of the mean heading in the axes of the world (Vicsek et al. 1995): 1 if all boats point the same way, some
-/// 0.886/√N for N independent headings; NaN without boats.
+/// Length of the mean heading in world axes (Vicsek et al. 1995): 1 if all boats point the same way, about 0.886/√N for N
+/// independent headings; NaN without boats.
 pub fn polarization(poses: &[Pose]) -> f64 {
     let sum = poses
         .iter()

@@ -6,13 +6,12 @@ use crate::draw::palette::{DAMPED_LAW, LEARNED, PAPER_LAW, Rgb, TUNED_LAW};
 use crate::error::{FlockError, Result};
 use crate::parameters::Value;
 
-/// A law that leaders steer by. To add one, add a variant, a line of [`Law::NAMED`], and its rudder in
-/// `Law::rudder`.
+/// A law that leaders steer by. A new law needs a variant here, a row in [`Law::NAMED`], and its rudder in `Law::rudder`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// The paper's law, eq. (10), at every substep, from the flock itself.
     EverySubstep,
-    /// The paper's law at every decision, from the leader's observation, like all laws below.
+    /// The paper's law at every decision, from the leader's observation. All laws below also use observations.
     Paper,
     /// The damped law with these gains; the tuned law is the one with the gains tuned in the pool.
     Damped(DampedLaw),
@@ -20,14 +19,14 @@ pub enum Law {
     Leaning(Box<LeaningLaw>),
 }
 
-/// A law that commands, recordings, pictures and pages know by its name.
+/// A law that commands, recordings, pictures and pages use by its name.
 #[derive(Debug, Clone, Copy)]
 pub struct NamedLaw {
     /// The name.
     pub name: &'static str,
     /// Description for the documentation.
     pub doc: &'static str,
-    /// The color that it has in every picture; `None`: the next free color.
+    /// The law's color in every picture; `None`: the next free color.
     pub color: Option<Rgb>,
     origin: Origin,
 }
@@ -35,7 +34,7 @@ pub struct NamedLaw {
 /// Origin of a named law.
 #[derive(Debug, Clone, Copy)]
 enum Origin {
-    /// It is the same in every pool.
+    /// The same law in every pool.
     Everywhere(fn() -> Law),
     /// Each named pool has its own law.
     OfPool(fn(Option<&str>) -> Result<Law>),
@@ -84,7 +83,7 @@ impl Law {
         },
         NamedLaw {
             name: "paper's law",
-            doc: "The paper's law at every decision, from what a leader observes, as all that follow.",
+            doc: "The paper's law, eq. (10), at every decision, from the leader's observation.",
             color: Some(PAPER_LAW),
             origin: Origin::Everywhere(|| Self::Paper),
         },
@@ -117,13 +116,13 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`] for other names, and as for [`NamedLaw::law`].
     pub fn named(name: &str, pool: Option<&str>) -> Result<Self> {
-        let found = Self::NAMED.iter().find(|law| law.name == name);
+        let law = Self::NAMED.iter().find(|law| law.name == name);
         let names = || {
             let names = Self::NAMED.iter().map(|law| format!("{:?}", law.name));
             format!("one of {}", names.collect::<Vec<_>>().join(", "))
         };
         let unknown = || FlockError::parameter("law", format!("{name:?}"), names());
-        found.ok_or_else(unknown)?.law(pool)
+        law.ok_or_else(unknown)?.law(pool)
     }
 
     /// Refuses the law at every substep, which cannot be followed from observations.
@@ -136,7 +135,7 @@ impl Law {
         FlockError::unless(reads, "law", Self::EVERY_SUBSTEP, accepted)
     }
 
-    /// Names and values of its gains.
+    /// Names and values of the gains of the damped law that steers; empty for other laws.
     pub fn gains(&self) -> Vec<(&'static str, f64)> {
         self.damped()
             .map_or_else(Vec::new, |law| law.gains().to_vec())
@@ -152,16 +151,16 @@ impl Law {
         self.leaning().ok_or_else(refuse)?.to_json()
     }
 
-    /// Checks its numbers.
+    /// Checks the law's numbers.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`].
+    /// [`FlockError::Parameter`] if a number is out of range.
     pub fn check(&self) -> Result<()> {
         self.damped().map_or(Ok(()), DampedLaw::check)?;
         self.leaning().map_or(Ok(()), LeaningLaw::check)
     }
 
-    /// The damped law that this law uses to steer, if any.
+    /// The damped law by which this law steers, if any.
     fn damped(&self) -> Option<&DampedLaw> {
         match self {
             Self::Damped(law) => Some(law),

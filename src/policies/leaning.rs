@@ -1,5 +1,5 @@
-//! The leaning law: a heading that leans outward of the target's tangent, or a rudder, as a linear function of what a
-//! leader sees.
+//! The leaning law: a heading that leans outward of the target's tangent, or a rudder, as a bounded linear function of a
+//! leader's observation.
 
 use crate::boat::DampedLaw;
 use crate::environment::LARGEST_LEAN;
@@ -8,17 +8,17 @@ use crate::error::{FlockError, Result};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 
-/// Bound of a lean, within ±[`LARGEST_LEAN`].
+/// How an action is kept in [−1, 1], where 1 is a lean of [`LARGEST_LEAN`] or the full rudder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Bound {
     /// By a hyperbolic tangent.
     Tanh,
-    /// Cut off beyond.
+    /// By clipping.
     Clip,
 }
 
-/// Judgment of a law: the order that it reached, and in which flocks.
+/// The order that a law reached when it was judged, and in which flocks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Judged {
@@ -41,22 +41,22 @@ pub struct Judged {
 /// The damped law about a heading that leans outward of the target's tangent: by bias + Σ weight·feature in rad, where
 /// the features are the standardized lean features. Without gains the sum is the rudder itself, for a clockwise target.
 ///
-/// The stored form: JSON, with weights by the names of their features.
+/// It is stored as JSON, with each weight under the name of its feature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeaningLaw {
     #[serde(deserialize_with = "known_format")]
     format: u32,
-    /// Name of its pool, by whose usual values its features are standardized.
+    /// Name of the pool whose usual values standardize the features.
     pub pool: String,
-    /// Its judgment.
+    /// The order that the law reached when it was judged, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Judged>,
-    /// The damped law that steers to the heading; `None`: leaders choose rudders. A file has to say so explicitly: one
-    /// without `gains` is incomplete.
+    /// The damped law that steers to the heading; `None`: leaders choose rudders. A file must hold `gains`, if only as
+    /// `null`.
     #[serde(deserialize_with = "Option::deserialize")]
     pub gains: Option<DampedLaw>,
-    /// Bound of the lean.
+    /// How the action is kept in [−1, 1].
     pub bound: Bound,
     /// Time in s for which a lean or a rudder is held, a whole number of control steps; `None`: one control step. If
     /// leans are held, the gains must be those tuned in the pool, as for the action mode "lean".
@@ -67,7 +67,7 @@ pub struct LeaningLaw {
     /// Rad, or rudder, per standard deviation of each feature.
     #[serde(with = "by_feature")]
     pub weights: [f64; LEAN_FEATURES],
-    /// Its provenance: short texts by name.
+    /// The law's provenance: short texts by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub provenance: BTreeMap<String, String>,
 }
@@ -84,6 +84,7 @@ fn known_format<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Resu
     }
 }
 
+/// Weights by the names of their features.
 mod by_feature {
     use super::*;
     use serde::de::Error;
@@ -103,15 +104,15 @@ mod by_feature {
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> std::result::Result<[f64; LEAN_FEATURES], D::Error> {
-        let mut given = BTreeMap::<String, f64>::deserialize(deserializer)?;
+        let mut by_name = BTreeMap::<String, f64>::deserialize(deserializer)?;
         let mut weights = [0.0; LEAN_FEATURES];
         for (weight, name) in weights.iter_mut().zip(LeanFeatures::names()) {
-            let found = given.remove(name);
+            let stored = by_name.remove(name);
             let missing =
                 || D::Error::custom(format!("weights lack {name}: each lean feature needs one"));
-            *weight = found.ok_or_else(missing)?;
+            *weight = stored.ok_or_else(missing)?;
         }
-        match given.pop_first() {
+        match by_name.pop_first() {
             None => Ok(weights),
             Some((name, _)) => Err(D::Error::custom(format!(
                 "weights have {name:?}, which is no lean feature: {}",
@@ -121,7 +122,7 @@ mod by_feature {
     }
 }
 
-/// The pretrained leaders, by the name of their pool: those that ship by the rule of `baselines/pretrained.py`. Source:
+/// The pretrained leaders by the name of their pool. The rule of `baselines/pretrained.py` chose them. Source:
 /// `studies/trainings`, results version 5.
 const LEARNED: [(&str, &str); 1] = [("wide", include_str!("learned/wide.json"))];
 
@@ -152,7 +153,7 @@ impl LeaningLaw {
         Ok(law)
     }
 
-    /// The law of a JSON text.
+    /// The law in a JSON text.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for text that is not a law, and for laws that [`Self::check`] refuses.
@@ -174,13 +175,13 @@ impl LeaningLaw {
         text.map_err(|error| FlockError::parameter("policy", error, "what JSON can hold"))
     }
 
-    /// The pretrained leaders of a pool, by its name, if it has one.
+    /// The pretrained leaders of the pool with this name.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for pools without any.
+    /// [`FlockError::Parameter`] for pools without pretrained leaders.
     pub fn learned(pool: Option<&str>) -> Result<Self> {
-        let found = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
-        let (_, text) = found.ok_or_else(|| {
+        let entry = LEARNED.iter().find(|(name, _)| Some(*name) == pool);
+        let (_, text) = entry.ok_or_else(|| {
             let pools = LEARNED.map(|(name, _)| name).join(" and ");
             let accepted = format!(
                 "learned leaders are for {pools}: in narrow none led better than the tuned law"
@@ -190,11 +191,11 @@ impl LeaningLaw {
         Self::from_json(text)
     }
 
-    /// Checks its numbers.
+    /// Checks the law's numbers.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for numbers that are not finite, pools whose features are not standardized, and leans that
-    /// are held with other gains than those tuned in the pool.
+    /// [`FlockError::Parameter`] for numbers out of range, for pools whose features are not standardized, and if leans are
+    /// held with gains other than those tuned in the pool.
     pub fn check(&self) -> Result<()> {
         self.gains.map_or(Ok(()), |gains| gains.check())?;
         LeanFeatures::check_pool(Some(&self.pool))?;
@@ -220,16 +221,17 @@ impl LeaningLaw {
         FlockError::unless(is_time, "decision_period_s", period, accepted)
     }
 
-    /// The lean over [`LARGEST_LEAN`], or the rudder, for standardized features; in [−1, 1], rounded as actions are.
+    /// The action for standardized features: the lean over [`LARGEST_LEAN`], or the rudder. It lies in [−1, 1] and is
+    /// rounded as actions are.
     pub fn action(&self, features: &[f32]) -> f32 {
         let terms = self.weights.iter().zip(features);
-        let lean: f64 = terms.fold(self.bias, |lean, (weight, &feature)| {
-            lean + weight * f64::from(feature)
+        let sum: f64 = terms.fold(self.bias, |sum, (weight, &feature)| {
+            sum + weight * f64::from(feature)
         });
         let action = if self.gains.is_some() {
-            lean / LARGEST_LEAN
+            sum / LARGEST_LEAN
         } else {
-            lean
+            sum
         };
         let bounded = match self.bound {
             Bound::Tanh => libm::tanh(action),

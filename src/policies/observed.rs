@@ -9,34 +9,36 @@ use crate::error::{FlockError, Result};
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservedLaw {
     law: Law,
+    /// Size of an observation.
     size: usize,
-    /// `None` if the law's actions are rudders, or leans that the environment steers to.
+    /// Reads a leader's course. `None` if the law does not need it: a leaning law may choose a rudder itself, or a lean that
+    /// the environment steers to.
     courses: Option<CourseReader>,
-    /// Index of the first lean feature, if the law reads them.
-    features: Option<usize>,
+    /// Index of the first lean feature in an observation, if the law reads lean features.
+    first_feature: Option<usize>,
 }
 
 impl ObservedLaw {
     /// A law for observations of a checked layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if a block that the law reads is switched off, and for the law at every substep, which
-    /// reads no observations.
+    /// [`FlockError::Parameter`] if a block that the law reads is switched off, and for the law at every substep, which does
+    /// not read observations.
     pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
         law.check_reads_observations()?;
         law.check()?;
-        let features = layout.offset(Block::LeanFeatures);
-        let is_met = features.is_some() || law.leaning().is_none();
-        let accepted = "a leaning law reads this block; switch it on";
-        FlockError::unless(is_met, "observation", "lean_features: off", accepted)?;
         let leaning = law.leaning();
-        let acts =
-            leaning.is_some_and(|law| law.decision_period_s.is_some() || law.gains.is_none());
-        let courses = (!acts).then(|| CourseReader::new(layout)).transpose()?;
+        let first_feature = layout.offset(Block::LeanFeatures);
+        let has_block = first_feature.is_some() || leaning.is_none();
+        let accepted = "a leaning law reads this block; switch it on";
+        FlockError::unless(has_block, "observation", "lean_features: off", accepted)?;
+        let reads_course =
+            leaning.is_none_or(|law| law.decision_period_s.is_none() && law.gains.is_some());
+        let courses = reads_course.then(|| CourseReader::new(layout));
         Ok(Self {
             size: layout.size(),
-            courses,
-            features: features.filter(|_| leaning.is_some()),
+            courses: courses.transpose()?,
+            first_feature: first_feature.filter(|_| leaning.is_some()),
             law,
         })
     }
@@ -46,12 +48,12 @@ impl ObservedLaw {
         self.size
     }
 
-    /// The action for one observation: a rudder, or a lean if the law holds leans. It is mirrored if the observation
-    /// is. It depends on nothing else, such as other observations of a batch.
+    /// The action for one observation: a rudder, or a lean if the law holds leans. If the observation is mirrored, so is the
+    /// action. The action does not depend on other observations.
     pub fn action(&self, observation: &[f32]) -> f64 {
-        let lean = self.law.leaning().zip(self.features);
-        let lean = lean.map_or(0.0, |(law, index)| {
-            f64::from(law.action(&observation[index..index + LEAN_FEATURES]))
+        let leaning = self.law.leaning().zip(self.first_feature);
+        let lean = leaning.map_or(0.0, |(law, first)| {
+            f64::from(law.action(&observation[first..first + LEAN_FEATURES]))
         });
         match &self.courses {
             Some(courses) => {

@@ -1,4 +1,4 @@
-//! A pilot, which steers a flock's leaders by a law.
+//! The pilot, which steers a flock's leaders by a law.
 
 use super::Law;
 use crate::clock::whole_steps;
@@ -13,17 +13,17 @@ use crate::parameters::FlockParameters;
 #[derive(Debug, Clone)]
 pub struct Pilot {
     law: Law,
-    /// Control steps from one decision to the next.
-    period: u32,
-    /// Control steps since the last decision.
+    /// Number of control steps from one decision to the next.
+    steps_per_decision: u32,
+    /// Number of control steps since the last decision.
     steps: u32,
-    /// Angle in rad by which each leader's heading leans outward. If the law chooses rudders: its rudder for a clockwise
-    /// target.
+    /// Angle in rad by which each leader's heading leans outward. If the law chooses rudders, it is the leader's rudder for a
+    /// clockwise target.
     leans: Vec<f64>,
     views: Views,
 }
 
-/// Readers of courses, for flocks with certain parameters.
+/// Readers of courses and lean features, for flocks with these parameters.
 #[derive(Debug, Clone)]
 struct Views {
     parameters: FlockParameters,
@@ -44,19 +44,20 @@ impl Views {
 }
 
 impl Pilot {
-    /// A pilot for a flock with these checked parameters and a number of control steps per second.
+    /// A pilot for a flock with these checked parameters. `control_hz` is the number of control steps per second.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, whose decisions are not a whole number
-    /// of control steps apart, or that acts at every substep.
+    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, for the law at every substep, and for a law
+    /// whose decisions are not a whole number of control steps apart.
     pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
         law.check_reads_observations()?;
         law.check()?;
-        let period = law.leaning().and_then(|law| law.decision_period_s);
-        let period = period
-            .map(|period| whole_steps("decision_period_s", period, control_hz, "control steps"));
+        let period_s = law.leaning().and_then(|law| law.decision_period_s);
+        let steps_per_decision = period_s.map_or(Ok(1), |period_s| {
+            whole_steps("decision_period_s", period_s, control_hz, "control steps")
+        });
         Ok(Self {
-            period: period.transpose()?.unwrap_or(1),
+            steps_per_decision: steps_per_decision?,
             steps: 0,
             leans: vec![0.0; parameters.n_leaders],
             views: Views::new(&law, parameters)?,
@@ -78,7 +79,7 @@ impl Pilot {
         if self.steps == 0 {
             self.decide(&view);
         }
-        self.steps = (self.steps + 1) % self.period;
+        self.steps = (self.steps + 1) % self.steps_per_decision;
         let chooses_rudders = self.law.leaning().is_some_and(|law| law.gains.is_none());
         let leans = self.leans.iter().enumerate();
         let rudders = leans.map(|(leader, &lean)| {
@@ -91,11 +92,12 @@ impl Pilot {
         Ok(rudders.collect())
     }
 
+    /// Replaces the leans, if the law is a leaning law.
     fn decide(&mut self, view: &FlockView) {
         if let (Some(law), Some(features)) = (self.law.leaning(), &mut self.views.features) {
-            let largest = law.gains.map_or(1.0, |_| LARGEST_LEAN);
+            let scale = law.gains.map_or(1.0, |_| LARGEST_LEAN);
             for (leader, lean) in self.leans.iter_mut().enumerate() {
-                *lean = largest * f64::from(law.action(&features.observed(view, leader)));
+                *lean = scale * f64::from(law.action(&features.observed(view, leader)));
             }
         }
     }
@@ -108,7 +110,8 @@ impl Pilot {
         }
     }
 
-    /// Continues a run with control steps for about this many substeps times boats, or to its end.
+    /// Continues a run until about `boat_substeps` (substeps times boats) are done, or to its end. Steers at each control
+    /// step.
     ///
     /// # Errors
     /// As for [`Recorder::run`] and [`Self::rudders`].
@@ -118,17 +121,17 @@ impl Pilot {
         keep_going: KeepGoing,
         boat_substeps: u64,
     ) -> Result<Pause> {
-        let mut left = boat_substeps;
+        let mut work_left = boat_substeps;
         loop {
-            let before = recorder.flock().statistics().substeps;
-            let pause = recorder.run(keep_going, left)?;
+            let substeps_before = recorder.flock().statistics().substeps;
+            let pause = recorder.run(keep_going, work_left)?;
             if pause != Pause::Control {
                 return Ok(pause);
             }
             recorder.steer(self.rudders(recorder.flock())?)?;
-            let substeps = recorder.flock().statistics().substeps - before;
+            let substeps = recorder.flock().statistics().substeps - substeps_before;
             let boats = recorder.flock().parameters().n_boats as u64;
-            left = left.saturating_sub(substeps * boats);
+            work_left = work_left.saturating_sub(substeps * boats);
         }
     }
 }
