@@ -36,7 +36,7 @@ declare_fields! {
     c2: f64 = 0.1, "1/(cm·s)", Range::NonNegative, "Table 3";
     /// Weathervane stabilization of forward motion (eq. 9).
     c3: f64 = 1.0, "1/cm", Range::NonNegative, "Table 3";
-    /// Strength of the angular noise (eq. 9): in rad/s^1.5 where the noise is "white", in rad/s² where it is "per-step".
+    /// Strength of the angular noise (eq. 9): in rad/s^1.5 if the noise is "white", in rad/s² if it is "per-step".
     c4: f64 = 0.1, "rad/s^1.5 or rad/s²", Range::NonNegative, "Table 3";
     /// Duration of the forward phase (Section 2.1).
     fw_s: f64 = 2.0, "s", Range::NonNegative, "Table 1";
@@ -84,8 +84,8 @@ declare_fields! {
     /// Leaders' preferred speeds as a multiple of the normal boats' (Section 2.6: "similar"). The strength of their
     /// rudder is c2.
     leader_speed_factor: f64 = 1.0, "", Range::Within(0.0, 10.0, "0 to 10"), "Section 2.6 (similar speed and power)";
-    /// Time in which the water current follows the flock: it approaches what `current_gain` sets exponentially, from
-    /// rest; 0: it follows at once.
+    /// Time constant with which the water current, from rest, exponentially approaches the current that `current_gain`
+    /// sets; 0: it follows at once.
     current_relaxation_s: f64 = 0.0, "s", Range::NonNegative, "Section 4.5, off";
 }
 
