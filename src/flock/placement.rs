@@ -51,13 +51,13 @@ pub(super) fn place(
             placed: 0,
         });
     }
-    if let Some(poses) = by_rejection(parameters.n_boats, &region, &mut rng, keep_going) {
+    if let Some(poses) = place_by_rejection(parameters.n_boats, &region, &mut rng, keep_going) {
         return Ok(poses);
     }
     let (boats, attempts) = region.growth_plan(parameters.n_boats);
-    let mut most = 0;
+    let mut most_placed = 0;
     for _ in 0..attempts {
-        let poses = by_growth(parameters, boats, &region, &mut rng, keep_going);
+        let poses = place_by_growth(parameters, boats, &region, &mut rng, keep_going);
         if !keep_going() {
             return Err(FlockError::Interrupted);
         }
@@ -65,11 +65,11 @@ pub(super) fn place(
         if placed == parameters.n_boats {
             return Ok(poses);
         }
-        most = most.max(placed);
+        most_placed = most_placed.max(placed);
     }
     Err(FlockError::Placement {
         requested: parameters.n_boats,
-        placed: most,
+        placed: most_placed,
     })
 }
 
@@ -83,7 +83,7 @@ struct Region {
     outer: f64,
     /// Area of the water in cm², without obstacles.
     area: f64,
-    /// Number of draws of a boat's position after which rejection fails.
+    /// Number of draws for each boat after which rejection fails.
     tries: usize,
 }
 
@@ -123,8 +123,7 @@ impl Region {
         region
     }
 
-    /// Sets the region to the smallest disc about the center of open water in which an area in cm² is free of
-    /// obstacles.
+    /// In open water, makes the region the smallest disc whose area without obstacles is at least `area` (cm²).
     fn enclose(&mut self, area: f64) {
         let inner_square = self.inner * self.inner;
         let share = |outer: f64| self.free_share(inner_square, outer * outer, self.hull.radius);
@@ -181,7 +180,7 @@ impl Region {
         obstacles.all(|obstacle| obstacle.distance(point) >= clearance)
     }
 
-    /// A uniform position with a uniform heading.
+    /// Draws a uniform position and a uniform heading.
     fn draw(&self, rng: &mut StreamRng) -> Pose {
         let square = rng.random_range(self.inner * self.inner..=self.outer * self.outer);
         let (radius, angle) = (square.sqrt(), rng.random_range(-PI..PI));
@@ -235,14 +234,14 @@ impl Region {
 }
 
 /// Adds boats one by one at random; `None` if a boat finds no free position.
-fn by_rejection(
+fn place_by_rejection(
     boats: usize,
     region: &Region,
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Option<Vec<Pose>> {
-    // Near half the area, adding hulls at random stalls. For very large flocks its quadratic search would be slow, and
-    // growing works.
+    // Adding hulls at random stalls if they cover nearly half of the area. For very large flocks, its quadratic search
+    // would be slow, and growing works.
     if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
@@ -262,7 +261,7 @@ fn by_rejection(
 }
 
 /// Lets small hulls grow and pushes them apart. Hulls may still overlap at the end.
-fn by_growth(
+fn place_by_growth(
     parameters: &FlockParameters,
     boats: usize,
     region: &Region,

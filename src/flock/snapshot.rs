@@ -2,7 +2,7 @@
 //! bytes, and then the state in them.
 
 use super::flock::{Flock, LATEST};
-use crate::clock::Ticks;
+use crate::clock::{Ticks, ticks};
 use crate::contact::CachedImpulse;
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
@@ -80,46 +80,51 @@ impl Snapshot {
         }
     }
 
-    /// Returns the snapshot if a flock can have its state: numbers of boats agree, and all values are in range.
+    /// Returns the snapshot if a flock can have its state.
     fn checked(self) -> Result<Self> {
         self.parameters.check()?;
         self.parameters_as_made().check()?;
-        let n = self.parameters.n_boats;
-        let motion = &self.motion;
+        let why = "the snapshot holds a state that no flock can have";
+        FlockError::unless_fitting(self.has_right_sizes() && self.is_in_range(), why)?;
+        Ok(self)
+    }
+
+    /// Whether lengths and indices fit the flock's numbers of boats and leaders.
+    fn has_right_sizes(&self) -> bool {
+        let (n, motion) = (self.parameters.n_boats, &self.motion);
         let last = &motion.last;
-        let (reference, cutoff) = &motion.neighbor_reference;
+        let (neighbor_reference, _) = &motion.neighbor_reference;
         let is_zero_or_n = |length: usize| length == 0 || length == n;
-        let fits_flock = motion.poses.len() == n
+        let fits_leaders = |rudder: &Vec<f64>| rudder.len() == self.parameters.n_leaders;
+        let mut warm_start = motion.warm_start.iter();
+        motion.poses.len() == n
             && motion.velocities.len() == n
             && is_zero_or_n(last.persistent_acceleration.len())
-            && is_zero_or_n(reference.len())
-            && last
-                .rudder
-                .as_ref()
-                .is_none_or(|rudder| rudder.len() == self.parameters.n_leaders)
+            && is_zero_or_n(neighbor_reference.len())
+            && last.rudder.as_ref().is_none_or(fits_leaders)
+            && warm_start.all(|entry| (entry.boat as usize) < n)
+    }
+
+    /// Whether all numbers are finite and in the range of a flock's numbers.
+    fn is_in_range(&self) -> bool {
+        let motion = &self.motion;
+        let last = &motion.last;
+        let (neighbor_reference, cutoff) = &motion.neighbor_reference;
+        let vectors = last.persistent_acceleration.iter();
+        let mut numbers = vectors
+            .chain(neighbor_reference)
+            .flatten()
+            .chain([&motion.step_length_s, cutoff]);
+        let mut rudders = last.rudder.iter().flatten();
+        self.time <= LATEST
             && last.phase < 4
-            && last.length <= crate::clock::ticks(1.0)
-            && motion
-                .warm_start
-                .iter()
-                .all(|entry| (entry.boat as usize) < n);
-        let vectors = last.persistent_acceleration.iter().chain(reference);
-        let is_in_range = motion.poses.iter().all(Pose::is_in_range)
+            && last.length <= ticks(1.0)
+            && motion.poses.iter().all(Pose::is_in_range)
             && motion.velocities.iter().all(Velocity::is_in_range)
             && motion.warm_start.iter().all(CachedImpulse::is_finite)
-            && last
-                .rudder
-                .iter()
-                .flatten()
-                .all(|rudder| rudder.abs() <= 1.0)
+            && rudders.all(|rudder| rudder.abs() <= 1.0)
             && motion.water_cm_s.abs() <= self.parameters.current_cap_cm_s
-            && vectors
-                .flatten()
-                .chain([&motion.step_length_s, cutoff])
-                .all(|value| value.is_finite());
-        let why = "the snapshot holds a state that no flock can have";
-        FlockError::unless_fitting(fits_flock && is_in_range && self.time <= LATEST, why)?;
-        Ok(self)
+            && numbers.all(|number| number.is_finite())
     }
 }
 

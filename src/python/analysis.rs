@@ -1,6 +1,6 @@
 //! Quantities at many times: recorded ones, those derived from them, and those of structure, from poses (t, n, 3).
 
-use super::arrays::{rows_of, same_length, wrong_shape};
+use super::arrays::{check_length, rows_of, wrong_shape};
 use super::value::argument;
 use crate::analysis::OrderParameters;
 use crate::analysis::collective_state::{CollectiveState, ordering_time};
@@ -44,8 +44,8 @@ pub(super) fn order_columns<'py>(
         let ((times, boats), (velocity_times, velocity_boats)) =
             (poses.shape(), velocities.shape());
         let expected = format!("({times}, {boats}, 3), as pose has");
-        let found = [velocity_times, velocity_boats, 3];
-        return Err(wrong_shape("velocity", &found, &expected));
+        let shape = [velocity_times, velocity_boats, 3];
+        return Err(wrong_shape("velocity", &shape, &expected));
     }
     columns(py, &poses.recorded(&velocities)?)
 }
@@ -64,8 +64,8 @@ impl Orders<'_> {
     fn rows(&self) -> PyResult<Vec<OrderParameters>> {
         let (psi_o, phi_o) = (self.psi_o.as_array(), self.phi_o.as_array());
         let psi_v = self.psi_v.as_array();
-        same_length("phi_o", phi_o.len(), psi_o.len())?;
-        same_length("psi_v", psi_v.len(), psi_o.len())?;
+        check_length("phi_o", phi_o.len(), psi_o.len())?;
+        check_length("psi_v", psi_v.len(), psi_o.len())?;
         let row = |((&psi_o, &phi_o), &psi_v)| OrderParameters {
             psi_o,
             phi_o,
@@ -128,7 +128,7 @@ pub(super) fn collective_states<'py>(
     largest_cluster: PyReadonlyArray1<'py, f64>,
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let (orders, clusters) = (orders.rows()?, largest_cluster.to_vec()?);
-    same_length("largest_cluster", clusters.len(), orders.len())?;
+    check_length("largest_cluster", clusters.len(), orders.len())?;
     let times = orders.iter().zip(clusters);
     let states = times.map(|(order, largest_cluster)| {
         CollectiveState::from_order(order, speed_cm_s, largest_cluster) as i64
@@ -145,7 +145,7 @@ pub(super) fn ordering_time_s(
     within: f64,
 ) -> PyResult<f64> {
     let (orders, times) = (orders.rows()?, time_s.to_vec()?);
-    same_length("time_s", times.len(), orders.len())?;
+    check_length("time_s", times.len(), orders.len())?;
     Ok(ordering_time(&times, &orders, within))
 }
 
@@ -158,7 +158,7 @@ pub(super) fn sampled_analysis_window<'py>(
     phase: Vec<String>,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
     let times = time_s.to_vec()?;
-    same_length("phase", phase.len(), times.len())?;
+    check_length("phase", phase.len(), times.len())?;
     let phases = phase.iter().map(|name| name.parse::<Phase>());
     let phases = phases.collect::<Result<Vec<_>, _>>()?;
     let analyzed = crate::integrator::sampled_analysis_window(&times, &phases);
@@ -198,7 +198,7 @@ pub(super) fn track_velocities<'py>(
     fastest_cm_s: f64,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, usize)> {
     let (times, samples) = (time_s.as_slice()?, samples(&pose, "pose")?);
-    same_length("time_s", times.len(), samples.rows().len())?;
+    check_length("time_s", times.len(), samples.rows().len())?;
     let (velocities, too_fast) = samples.velocities(times, longest_s, fastest_cm_s);
     let rows = velocities.rows().iter();
     let numbers = rows.flat_map(|row| [row.position.x, row.position.y, row.heading]);

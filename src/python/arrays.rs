@@ -37,7 +37,7 @@ fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResu
         };
     }
     match sequence_length(object) {
-        None => real(object, name).map(|_| Vec::new()),
+        None => real_from(object, name).map(|_| Vec::new()),
         Some(length) if length == 0 || axes == 0 => Ok(vec![length]),
         Some(length) => {
             let inner = suggested_shape(&object.get_item(0)?, name, axes - 1)?;
@@ -53,7 +53,7 @@ fn wrong_dtype(name: &str, dtype: impl std::fmt::Display) -> PyErr {
 }
 
 /// A real number from an object.
-fn real(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
+fn real_from(object: &Bound<'_, PyAny>, name: &str) -> PyResult<f64> {
     let number = value_from(object).number();
     number.ok_or_else(|| wrong_type(object, name, "a number"))
 }
@@ -76,8 +76,8 @@ impl Numbers {
         if numbers.read(object, name, expected)? {
             return Ok(numbers);
         }
-        let found = suggested_shape(object, name, MOST_AXES)?;
-        Err(wrong_shape(name, &found, &shape_text(expected)))
+        let shape = suggested_shape(object, name, MOST_AXES)?;
+        Err(wrong_shape(name, &shape, &shape_text(expected)))
     }
 
     /// Reads an item that should have this shape; returns whether it has.
@@ -92,7 +92,7 @@ impl Numbers {
         match (sequence_length(item), shape) {
             (None, []) => {
                 self.are_integers &= item.is_instance_of::<PyInt>();
-                self.values.push(real(item, name)?);
+                self.values.push(real_from(item, name)?);
                 Ok(true)
             }
             (None, _) if value_from(item).number().is_some() => Ok(false),
@@ -208,9 +208,9 @@ pub(super) fn linear<'py>(
 }
 
 /// The error for an array of another shape.
-pub(super) fn wrong_shape(name: &str, found: &[usize], expected: &str) -> PyErr {
-    let found = shape_text(found);
-    parameter_error(format!("{name} has shape {found}, expected {expected}"))
+pub(super) fn wrong_shape(name: &str, shape: &[usize], expected: &str) -> PyErr {
+    let shape = shape_text(shape);
+    parameter_error(format!("{name} has shape {shape}, expected {expected}"))
 }
 
 /// A shape as NumPy writes it.
@@ -222,11 +222,11 @@ fn shape_text(shape: &[usize]) -> String {
 }
 
 /// Refuses an array of a length other than the expected one.
-pub(super) fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
-    if found == expected {
+pub(super) fn check_length(name: &str, length: usize, expected: usize) -> PyResult<()> {
+    if length == expected {
         return Ok(());
     }
-    Err(wrong_shape(name, &[found], &shape_text(&[expected])))
+    Err(wrong_shape(name, &[length], &shape_text(&[expected])))
 }
 
 /// An array of rows from numbers in row order.
