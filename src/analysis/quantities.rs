@@ -166,8 +166,8 @@ pub const QUANTITIES: &[Quantity] = &[
 ];
 
 impl Quantity {
-    /// The fields of the declaration by name.
-    pub fn named(&self) -> Value {
+    /// The fields of the entry by name.
+    pub fn declaration(&self) -> Value {
         let kind = match self.formula {
             Formula::Recorded(_) => "recorded",
             Formula::Derived(_) => "derived",

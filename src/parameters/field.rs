@@ -6,11 +6,11 @@ use crate::error::{FlockError, Result};
 /// Declaration of a field of `S`.
 #[derive(Debug)]
 pub struct Field<S: 'static> {
-    /// Its name.
+    /// The field's name.
     pub name: &'static str,
-    /// Kind of its value.
+    /// Kind of the value.
     pub kind: Kind,
-    /// Its unit; empty for pure numbers and choices.
+    /// Unit of the value; empty for pure numbers and choices.
     pub unit: &'static str,
     /// Accepted values.
     pub range: Range,
@@ -95,7 +95,7 @@ impl<S> Field<S> {
 
     /// The declaration as values by name. Its kind is named by a Python type.
     #[cfg(feature = "python")]
-    pub(crate) fn named(&self) -> Value
+    pub(crate) fn declaration(&self) -> Value
     where
         S: Default,
     {

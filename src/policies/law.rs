@@ -57,8 +57,8 @@ impl NamedLaw {
         }
     }
 
-    /// The fields of the declaration by name.
-    pub fn named(&self) -> Value {
+    /// The name, description, color and dependence on the pool, by name.
+    pub fn declaration(&self) -> Value {
         let declared = [
             ("name", Value::from(self.name)),
             ("doc", self.doc.into()),

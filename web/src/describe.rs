@@ -47,10 +47,10 @@ pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
     json!({
-        "laws": Law::NAMED.iter().map(NamedLaw::named).map(|law| written(&law)).collect::<Json>(),
+        "laws": Law::NAMED.iter().map(NamedLaw::declaration).map(|law| written(&law)).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
-        "quantities": quantities().map(|each| written(&Quantity::named(each))).collect::<Json>(),
+        "quantities": quantities().map(|each| written(&Quantity::declaration(each))).collect::<Json>(),
         "statistics": statistics(&Statistics::default()).into_iter().map(statistic).collect::<Json>(),
         "entries": entries
             .map(|(block, index, entry)| written(&entry.named(block.name(), index)))
