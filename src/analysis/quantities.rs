@@ -47,9 +47,9 @@ pub struct Quantity {
     pub name: &'static str,
     /// Label in a few words.
     pub label: &'static str,
-    /// Symbol, empty for none.
+    /// Symbol; empty: no symbol.
     pub symbol: &'static str,
-    /// Unit, empty for none.
+    /// Unit; empty for pure numbers.
     pub unit: &'static str,
     /// Meaning, with its sign.
     pub meaning: &'static str,

@@ -117,9 +117,9 @@ declare_palette! {
     TUNED_LAW = "tuned-law": ORANGE, ORANGE;
     /// The learned leaders.
     LEARNED = "learned": GREEN, hex(0x7BD88F);
-    /// A run that no law led, or the second run of one law.
+    /// A run without a law, or a law's second run.
     RUN_1 = "run-1": hex(0x3A4651), hex(0xE8EDF2);
-    /// The second of such runs.
+    /// Another run of that kind.
     RUN_2 = "run-2": hex(0xB5508A), hex(0xE8A0C8);
     /// Rails of gauges, and borders.
     TRACK = "track": hex(0xDDDCD6), hex(0x2C353E);
@@ -137,7 +137,7 @@ named_choice! {
     }
 }
 
-/// A boat circles if |sin φ| is at least this, where φ is its LAP orientation: if it heads at least 30° off the radius.
+/// A boat circles if |sin φ| of its LAP orientation φ is at least this: if it heads at least 30° off the radius.
 pub const CIRCLES_FROM: f64 = 0.5;
 
 /// The color of the direction in which a boat circles.

@@ -42,7 +42,7 @@ impl Flock {
     }
 }
 
-/// Moves boats along the radius from one pool to another. Each keeps its relative distance between the walls.
+/// Moves boats along the radius into a new pool. Each boat keeps its relative distance between the walls.
 fn poses_in_new_pool(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
     let mut poses = poses.to_vec();
     if old == new {

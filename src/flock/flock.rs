@@ -170,7 +170,7 @@ impl Flock {
         self.integrator.law(leader)
     }
 
-    /// Sets the target of the steering law, for all leaders or for each one.
+    /// Sets the target of the steering law, for all leaders or for each leader.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if the numbers of targets and leaders differ; the flock is unchanged then.
@@ -355,7 +355,7 @@ impl Flock {
     /// Order parameters of the normal boats, or of all.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if there is no such boat.
+    /// [`FlockError::Parameter`] if the flock has no such boats.
     pub fn order_parameters(&self, include_leaders: bool) -> Result<OrderParameters> {
         let (hulls, velocities) = self.measured(include_leaders);
         OrderParameters::from_hulls(hulls, velocities)

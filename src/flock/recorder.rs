@@ -100,8 +100,8 @@ pub struct Recording<T> {
     pub pose: Vec<T>,
     /// Velocities [cm/s, cm/s, rad/s] of all boats, sample after sample.
     pub velocity: Vec<T>,
-    /// Rudder commands of the leaders, sample after sample: those held until the sample's time or, if the steering law
-    /// steers, its commands at the recorded poses.
+    /// Rudder commands of the leaders, sample after sample. If commands are held, these are the commands before the sample.
+    /// If the steering law steers, these are its commands at the recorded poses.
     pub rudder: Vec<f64>,
     /// Recorded quantities of the normal boats; NaN in a flock without normal boats.
     pub order: Vec<Recorded>,

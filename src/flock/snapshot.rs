@@ -128,7 +128,7 @@ impl Snapshot {
     }
 }
 
-/// Stores a flock as in its snapshot, but without a checksum: the bytes that contain the flock have one.
+/// Stores a flock as in its snapshot, but without a checksum. The bytes around it have a checksum.
 impl Serialize for Flock {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
         Stored(self.snapshot_content()).serialize(to)

@@ -16,7 +16,7 @@ pub struct Field<S: 'static> {
     pub range: Range,
     /// Source of the default: a table, section or equation of the paper, or "chosen".
     pub source: &'static str,
-    /// Meaning, with its sign, and where the paper defines it.
+    /// Meaning, with its sign and its place in the paper.
     pub doc: &'static str,
     /// Reads the value.
     pub get: fn(&S) -> Value,

@@ -8,7 +8,7 @@ use crate::error::{FlockError, Result};
 pub struct Pool {
     /// Radius of the outer wall in cm; infinite: no outer wall.
     pub outer_radius_cm: f64,
-    /// Radius of the obstacle in the middle in cm; 0: none.
+    /// Radius of the obstacle in the middle in cm; 0: no obstacle.
     pub inner_radius_cm: f64,
 }
 

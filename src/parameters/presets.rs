@@ -1,4 +1,4 @@
-//! Named sets of parameters, and where each of their numbers comes from.
+//! Named sets of parameters, with the source of each number.
 
 use super::{FlockParameters, Noise, Pool, Scheme, named_choice};
 

@@ -7,7 +7,7 @@ use std::fmt;
 /// A value in the form that users write and read.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// None.
+    /// No value.
     None,
     /// True or false.
     Flag(bool),
@@ -31,7 +31,7 @@ impl Value {
         Self::List(numbers.into_iter().map(Self::Real).collect())
     }
 
-    /// The number, if the value is one.
+    /// The value as a number; `None` for other kinds.
     pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Self::Count(count) => Some(*count as f64),
@@ -40,7 +40,7 @@ impl Value {
         }
     }
 
-    /// The two numbers, if the value is a pair.
+    /// The value as two numbers; `None` unless it is a list of two numbers.
     pub(crate) fn pair(&self) -> Option<(f64, f64)> {
         match self {
             Self::List(values) => match &values[..] {

@@ -46,7 +46,7 @@ impl NamedLaw {
         matches!(self.origin, Origin::OfPool(_))
     }
 
-    /// The law itself. `pool` is the name of the flock's pool, if it has one.
+    /// The law with this declaration. `pool` is the name of the flock's pool, if it has one.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for pools in which the law has not been tuned or learned.
@@ -168,7 +168,7 @@ impl Law {
         }
     }
 
-    /// The leaning law, if this is one. Only leaning laws read lean features.
+    /// This law as a leaning law; `None` for other laws. Only leaning laws read lean features.
     pub(super) fn leaning(&self) -> Option<&LeaningLaw> {
         match self {
             Self::Leaning(law) => Some(law),

@@ -1,4 +1,4 @@
-//! Quantities at many times: recorded ones, those derived from them, and those of structure, from poses (t, n, 3).
+//! Quantities at many times: recorded, derived, and those of structure, from poses (t, n, 3).
 
 use super::arrays::{check_length, rows_of, wrong_shape};
 use super::value::argument;
@@ -32,7 +32,7 @@ pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bou
 }
 
 /// The recorded quantities of boats at each time, from poses and velocities of shape (t, n, 3). Rows of NaN stand for
-/// missing boats; quantities of too few boats are NaN.
+/// missing boats. Quantities that need more boats are NaN.
 #[pyfunction]
 pub(super) fn order_columns<'py>(
     py: Python<'py>,

@@ -146,7 +146,7 @@ pub(super) fn floats(
     Ok(Numbers::from_object(object, name, expected)?.values)
 }
 
-/// Rows of three numbers for a number of boats, such as their poses.
+/// Three numbers for each boat, such as its pose.
 pub(super) fn rows_from(
     object: &Bound<'_, PyAny>,
     name: &str,

@@ -28,7 +28,7 @@ type Step<'py> = (
 /// An array with one row per flock, boat or leader.
 type Rows<'py, T> = PyResult<Bound<'py, PyArray2<T>>>;
 
-/// Many flocks with their episodes, stepped at once. Arrays have one row per leader, flock after flock.
+/// Many flocks with their episodes, stepped together. Arrays have one row per leader, flock after flock.
 #[pyclass(name = "EnvBatch", module = "flockenv._core", frozen)]
 pub(super) struct PyEnvBatch(Exclusive<EnvBatch>);
 
@@ -277,12 +277,12 @@ impl PyEnvBatch {
         self.collect_rows(py, 1, |_, episode| episode.rudders().to_vec())
     }
 
-    /// Whether a flock has ever been given a seed.
+    /// Whether a reset has ever set a flock's seed.
     fn is_seeded(&self, flock: usize) -> Result<bool> {
         self.read_env(flock, FlockEnv::is_seeded)
     }
 
-    /// Whether a flock has an episode under way.
+    /// Whether a flock has an episode that has not ended.
     fn is_running(&self, flock: usize) -> Result<bool> {
         let is_running = |episode: &Episode| !episode.has_ended();
         self.read_env(flock, |env| env.episode().is_some_and(is_running))

@@ -1,4 +1,4 @@
-//! Objects that one Python thread uses at a time, and long work that Ctrl-C ends.
+//! Objects that refuse use by two threads at a time, and long work that Ctrl-C can end.
 
 use crate::contact::KeepGoing;
 use crate::error::{FlockError, Result};
