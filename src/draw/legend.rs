@@ -54,8 +54,8 @@ impl Legend {
         };
         let (width, height) = (canvas.width() as f32, canvas.height() as f32);
         let (size, edge) = (typeface.size, EDGE * typeface.size);
-        let top = |line: u8| edge + (0.75 + LINE * f32::from(line)) * size;
-        let bottom = height - edge;
+        let top_baseline = |line: u8| edge + (0.75 + LINE * f32::from(line)) * size;
+        let bottom_baseline = height - edge;
         let order = flock.order_parameters(false).ok();
 
         let mut write_left = |text: &str, baseline: f32, ink: Rgb| {
@@ -63,10 +63,10 @@ impl Legend {
         };
         let caption = cut_to_width(typeface, look.caption, CORNER.0 * size);
         for (line, (text, ink)) in (0..).zip(time_lines(flock, caption, grid_cm)) {
-            write_left(&text, top(line), ink);
+            write_left(&text, top_baseline(line), ink);
         }
         let psi_o = order.map(|order| format!("{:.2}", order.psi_o));
-        write_left(&labeled("order Ψₒ", psi_o), bottom, INK);
+        write_left(&labeled("order Ψₒ", psi_o), bottom_baseline, INK);
 
         let mut write_right = |text: &str, baseline: f32, color: Option<Rgb>| {
             let x = width - edge - typeface.width(text);
@@ -76,9 +76,9 @@ impl Legend {
             }
         };
         for (line, (text, color)) in (0..).zip(task_lines(flock)) {
-            write_right(&text, top(line), color);
+            write_right(&text, top_baseline(line), color);
         }
-        write_right(&signed_order(flock), bottom, None);
+        write_right(&signed_order(flock), bottom_baseline, None);
     }
 }
 
@@ -127,19 +127,19 @@ fn task_lines(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
             return vec![
                 ("targets ↻ and ↺".to_owned(), None),
                 backward,
-                (leader_count(clockwise) + " ↻", Some(LEADER)),
-                (leader_count(count - clockwise) + " ↺", Some(OPPONENT)),
+                (leaders_text(clockwise) + " ↻", Some(LEADER)),
+                (leaders_text(count - clockwise) + " ↺", Some(OPPONENT)),
             ];
         }
     };
     vec![
         (target.to_owned(), None),
         backward,
-        (leader_count(count), Some(LEADER)),
+        (leaders_text(count), Some(LEADER)),
     ]
 }
 
-fn leader_count(count: usize) -> String {
+fn leaders_text(count: usize) -> String {
     format!("{count} leader{}", if count == 1 { "" } else { "s" })
 }
 
@@ -152,15 +152,15 @@ fn phase_text(phase: Phase) -> &'static str {
     }
 }
 
-/// A text, shortened to a width in pixels.
+/// Shortens a text to a width in pixels; an ellipsis marks the cut.
 fn cut_to_width(typeface: &Typeface, text: &str, width: f32) -> String {
-    let mut shown = text.to_owned();
-    while typeface.width(&shown) > width {
-        shown.truncate(shown.trim_end_matches('…').len());
-        shown.pop();
-        shown.push('…');
+    let mut shortened = text.to_owned();
+    while typeface.width(&shortened) > width {
+        shortened.truncate(shortened.trim_end_matches('…').len());
+        shortened.pop();
+        shortened.push('…');
     }
-    shown
+    shortened
 }
 
 /// A label with its number; a dash stands for a missing number.

@@ -247,10 +247,10 @@ impl<T: Real> Recorder<T> {
     }
 
     /// Adds changes to the run, each with its time since the start of the run. A change comes after a sample at the same
-    /// time. The last changes may come after the last sample, as at the end of a ramp.
+    /// time. Changes later than the last sample have no effect; they are accepted because a ramp may end with the run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for a change after the end, and if no sample would show any of the changes.
+    /// [`FlockError::Parameter`] for a change after the end of the run, and if all changes come too late for any sample.
     pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Result<Self> {
         changes.sort_by_key(|&(time, _)| time);
         if let (Some(&(first, _)), Some(&(last, _))) = (changes.first(), changes.last()) {
