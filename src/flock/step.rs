@@ -79,11 +79,11 @@ impl Flock {
         let p = &self.parameters;
         let has_path = p.noise_scheme == Noise::White || p.c4 == 0.0;
         let accepted = "\"white\", or c4 = 0: noise that is drawn for each step has no path that shorter steps could \
-                        follow, so that no error can be stated";
+                        follow, so no error can be measured";
         FlockError::unless(has_path, "noise_scheme", p.noise_scheme.name(), accepted)?;
         let shortest = FINER * SHORTEST_S;
         let accepted = format!(
-            "{shortest:e} s or more: an error is stated against substeps of an eighth, at least {SHORTEST_S:e} s"
+            "{shortest:e} s or more: the error is measured against substeps an eighth as long, of at least {SHORTEST_S:e} s"
         );
         FlockError::unless(p.dt_s >= shortest, "dt_s", p.dt_s, accepted)?;
         let mut finer = self.clone();
