@@ -67,9 +67,10 @@ fn list_from(object: &Bound<'_, PyAny>, most_items: &[usize]) -> Option<Vec<Valu
 pub(super) fn sequence_length(object: &Bound<'_, PyAny>) -> Option<usize> {
     let is_text = object.is_instance_of::<PyString>() || object.is_instance_of::<PyBytes>();
     let is_sequence = object.cast::<PySequence>().is_ok() || object.hasattr("shape").ok()?;
-    (is_sequence && !is_text)
-        .then(|| object.len().ok())
-        .flatten()
+    if is_text || !is_sequence {
+        return None;
+    }
+    object.len().ok()
 }
 
 /// Converts a value to a Python object.
