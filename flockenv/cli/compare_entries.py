@@ -4,7 +4,6 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import typer
 
 from flockenv._io.atomic_write import write_csv
@@ -27,7 +26,7 @@ def compare_entries(
     *,
     trust: bool,
 ) -> None:
-    """Score entries, and write a row for each of their levels and one for every flock."""
+    """Score entries; write a table with a row per entry and level, and one with a row per flock."""
     levels, flocks = _levels(tasks), trial_flocks or FLOCKS
     if not files:
         raise ParameterError(f"--suite {SUITE} scores entries: name the file of one with --entry")
@@ -42,51 +41,65 @@ def compare_entries(
     prepare(table)
     if flocks < FLOCKS:
         echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
-    found = _written(entries, levels, flocks, table, printing.shows_nothing)
-    _show(found, out, printing)
-    for words in found.broken:
-        echo(f"Not scored: {words}", errors)
-    if found.broken:
+    results = _score_and_write(entries, levels, flocks, table, printing.shows_nothing)
+    _show(results, out, printing)
+    for reason in results.broken:
+        echo(f"Not scored: {reason}", errors)
+    if results.broken:
         raise typer.Exit(1)
 
 
-def _written(
+def _score_and_write(
     entries: Sequence[SuiteEntry], levels: Sequence[str], flocks: int, table: Path, quiet: bool
 ) -> Scored:
-    """Score entries and write their rows; warn of overlaps in them, also after Ctrl-C."""
-    policies = [len(entry.trainings.get(level, ())) for entry in entries for level in levels]
-    led = [LEVELS[level].flock_hours(flocks) for _ in entries for level in levels]
-    hours = sum(np.multiply(policies, led)) + 2 * sum(led[: len(levels)])
-    kept = f"{table} holds the rows of entries that were finished."
+    """Score entries, and write all rows so far after each entry.
+
+    Warns of overlaps in the written flocks, also after Ctrl-C.
+    """
     orders = table.with_name("orders.csv")
-    notes: list[str] = []
+    written: Scored | None = None
+    hours = _flock_hours(entries, levels, flocks)
     try:
-        with progress("scoring", 3600 * hours, quiet, kept=kept) as advance:
-            for found in scored(entries, levels, flocks, advance):
-                if len(found.rows):
-                    write_csv(table, found.rows, float_format="%.6g")
-                    write_csv(orders, found.orders, float_format="%.6g")
-                    notes = overlap_notes(found.orders)
+        with progress("scoring", 3600 * hours, quiet) as advance:
+            for results in scored(entries, levels, flocks, advance):
+                if len(results.rows):
+                    write_csv(table, results.rows, float_format="%.6g")
+                    write_csv(orders, results.orders, float_format="%.6g")
+                    written = results
+    except KeyboardInterrupt:
+        if written is None:
+            raise
+        stored = f"{table} holds the rows of entries that were finished."
+        raise KeyboardInterrupt(stored) from None
     finally:
-        for line in notes:
+        for line in overlap_notes(written.orders) if written is not None else ():
             warn(f"{line}; {orders} says which")
-    return found
+    return results
 
 
-def _show(found: Scored, out: Path, printing: Printing) -> None:
+def _flock_hours(entries: Sequence[SuiteEntry], levels: Sequence[str], flocks: int) -> float:
+    """Return the simulated hours of all policies of the entries and of both references."""
+    hours = {level: LEVELS[level].flock_hours(flocks) for level in levels}
+    of_entries = sum(
+        len(entry.trainings.get(level, ())) * hours[level] for entry in entries for level in levels
+    )
+    return of_entries + 2 * sum(hours.values())
+
+
+def _show(results: Scored, out: Path, printing: Printing) -> None:
     """Print the rows and the path of their table."""
     if printing.as_json:
-        print_json({"entries": json.loads(found.rows.to_json(orient="records"))})
+        print_json({"entries": json.loads(results.rows.to_json(orient="records"))})
         return
-    for row in found.rows.to_dict("records"):
-        ends_at = f"{row['score']:.3f} [{row['score_low']:.3f}, {row['score_high']:.3f}]"
-        echo(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {ends_at}")
-    if len(found.rows):
+    for row in results.rows.to_dict("records"):
+        score = f"{row['score']:.3f} [{row['score_low']:.3f}, {row['score_high']:.3f}]"
+        echo(f"{row['level']}, {row['budget']} flock-hours, {row['entry']}: {score}")
+    if len(results.rows):
         echo(f"Written to {out}")
 
 
 def _levels(tasks: Sequence[str]) -> list[str]:
-    """Return the levels with these names, or all levels if there are no names."""
+    """Return the names of the levels that `--task` names, or of all levels without `--task`."""
     refuse_unknown(tasks, LEVELS, f"level of suite {SUITE}")
     return [level for level in LEVELS if not tasks or level in tasks]
 

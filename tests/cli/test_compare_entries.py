@@ -101,6 +101,19 @@ def test_ctrl_c_keeps_finished_rows_and_their_warning(
     assert pd.read_csv(tmp_path / "entries.csv")["entry"].tolist() == ["mine"]
 
 
+def test_ctrl_c_during_the_references_names_no_file(
+    cli, entry: str, tmp_path: Path, monkeypatch
+) -> None:
+    def stopped(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("flockenv.comparison.levels.run_episodes", stopped)
+    done = cli(*words(entry, out=tmp_path / "out"))
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr.endswith("Interrupted. Nothing of it is stored.\n")
+    assert not (tmp_path / "out" / "entries.csv").exists()
+
+
 BROKEN = """
 class Broken:
     def predict(self, seen, state=None):
