@@ -34,18 +34,18 @@ COMMANDS: Mapping[str, str] = {
 
 
 def main() -> None:
-    """Run the command line; errors of the user's or of files end it with exit code 2."""
+    """Run the command line; an error of the user's or of a file ends it with exit code 2."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # Not every console has a Ψ.
-    words = sys.argv[1:]
-    if words == ["--version"]:
+    arguments = sys.argv[1:]
+    if arguments == ["--version"]:
         _print_version()  # Typer would import pydantic to read a flag.
         return
     try:
         # For completions, a shell puts the words of the line into an environment variable.
-        named = COMMANDS if "_FLOCKENV_COMPLETE" in os.environ else COMMANDS.keys() & set(words)
-        _app(named)()
+        is_completion = "_FLOCKENV_COMPLETE" in os.environ
+        _app(COMMANDS if is_completion else COMMANDS.keys() & set(arguments))()
     except (FlockError, OSError) as error:
         text = str(error)
         if isinstance(error, OSError) and error.filename is not None:
@@ -55,8 +55,8 @@ def main() -> None:
         raise SystemExit(2) from error
 
 
-def _app(named: Collection[str]) -> typer.Typer:
-    """Return the command line; commands that are not named are only a line of help."""
+def _app(imported: Collection[str]) -> typer.Typer:
+    """Return the command line. It imports these commands; of the others it has a line of help."""
     app = typer.Typer(
         no_args_is_help=True,
         rich_markup_mode="markdown",
@@ -64,15 +64,15 @@ def _app(named: Collection[str]) -> typer.Typer:
         help="Flocks of radio-controlled boats with a few steerable leaders (Tarcai et al. 2011).",
     )
     app.callback(invoke_without_command=True)(_root)
-    for name, line in COMMANDS.items():
-        if name in named:
+    for name, help_line in COMMANDS.items():
+        if name in imported:
             from flockenv.cli.command import Command
             from flockenv.cli.progress import ends_on_interrupt
 
             command = getattr(importlib.import_module(f"flockenv.cli.{name}"), name)
             app.command(cls=Command)(ends_on_interrupt(command))
         else:
-            app.command(name, help=line)(_not_imported)
+            app.command(name, help=help_line)(_not_imported)
     return app
 
 
@@ -89,7 +89,7 @@ def _root(
 
 
 def _not_imported() -> None:
-    # This is never called: a command that runs is named on the command line, and so imported.
+    # This is never called: the user names the command that runs, and named ones are imported.
     raise NotImplementedError
 
 

@@ -1,4 +1,4 @@
-"""`flockenv analyze`: recordings and data of others, summarized, drawn and written out."""
+"""`flockenv analyze`: recordings and tracks of others, summarized, drawn and written out."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def _pictures() -> list[str]:
+def _picture_endings() -> list[str]:
     kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes
     return [f".{kind}" for kind in kinds]
 
 
-def _written() -> tuple[str, ...]:
+def _output_endings() -> tuple[str, ...]:
     from flockenv.tracks import EXPORTS
 
     return (".npz", *EXPORTS)
@@ -40,10 +40,10 @@ class AnalyzeOptions(Overwriting, Printing):
         None, "TOML file with the columns and units of tracks. [beside the file]"
     )
     plot: Path | None = option(
-        None, "Picture of the first frame and of the order against time.", endings=_pictures
+        None, "Picture of the first frame and of the order against time.", endings=_picture_endings
     )
     out: Path | None = option(
-        None, "Write a recording (.npz), a table (.csv, .parquet) or .gsd.", endings=_written
+        None, "Write a recording (.npz), a table (.csv, .parquet) or .gsd.", endings=_output_endings
     )
 
 
@@ -52,10 +52,10 @@ def analyze(options: AnalyzeOptions) -> None:
     """Print the order parameters of a recording, or of tracked robots or animals.
 
     Prints the means over the analysis window after the first tenth, as `flockenv run` does. If the
-    phases of the motors are unknown, all samples after it count. A report says which rows of the
-    tracks were left out; with `--json` it stands under "tracks". If a table has no description, the
-    command guesses one, writes it beside the table and names the lines to check. Compare the first
-    frame (`--plot` draws it) with the video: no number shows that an experiment is mirrored.
+    phases of the motors are unknown, all later samples count. A report says which rows of the
+    tracks were left out; with `--json` the key "tracks" holds it. If a table has no description,
+    the command guesses one, writes it beside the table and names the lines to check. Compare the
+    first frame (`--plot` draws it) with the video: no number shows that an experiment is mirrored.
     `--out` also writes tables with their layout, or GSD for OVITO and freud.
 
     Example: `flockenv analyze tracks.csv --plot order.png --out run.gsd`
@@ -64,35 +64,35 @@ def analyze(options: AnalyzeOptions) -> None:
 
     out, plot = options.out, options.plot
     is_table = out is not None and out.suffix.lower() not in (".npz", ".gsd")
-    beside = out.with_suffix(".toml") if out is not None and is_table else None
-    written = [path for path in (plot, out, beside) if path is not None]
-    found: list[TrackReport] = []
+    layout = out.with_suffix(".toml") if out is not None and is_table else None
+    outputs = [path for path in (plot, out, layout) if path is not None]
+    track_reports: list[TrackReport] = []
     recording = load_recording(
-        options.file, options.layout, quiet=options.quiet, report=found.append
+        options.file, options.layout, quiet=options.quiet, report=track_reports.append
     )
-    prepare(*written, overwrites=options.force)
+    prepare(*outputs, overwrites=options.force)
     if plot is not None:
         with atomic_write(plot) as file:
-            _drawn(recording).savefig(file, format=plot.suffix.removeprefix("."))
+            _figure(recording).savefig(file, format=plot.suffix.removeprefix("."))
     if out is not None and out.suffix.lower() == ".npz":
         recording.save(out)
     elif out is not None:
         export(recording, out, overwrite=options.force)
     if options.as_json:
-        files = [printable(path) for path in written]
-        report = {"tracks": found[0].named()} if found else {}
-        print_json({**summary_of(recording), **report, "files": files})
+        files = [printable(path) for path in outputs]
+        tracks = {"tracks": track_reports[0].named()} if track_reports else {}
+        print_json({**summary_of(recording), **tracks, "files": files})
         return
     boats = recording.parameters.n_boats
     echo(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
     if not options.quiet and (recording.phase == "").all():
         echo("The motors' phases are unknown: all samples after the first tenth count.")
-    if written:
-        echo(f"Written to {' and '.join(map(printable, written))}")
+    if outputs:
+        echo(f"Written to {' and '.join(map(printable, outputs))}")
 
 
-def _drawn(recording: Recording) -> "Figure":
-    """Return a figure of the first frame with a boat in it, and of the order against time."""
+def _figure(recording: Recording) -> "Figure":
+    """Draw the first frame that has a boat, and beside it the order against time."""
     pyplot = require("matplotlib.pyplot", "plot")
     figure: Figure
     figure, axes = pyplot.subplots(1, 2, figsize=(13, 6), layout="constrained")
@@ -103,22 +103,22 @@ def _drawn(recording: Recording) -> "Figure":
 
 
 def _draw_frame(recording: Recording, axes: "Axes") -> None:
-    """Draw the boats of the first frame, with their names, to be compared with the video."""
+    """Draw the boats of the first frame with their names, for a comparison with the video."""
     parameters, present = recording.parameters, ~np.isnan(recording.pose[..., 0])
-    first = int(present.any(axis=1).argmax())
-    boats = np.flatnonzero(present[first])
-    x, y, heading = recording.pose[first, boats].T
+    first_frame = int(present.any(axis=1).argmax())
+    boats = np.flatnonzero(present[first_frame])
+    x, y, heading = recording.pose[first_frame, boats].T
     length = 2.0 * (1.0 + parameters.boat_shape) * parameters.boat_radius_cm
-    ahead = length * np.cos(heading), length * np.sin(heading)
+    arrows = length * np.cos(heading), length * np.sin(heading)
     colors = np.where(boats < parameters.n_leaders, PALETTE["leader"], PALETTE["normal"])
     style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "pivot": "mid"}
-    axes.quiver(x, y, *ahead, color=colors, width=0.008, **style)
+    axes.quiver(x, y, *arrows, color=colors, width=0.008, **style)
     names = recording.ids if recording.ids is not None else np.arange(parameters.n_boats)
-    for boat, at in zip(boats, zip(x, y, strict=True), strict=True):
-        axes.annotate(str(names[boat]), at, (5, 5), textcoords="offset points", fontsize=8)
+    for boat, position in zip(boats, zip(x, y, strict=True), strict=True):
+        axes.annotate(str(names[boat]), position, (5, 5), textcoords="offset points", fontsize=8)
     angle = np.linspace(0.0, 2.0 * np.pi, 361)
     for radius in pool_radii_cm(parameters.pool):
         if 0.0 < radius < np.inf:
             axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="0.5")
     axes.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm], up")
-    axes.set_title(f"{recording.time_s[first]:g} s: do boats lie and point as in the video?")
+    axes.set_title(f"{recording.time_s[first_frame]:g} s: do boats lie and point as in the video?")

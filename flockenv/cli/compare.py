@@ -21,7 +21,7 @@ from flockenv.comparison.suite import scores_table
 
 _TRIAL_FLOCKS = 16
 _TRIAL_S = 60.0
-_OF_ENTRIES = ("entry", "trial_flocks", "suite", "task", "trust", "out", "as_json", "quiet")
+_OPTIONS_OF_ENTRIES = ("entry", "trial_flocks", "suite", "task", "trust", "out", "as_json", "quiet")
 
 
 @takes(CompareOptions)
@@ -34,94 +34,96 @@ def compare(options: CompareOptions) -> None:
     (seeds, policies, environment), the parameters of each case for `--params`, and the card of
     your first policy, `card.md`.
 
-    `--suite v2` scores policies on frozen tasks, into `scores.csv`. It asks what policies of files
-    cost (`--flock-hours`). `--suite v3` scores entries (`--entry`), into `entries.csv`.
+    `--suite v2` scores policies on frozen tasks, into `scores.csv`. For each policy of a file it
+    needs the flock-hours that made it (`--flock-hours`). `--suite v3` scores entries (`--entry`),
+    into `entries.csv`.
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
-    for package in ("matplotlib", "pandas", "scipy"):  # All before hours of runs.
+    for package in ("matplotlib", "pandas", "scipy"):  # Before hours of runs, not after them.
         require(package, "plot")
     if options.suite == LEVELS_SUITE:
-        refuse_all_but(_OF_ENTRIES, options)
-        names, levels = options.entry or (), options.task or ()
+        refuse_all_but(_OPTIONS_OF_ENTRIES, options)
+        files, levels = options.entry or (), options.task or ()
         compare_entries(
-            names, levels, options.trial_flocks, options.out, options, trust=options.trust
+            files, levels, options.trial_flocks, options.out, options, trust=options.trust
         )
         return
     plan = Plan.parse(options)
     prepare(options.out / "runs.csv")
     if options.suite and not options.shows_nothing:
-        minutes = math.ceil(_seconds(plan) / 60)
+        minutes = math.ceil(_estimated_seconds(plan) / 60)
         hours = f"{plan.flock_hours:.0f} flock-hours"
         echo(f"{len(plan.cases)} tasks, {hours}: about {minutes} min here", errors)
-    result = _compared(options, plan)
-    if plan.own:
-        first = plan.policies[plan.cases[0].name][plan.own[0]]
-        write_text(options.out / "card.md", result.card(plan.own[0], first))
-    for line in overlap_notes(result.runs):
+    report = _run_cases(options, plan)
+    if plan.user_policies:
+        first_name = plan.user_policies[0]
+        first_policy = plan.policies[plan.cases[0].name][first_name]
+        write_text(options.out / "card.md", report.card(first_name, first_policy))
+    for line in overlap_notes(report.runs):
         warn(line)
-    tables = {"means": result.means, "differences": result.differences}
+    tables = {"means": report.means, "differences": report.differences}
     if options.suite:
-        scores = scores_table(result)
-        tables["scores"] = scores.assign(flock_hours=scores["policy"].map(plan.spent))
+        scores = scores_table(report)
+        tables["scores"] = scores.assign(flock_hours=scores["policy"].map(plan.training_hours))
         write_csv(options.out / "scores.csv", tables["scores"], float_format="%.4f")
     if options.as_json:
         print_json({n: json.loads(table.to_json(orient="records")) for n, table in tables.items()})
         return
-    console.print(result.table())
+    console.print(report.table())
     for row in tables["scores"].to_dict("records") if options.suite else []:
-        ends = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
-        echo(f"{row['policy']}, {row['task']}: {ends}")
+        score = f"{row['score']:+.3f} [{row['score_low']:+.3f}, {row['score_high']:+.3f}]"
+        echo(f"{row['policy']}, {row['task']}: {score}")
     if options.full:
-        echo(result.in_words())
+        echo(report.in_words())
     echo(f"Written to {options.out}")
 
 
-def _seconds(plan: Plan) -> float:
-    """Return the seconds that cases take here, from a minute of a few flocks for each policy."""
+def _estimated_seconds(plan: Plan) -> float:
+    """Estimate the seconds that the cases take here: time each policy in a minute of few flocks."""
     total = 0.0
     for name in plan.names:
-        own = [case for case in plan.cases if name in plan.policies[case.name]]
-        trial = replace(own[0], seeds=own[0].seeds[:_TRIAL_FLOCKS], episode_s=_TRIAL_S)
+        cases = [case for case in plan.cases if name in plan.policies[case.name]]
+        trial = replace(cases[0], seeds=cases[0].seeds[:_TRIAL_FLOCKS], episode_s=_TRIAL_S)
         start = time.perf_counter()
         trial.run({name: plan.policies[trial.name][name]})
-        rate = (time.perf_counter() - start) / trial.flock_hours(1)
-        total += rate * sum(case.flock_hours(1) for case in own)
+        seconds_per_flock_hour = (time.perf_counter() - start) / trial.flock_hours(1)
+        total += seconds_per_flock_hour * sum(case.flock_hours(1) for case in cases)
     return total
 
 
-def _compared(options: CompareOptions, plan: Plan) -> ComparisonReport:
-    """Run the cases and return their report, which is written whenever a case is finished.
+def _run_cases(options: CompareOptions, plan: Plan) -> ComparisonReport:
+    """Run the cases, write a report after each, and return the last report.
 
     After Ctrl-C the report covers the policies and numbers of leaders that were finished.
     """
     cases, policies = plan.cases, plan.policies
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
-    shown = {
-        case.name: {name: titled(own) for name, own in policies[case.name].items()}
+    titles = {
+        case.name: {name: titled(policy) for name, policy in policies[case.name].items()}
         for case in cases
     }
-    conditions = {"command": command, "policies": shown}
+    conditions = {"command": command, "policies": titles}
     finished: list[object] = []
 
-    def written(**more: object) -> ComparisonReport:
+    def write_report(**more_conditions: object) -> ComparisonReport:
         runs = require("pandas", "plot").concat(finished, ignore_index=True)
         runs.insert(0, "case", runs.pop("case"))
-        present = [case for case in cases if case.name in set(runs["case"])]
-        result = ComparisonReport(present, plan.names, runs, conditions | more)
-        result.write(options.out)
-        return result
+        cases_with_runs = [case for case in cases if case.name in set(runs["case"])]
+        report = ComparisonReport(cases_with_runs, plan.names, runs, conditions | more_conditions)
+        report.write(options.out)
+        return report
 
     with progress("simulating", 3600 * plan.flock_hours, options.shows_nothing) as advance:
         try:
             for case in cases:
                 case.run(policies[case.name], advance, finished.append)
-                result = written()
+                report = write_report()
         except KeyboardInterrupt:
             if not finished:
                 raise
-            written(interrupted=True)
+            write_report(interrupted=True)
             pairs = "pair" if len(finished) == 1 else "pairs"
-            words = f"{len(finished)} {pairs} of a policy and a number of leaders"
-            raise KeyboardInterrupt(f"{options.out} holds what was finished: {words}.") from None
-    return result
+            stored = f"{len(finished)} {pairs} of a policy and a number of leaders"
+            raise KeyboardInterrupt(f"{options.out} holds what was finished: {stored}.") from None
+    return report

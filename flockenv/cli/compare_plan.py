@@ -1,4 +1,4 @@
-"""Plans of comparisons: what `flockenv compare` is asked for, checked before anything runs."""
+"""Plans of comparisons: the options of `flockenv compare`, checked before anything runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -21,11 +21,11 @@ from flockenv.policies.registry import FILES, policy
 REFERENCES = (LEARNED, TUNED_LAW, PAPERS_LAW)
 """Policies that others are compared with, unless `--only` is given."""
 
-Given = str | Mapping[str, str]
-"""A policy as it is typed, or one for each leader."""
+TypedPolicy = str | Mapping[str, str]
+"""A policy as the user types it, or one for each leader by name."""
 
-Steers = Policy | Mapping[str, Policy]
-"""A policy, or one for each leader."""
+Steering = Policy | Mapping[str, Policy]
+"""A policy of all leaders, or one for each leader by name."""
 
 _BOATS = 27
 _MOST_LEADERS = 64
@@ -81,7 +81,7 @@ class CompareOptions(Flocks, Printing):
     out: Path = option(Path("results/compare"), "Folder for tables and pictures.")
 
 
-_OF_FLOCKS = (
+_FLOCK_OPTIONS = (
     *("preset", "params", "n_boats", "changes", "pool", "bw_s"),
     *("n_leaders", "env", "episodes", "minutes", "seed", "only"),
 )
@@ -93,24 +93,27 @@ class Plan:
 
     cases: list[Case]
     #: The policies of each case by name, the user's first.
-    policies: dict[str, dict[str, Steers]]
+    policies: dict[str, dict[str, Steering]]
     #: The names of the user's policies.
-    own: list[str]
-    #: Flock-hours that went into each of the user's policies, if a suite asks for them.
-    spent: dict[str, float]
+    user_policies: list[str]
+    #: With a suite, the flock-hours that made each policy of a file.
+    training_hours: dict[str, float]
 
     @classmethod
     def parse(cls, options: CompareOptions) -> Self:
-        """Return the plan of checked options; raise ParameterError for one that is not accepted."""
+        """Return the plan of options; raise ParameterError for an option that is not accepted."""
         for name in ("entry", "trial_flocks"):
             if getattr(options, name) is not None:
-                words = f"is not accepted without --suite {LEVELS_SUITE}"
-                raise ParameterError(f"{option_of(name)} {words}")
-        cases = _tasks(options) if options.suite else _flocks(options)
-        own = _own_policies(options)
-        spent = _spent(options, own)
-        policies = {case.name: _policies(case.parameters.pool, own, options) for case in cases}
-        return cls(cases, policies, list(own), spent)
+                raise ParameterError(
+                    f"{option_of(name)} is not accepted without --suite {LEVELS_SUITE}"
+                )
+        cases = _suite_cases(options) if options.suite else _flock_cases(options)
+        typed = _user_policies(options)
+        hours = _training_hours(options, typed)
+        policies = {
+            case.name: _case_policies(case.parameters.pool, typed, options) for case in cases
+        }
+        return cls(cases, policies, list(typed), hours)
 
     @property
     def names(self) -> list[str]:
@@ -119,22 +122,25 @@ class Plan:
 
     @property
     def flock_hours(self) -> float:
-        """Hours of simulated time."""
+        """Simulated hours of all flocks together."""
         return sum(case.flock_hours(len(self.policies[case.name])) for case in self.cases)
 
 
-def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float]:
-    """Return the flock-hours of each policy that is a file; a suite refuses files without them."""
+def _training_hours(options: CompareOptions, typed: Mapping[str, TypedPolicy]) -> dict[str, float]:
+    """Return the flock-hours that made each policy of a file, by the policy's name.
+
+    A suite needs them for every such policy; without a suite they are refused.
+    """
     hours = options.flock_hours or []
     if not options.suite:
         if hours:
             raise ParameterError("--flock-hours is not accepted without --suite")
         return {}
-    parts = {
-        name: [*given.values()] if isinstance(given, Mapping) else [given]
-        for name, given in own.items()
+    texts = {
+        name: [*policy.values()] if isinstance(policy, Mapping) else [policy]
+        for name, policy in typed.items()
     }
-    files = [name for name, names in parts.items() if any(map(_is_user_made, names))]
+    files = [name for name in typed if any(map(_is_user_made, texts[name]))]
     if len(hours) != len(files):
         raise ParameterError(
             f"{len(hours)} --flock-hours for {len(files)} --policy of a file ({', '.join(files)}): "
@@ -143,58 +149,62 @@ def _spent(options: CompareOptions, own: Mapping[str, Given]) -> dict[str, float
     return dict(zip(files, hours, strict=True))
 
 
-def _is_user_made(given: str) -> bool:
-    """Return whether a policy is the user's own file or object, and so took flock-hours to make."""
-    return given.endswith(FILES) or (":" in given and "=" not in given)
+def _is_user_made(text: str) -> bool:
+    """Return whether a text names a file or a Python object, whose training took flock-hours."""
+    return text.endswith(FILES) or (":" in text and "=" not in text)
 
 
-def _policies(pool: Pool, own: Mapping[str, Given], options: CompareOptions) -> dict[str, Steers]:
-    """Return a case's policies by name, the user's first; print the names of those left out."""
-    found: dict[str, Steers] = {
-        name: _read(given, pool, options.trust) for name, given in own.items()
-    }
-    for name in (REFERENCE,) if options.suite else () if options.only else REFERENCES:
-        if name in own.values() and not options.suite:  # The user gave it this name.
+def _case_policies(
+    pool: Pool, typed: Mapping[str, TypedPolicy], options: CompareOptions
+) -> dict[str, Steering]:
+    """Return a case's policies by name, the user's first.
+
+    Prints which references are left out because they are not made for the pool.
+    """
+    policies = {name: _load(text, pool, options.trust) for name, text in typed.items()}
+    references: tuple[str, ...] = (REFERENCE,) if options.suite else REFERENCES
+    for name in () if options.only and not options.suite else references:
+        if name in typed.values() and not options.suite:  # The user compares it already.
             continue
         try:
-            found.setdefault(name, policy(name, pool))
+            policies.setdefault(name, policy(name, pool))
         except ParameterError as error:
             echo(f"Left out, {name}: {error}", errors)
-    if not found:
+    if not policies:
         raise ParameterError("--only is not accepted without --policy: nothing would be compared")
-    return found
+    return policies
 
 
-def _read(given: Given, pool: Pool, trust: bool) -> Steers:
-    if isinstance(given, Mapping):
-        return {leader: policy(own, pool, trust=trust) for leader, own in given.items()}
-    return policy(given, pool, trust=trust)
+def _load(typed: TypedPolicy, pool: Pool, trust: bool) -> Steering:
+    if isinstance(typed, Mapping):
+        return {leader: policy(text, pool, trust=trust) for leader, text in typed.items()}
+    return policy(typed, pool, trust=trust)
 
 
-def _tasks(options: CompareOptions) -> list[Case]:
+def _suite_cases(options: CompareOptions) -> list[Case]:
     """Return the tasks of a suite; refuse options that would change a task."""
-    refuse_all_but({field.name for field in fields(options)} - {*_OF_FLOCKS}, options)
+    refuse_all_but({field.name for field in fields(options)} - {*_FLOCK_OPTIONS}, options)
     return tasks_named(str(options.suite), options.task or ())
 
 
 def refuse_all_but(names: Iterable[str], options: CompareOptions) -> None:
-    """Refuse options that a suite does not take."""
-    taken = {*names}
+    """Refuse options that differ from their defaults and are not among these names."""
+    accepted = {*names}
     for field in fields(options):
-        if field.name not in taken and getattr(options, field.name) != field.default:
-            name = {"changes": "--set"}.get(field.name, option_of(field.name))
+        if field.name not in accepted and getattr(options, field.name) != field.default:
+            spelling = {"changes": "--set"}.get(field.name, option_of(field.name))
             raise ParameterError(
-                f"{name} is not accepted with --suite {options.suite}, which fixes it: there is no "
-                "score of an altered task"
+                f"{spelling} is not accepted with --suite {options.suite}, which fixes it: there "
+                "is no score of an altered task"
             )
 
 
-def _flocks(options: CompareOptions) -> list[Case]:
+def _flock_cases(options: CompareOptions) -> list[Case]:
     """Return a case for each pool and backward duration."""
     if options.task:
         raise ParameterError("--task is not accepted without --suite")
     environment = changed_fields(options.env or (), "--env")
-    leaders = _numbers(options.n_leaders or ("1-4" if environment else "0-4"))
+    leaders = _leader_counts(options.n_leaders or ("1-4" if environment else "0-4"))
     if options.policy and not any(leaders):
         raise ParameterError("--policy is not accepted with --n-leaders 0: nobody is steered")
     alternates = environment.get("target") == "alternate"
@@ -208,80 +218,85 @@ def _flocks(options: CompareOptions) -> list[Case]:
             episode_s=60.0 * minutes,
             environment=environment,
         )
-        for parameters in dict.fromkeys(_parameters(options))
+        for parameters in dict.fromkeys(_parameter_sets(options))
     ]
 
 
-def _numbers(text: str) -> tuple[int, ...]:
-    """Return the numbers of leaders that a text such as ``0-2,4`` names."""
-    found: set[int] = set()
+def _leader_counts(text: str) -> tuple[int, ...]:
+    """Return the numbers of leaders, ascending, that a text such as ``0-2,4`` names."""
+    counts: set[int] = set()
     for part in text.split(","):
         first, _, last = (end.strip() for end in part.partition("-"))
-        ends = (first, last or first)
-        if not all(end.isdecimal() for end in ends) or int(ends[0]) > int(ends[1]):
+        last = last or first
+        if not (first.isdecimal() and last.isdecimal()) or int(first) > int(last):
             raise ParameterError(f"--n-leaders {text} is not accepted: numbers, as in 0-4 or 1,3")
-        if int(ends[1]) > _MOST_LEADERS:
+        if int(last) > _MOST_LEADERS:
             raise ParameterError(f"--n-leaders {text} is not accepted: at most {_MOST_LEADERS}")
-        found.update(range(int(ends[0]), int(ends[1]) + 1))
-    return tuple(sorted(found))
+        counts.update(range(int(first), int(last) + 1))
+    return tuple(sorted(counts))
 
 
-def _parameters(options: CompareOptions) -> list[FlockParameters]:
+def _parameter_sets(options: CompareOptions) -> list[FlockParameters]:
     """Return the parameters for each pool and backward duration.
 
-    Fields that neither the file nor a change names are the preset's, except for 27 boats and
-    the critical noise of each pool. `--pool` and `--bw-s` count before all of them.
+    Fields that neither the file nor `--set` names are the preset's, except for 27 boats and
+    the critical noise of each pool. `--pool` and `--bw-s` override all of them.
     """
-    given = options.fields()
+    named_fields = options.fields()
     if "n_leaders" in changed_fields(options.changes or ()):
         raise ParameterError("--set n_leaders is not accepted: use --n-leaders")
-    if isinstance(given.get("target"), list):
+    if isinstance(named_fields.get("target"), list):
         raise ParameterError(
-            f"target = {short_repr(given['target'])} is not accepted: here the number of leaders "
-            "varies, so all have one target: cw or ccw"
+            f"target = {short_repr(named_fields['target'])} is not accepted: here the number of "
+            "leaders varies, so all have one target: cw or ccw"
         )
     base = options.parameters()
-    base = base.replace(n_boats=given.get("n_boats", _BOATS))
-    found = []
+    base = base.replace(n_boats=named_fields.get("n_boats", _BOATS))
     pools: Sequence[Pool] = [*map(pool_of, options.pool or ())] or [base.pool]
-    levels = options.bw_s or ([base.bw_s] if "bw_s" in given else [])
-    preset = str(given.get("preset", "simulation"))
-    if not levels and base.n_boats != _BOATS and not options.quiet:
+    noises = options.bw_s or ([base.bw_s] if "bw_s" in named_fields else [])
+    preset = str(named_fields.get("preset", "simulation"))
+    if not noises and base.n_boats != _BOATS and not options.quiet:
         echo(
             f"{base.n_boats} boats at the critical noise of {_BOATS}, since theirs is not stored: "
             "--bw-s names another one, and `flockenv sweep` measures it",
             errors,
         )
-    for pool in pools:
-        for bw_s in levels or [FlockParameters.critical_bw_s(preset, pool)]:
-            found.append(base.replace(pool=pool, bw_s=bw_s))
-    return found
+    return [
+        base.replace(pool=pool, bw_s=bw_s)
+        for pool in pools
+        for bw_s in noises or [FlockParameters.critical_bw_s(preset, pool)]
+    ]
 
 
 def _pool_name(pool: str | tuple[float, float]) -> str:
-    """Return the name of a flock's pool in the names of files."""
+    """Return a pool's name for the names of cases and files, such as ``wide`` or ``100x20``."""
     return pool if isinstance(pool, str) else f"{pool[0]:g}x{pool[1]:g}"
 
 
-def _own_policies(options: CompareOptions) -> dict[str, Given]:
-    """Return the user's policies by name: as given, or a dictionary of these by leader."""
-    given, names = options.policy or [], options.name or []
-    if names and len(names) != len(given):
-        many = f"{len(names)} --name for {len(given)} --policy"
-        raise ParameterError(f"{many}: name all of yours, in order, or none")
-    own: dict[str, Given] = {}
-    for index, text in enumerate(given):
+def _user_policies(options: CompareOptions) -> dict[str, TypedPolicy]:
+    """Return the user's policies by name, as typed or by leader.
+
+    Without `--name` a policy is called like its file without the ending. If that name is taken, it
+    is called like the typed text.
+    """
+    texts, names = options.policy or [], options.name or []
+    if names and len(names) != len(texts):
+        counts = f"{len(names)} --name for {len(texts)} --policy"
+        raise ParameterError(f"{counts}: name all of yours, in order, or none")
+    policies: dict[str, TypedPolicy] = {}
+    for index, text in enumerate(texts):
         is_per_leader = text.startswith("leader_")
         is_file = text.endswith(FILES) and not is_per_leader
         name = printable(names[index] if names else Path(text).stem if is_file else text)
-        if name in own or (name in REFERENCES and text != name):
+        if name in policies or (name in REFERENCES and text != name):
             if names:
                 raise ParameterError(f"--name {name} is not accepted: another policy has this name")
             name = printable(text)
-        if name in own:
+        if name in policies:
             raise ParameterError(f"--policy {text} is given twice: give one another --name")
-        own[name] = text
-        if is_per_leader:  # A number is refused like an unknown name.
-            by_leader = changed_fields(text.split(","), "--policy").items()
-            own[name] = {leader: str(given) for leader, given in by_leader}
-    return own
+        policies[name] = text
+        if is_per_leader:
+            by_leader = changed_fields(text.split(","), "--policy")
+            # A number becomes a text, so that it is refused like an unknown policy.
+            policies[name] = {leader: str(value) for leader, value in by_leader.items()}
+    return policies

@@ -26,15 +26,15 @@ class DemoOptions(Printing):
 def demo(options: DemoOptions) -> None:
     """Run the paper's law and the learned leaders side by side, and open the page that plays both.
 
-    If `make live` has built the live page, that page opens instead, with the same two flocks,
-    unless --minutes is given.
+    If `make live` has built the live page, that page opens instead, with the same two flocks.
+    `--minutes` records the two runs in any case.
 
     27 boats in the pool wide, four of them leaders, at bw_s = 0.3 s. Both runs have the same
     initial placement and the same noise.
 
     Example: `flockenv demo`
     """
-    # The page's code is not needed by most commands.
+    # Imported here, since most commands do not need the page's code.
     from flockenv.replay import write_replay
     from flockenv.replay.demo import (
         DEMO_MINUTES,
@@ -46,8 +46,8 @@ def demo(options: DemoOptions) -> None:
 
     out, seed = options.out, options.seed
     prepare(out)
-    is_recorded = options.minutes is not None or options.as_json or not options.show
-    if not is_recorded and (page := live_page()) is not None:
+    must_record = options.minutes is not None or options.as_json or not options.show
+    if not must_record and (page := live_page()) is not None:
         write_text(out, live_demo(page, seed))
     else:
         minutes = DEMO_MINUTES if options.minutes is None else options.minutes

@@ -1,4 +1,4 @@
-"""A command's options as a dataclass, and those that several commands share."""
+"""Options of commands as dataclasses, and the options that several commands share."""
 
 import inspect
 from collections.abc import Callable, Iterable
@@ -18,7 +18,7 @@ TRUST = "Read .zip files of SB3 models and import module:attribute: this execute
 
 
 Endings = Callable[[], Iterable[str]]
-"""A function that returns the accepted endings of a file's name."""
+"""A function that returns the endings that are accepted in a file's name."""
 
 
 def option(
@@ -28,21 +28,22 @@ def option(
     endings: Endings | None = None,
     **settings: Any,
 ) -> Value:
-    """Return a dataclass field for an option of a command; `settings` go to `typer.Option`.
+    """Return a dataclass field for an option of a command.
 
-    `endings` returns the accepted endings of the name of a file that the option names.
+    `settings` go to `typer.Option`. If the option names a file, `endings` returns the endings that
+    are accepted in the file's name.
     """
-    declared = typer.Option(*names, help=help, **settings)
-    return field(default=default, metadata={"typer": declared, "endings": endings})
+    typer_option = typer.Option(*names, help=help, **settings)
+    return field(default=default, metadata={"typer": typer_option, "endings": endings})
 
 
 def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa: A002
-    """Return a dataclass field that is an argument; without a default it must be given."""
+    """Return a dataclass field for an argument; without a default it is required."""
     return field(default=default, metadata={"typer": typer.Argument(help=help, **settings)})
 
 
 def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:
-    """Let a command take a dataclass of options and arguments."""
+    """Return a decorator: the command line fills a dataclass, with which it calls the command."""
     hints = get_type_hints(options)
     parameters = [
         inspect.Parameter(
@@ -54,27 +55,28 @@ def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Calla
         for option_ in fields(options)  # type: ignore[arg-type]
     ]
 
-    def taking(command: Callable[[Options], None]) -> Callable[..., None]:
+    def decorate(command: Callable[[Options], None]) -> Callable[..., None]:
         @wraps(command)
-        def called(**given: object) -> None:
-            checked = options(**given)
-            _check_endings(checked)
-            command(checked)
+        def wrapped(**values: object) -> None:
+            filled = options(**values)
+            _check_endings(filled)
+            command(filled)
 
-        called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-        called.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-        return called
+        # Typer reads the options from the signature and the annotations.
+        wrapped.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        wrapped.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+        return wrapped
 
-    return taking
+    return decorate
 
 
 def option_of(name: str) -> str:
-    """Return a field's spelling as an option."""
+    """Return the option of a field: ``--bw-s`` for ``bw_s``."""
     return f"--{name.replace('_', '-')}"
 
 
 def _check_endings(options: object) -> None:
-    """Refuse files whose names lack the endings that their options declare."""
+    """Refuse a file whose name has none of the endings that its option accepts."""
     for option_ in fields(options):  # type: ignore[arg-type]
         path, endings = getattr(options, option_.name), option_.metadata.get("endings")
         if path is None or endings is None:
@@ -96,12 +98,12 @@ class Overwriting:
 
 @dataclass(frozen=True, kw_only=True)
 class Printing:
-    """Options for the printing of a command."""
+    """Options for what a command prints."""
 
     as_json: bool = option(False, "Print the results as JSON.", "--json")
     quiet: bool = option(False, "Print no progress and no remarks.", "--quiet", "-q")
 
     @property
     def shows_nothing(self) -> bool:
-        """Whether no progress is shown."""
+        """Whether progress is hidden."""
         return self.as_json or self.quiet

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 
 def printable(name: str | os.PathLike[str]) -> str:
-    """Return the name of a file or policy with bytes that are not UTF-8 replaced by a sign.
+    """Return the name of a file or policy; bytes that are not UTF-8 become replacement characters.
 
-    Such a name opens its file, but cannot be printed in a page, table or picture.
+    A name with such bytes opens its file, but cannot be printed in a page, table or picture.
     """
     return os.fspath(name).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
@@ -34,16 +34,17 @@ def load_recording(
     layout: Path | None = None,
     *,
     quiet: bool = False,
-    report: Callable[["TrackReport"], object] = lambda found: None,
+    report: Callable[["TrackReport"], object] = lambda track_report: None,
 ) -> Recording:
     """Return a recording, or one made of a table of tracks.
 
-    Rows that were left out are printed, unless `quiet`, and passed to `report`.
+    For tracks, `report` gets the report on the rows that were left out. It is also printed, unless
+    `quiet`.
 
-    The layout of tracks is read from the TOML file beside them unless one is given. If there is
-    none, a layout is guessed from the columns, and the lines to check are printed. Raises
-    ParameterError for a file that cannot be read, is damaged, or is neither a recording nor a
-    table.
+    The layout of tracks is read from the file `layout`, by default the TOML file beside the table.
+    If that does not exist, a layout is guessed from the columns, and the lines to check are
+    printed. Raises ParameterError for a file that cannot be read, is damaged, or is neither a
+    recording nor a table.
     """
     from flockenv.tracks import check_ending, description_of, guess_layout, read_layout, read_tracks
 
@@ -53,28 +54,30 @@ def load_recording(
         except OSError as error:
             raise ParameterError(f"{path} cannot be read: {error.strerror}") from error
     check_ending(path)
-    if layout is None and not (beside := description_of(path)).exists():
-        checks = guess_layout(path)
+    description = description_of(path)
+    if layout is None and not description.exists():
+        lines_to_check = guess_layout(path)
         echo(
-            f"{printable(path)} has no description; {printable(beside)} is a guess. Its doubts:",
+            f"{printable(path)} has no description; {printable(description)} is a guess. "
+            "Its doubts:",
             errors,
         )
-        for line in checks:
+        for line in lines_to_check:
             echo(f"  {line}", errors)
 
-    def print_and_report(found: "TrackReport") -> None:
+    def print_and_report(track_report: "TrackReport") -> None:
         if not quiet:
-            echo(f"{printable(path)}: {found}", errors)
-        report(found)
+            echo(f"{printable(path)}: {track_report}", errors)
+        report(track_report)
 
     return read_tracks(path, None if layout is None else read_layout(layout), print_and_report)
 
 
 def prepare(*paths: Path, overwrites: bool = True) -> None:
-    """Make the folders of files that will be written, before long work.
+    """Check, before long work, that files can be written; make their folders.
 
-    Raises ParameterError for a file that cannot be written, or that exists and may not be
-    overwritten.
+    Raises ParameterError for a file that cannot be written, and, unless `overwrites`, for one that
+    exists.
     """
     for path in paths:
         try:
@@ -91,9 +94,9 @@ def prepare(*paths: Path, overwrites: bool = True) -> None:
 
 
 def open_page(page: Path) -> None:
-    """Open a page in a browser; without one that can show it, print its path."""
+    """Open a page in a browser, or print its address if no graphical browser is found."""
     address = page.resolve().as_uri()
-    # A text browser would take over the terminal, and run none of the page's scripts.
+    # Without a display, a text browser would take over the terminal and run no script of the page.
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     has_display = sys.platform != "linux" or any(map(os.environ.get, displays))
     if not (has_display and webbrowser.open(address)):
@@ -101,25 +104,21 @@ def open_page(page: Path) -> None:
 
 
 def summary_of(recording: Recording) -> dict[str, float | None]:
-    """Return a run's row of a sweep's table; None for undefined values."""
+    """Return a run's quantities as in the table of a sweep; None for undefined values."""
     return {name: None if np.isnan(n) else n for name, n in summary(recording).items()}
 
 
 def in_words(recording: Recording) -> str:
-    """Return the means of a recording's quantities without a unit, in one line."""
-    means, words = summary_of(recording), []
+    """Return in one line the means of those quantities of a recording that have no unit."""
+    means, parts = summary_of(recording), []
     has_target = recording.parameters.common_target is not None
     for quantity in QUANTITIES:
-        if (
-            quantity.is_averaged
-            and not quantity.unit
-            and (has_target or quantity.name != "signed_order")
-        ):
-            mean = means[f"{quantity.name}_mean"]
-            called = (
-                f"mean {quantity.symbol}"
-                if "_" in quantity.symbol
-                else quantity.label.partition(",")[0]
-            )
-            words.append(f"{called} {'undefined' if mean is None else f'{mean:.3f}'}")
-    return ", ".join(words)
+        if not quantity.is_averaged or quantity.unit:
+            continue
+        if quantity.name == "signed_order" and not has_target:
+            continue
+        mean = means[f"{quantity.name}_mean"]
+        has_index = "_" in quantity.symbol
+        label = f"mean {quantity.symbol}" if has_index else quantity.label.partition(",")[0]
+        parts.append(f"{label} {'undefined' if mean is None else f'{mean:.3f}'}")
+    return ", ".join(parts)

@@ -1,4 +1,4 @@
-"""The parameters of a command: a preset, a TOML file, single fields."""
+"""Options for the parameters of flocks: a preset, a TOML file, single fields."""
 
 import re
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from flockenv.parameters import FlockParameters
 class Flocks:
     """Options for the parameters of a flock."""
 
-    #: The fields that have their own options.
+    #: The fields that have options of their own.
     named: ClassVar[tuple[str, ...]] = ("n_boats",)
 
     preset: str | None = option(None, "Named parameters: see `flockenv presets`. [simulation]")
@@ -27,11 +27,11 @@ class Flocks:
     )
 
     def parameters(self) -> FlockParameters:
-        """Return the parameters of the preset, the file and the changes of single fields.
+        """Return the parameters of the preset, changed by the file and then by single fields.
 
-        The preset is the file's own, or "simulation", unless it is given. Raises ParameterError for
-        an unknown preset or field, a value that is not accepted, or a file that cannot be read or
-        is not TOML.
+        Without `--preset` the preset is the one that the file names, or else "simulation". Raises
+        ParameterError for an unknown preset or field, a value that is not accepted, or a file that
+        cannot be read or is not TOML.
         """
         try:
             return FlockParameters.from_dict(self.fields())
@@ -39,7 +39,7 @@ class Flocks:
             raise ParameterError(str(error)) from error
 
     def fields(self) -> dict[str, object]:
-        """Return the fields that the options name, and ``preset`` if they name one."""
+        """Return the fields that the options or the file name, and ``preset`` if they name one."""
         file, preset = self.params, self.preset
         fields = {} if file is None else read_toml_file(file, f"--params {file}")
         if preset is not None and fields.setdefault("preset", preset) != preset:
@@ -68,10 +68,10 @@ class OneFlock(Flocks):
 
 
 def changed_fields(changes: Sequence[str], option: str = "--set") -> dict[str, object]:
-    """Return the fields and values of `--set` options, or of options like it: ``NAME=VALUE``.
+    """Return the fields and values that options such as `--set` name as ``NAME=VALUE``.
 
-    Values are as in TOML, also with parentheses for brackets; words need no quotes, as in
-    ``target=cw,cw,ccw``. Texts of another form and repeated names are refused.
+    Values are written as in TOML, but parentheses may stand for brackets, and words need no quotes,
+    as in ``target=cw,cw,ccw``. Texts of another form and repeated names are refused.
     """
     fields: dict[str, object] = {}
     for change in changes:
@@ -94,13 +94,15 @@ def pool_of(text: str) -> Any:
 
 
 def _value(text: str) -> object:
+    """Return the TOML value of a text, a list of its words, or the text itself."""
     if text[0] in "([" and text[-1] in ")]":
         text = text.replace("(", "[").replace(")", "]")
     try:
-        found = read_toml(f"value = {text}", text)
+        table = read_toml(f"value = {text}", text)
     except ParameterError:
         is_list = text.startswith("[") and text.endswith("]")
         words = [word.strip() for word in (text[1:-1] if is_list else text).split(",")]
         is_words = all(map(str.isidentifier, words)) and (is_list or len(words) > 1)
         return words if is_words else text
-    return found["value"] if found.keys() == {"value"} else text
+    # A text of several lines could hold further keys.
+    return table["value"] if table.keys() == {"value"} else text

@@ -31,11 +31,11 @@ def presets(options: PresetsOptions) -> None:
 
     Example: `flockenv presets --json`
     """
-    found: dict[str, dict[str, Any]] = {}
+    presets_by_name: dict[str, dict[str, Any]] = {}
     for name in FlockParameters.presets():
         values = FlockParameters.preset(name).to_dict()
         sources = FlockParameters.preset_sources(name)
-        declared = {
+        entries = {
             parameter.name: {
                 "value": values[parameter.name],
                 "unit": parameter.metadata["unit"],
@@ -44,18 +44,19 @@ def presets(options: PresetsOptions) -> None:
             }
             for parameter in dataclasses.fields(FlockParameters)
         }
-        found[name] = {"about": ABOUT[name], "fields": declared}
+        presets_by_name[name] = {"about": ABOUT[name], "fields": entries}
     if options.as_json:
-        print_json(found)
+        print_json(presets_by_name)
         return
-    for name in found:
+    for name in presets_by_name:
         console.print(f"{name}: {ABOUT[name]}", highlight=False)
     table = Table(box=None, show_header=False, padding=(0, 2, 1, 0))
     table.add_column(no_wrap=True)
-    for field, first in declared.items():
-        lines = [first["meaning"] + (f" Unit: {first['unit']}." if first["unit"] else "")]
-        for name, preset in found.items():
-            own = preset["fields"][field]
-            lines.append(f"{name}: {own['value']} ({own['source']})")
-        table.add_row(field, "\n".join(lines))
+    for parameter in dataclasses.fields(FlockParameters):
+        meaning, unit = parameter.metadata["doc"], parameter.metadata["unit"]
+        lines = [f"{meaning} Unit: {unit}." if unit else meaning]
+        for name, preset in presets_by_name.items():
+            entry = preset["fields"][parameter.name]
+            lines.append(f"{name}: {entry['value']} ({entry['source']})")
+        table.add_row(parameter.name, "\n".join(lines))
     console.print("", table, highlight=False)

@@ -1,4 +1,4 @@
-"""Progress of a command's work, and how Ctrl-C ends it."""
+"""Progress bars of commands, and their end after Ctrl-C."""
 
 import functools
 from collections.abc import Callable, Iterator
@@ -13,7 +13,7 @@ from flockenv.cli.console import echo, errors
 
 
 def checkpoint_note(folder: Path) -> str:
-    """Return the sentence that says where an interrupted training left its checkpoint."""
+    """Return the sentence that tells where an interrupted training left its checkpoint."""
     return f"{folder} holds the last checkpoint: --resume continues from it."
 
 
@@ -25,11 +25,12 @@ def progress(
     ends: bool = True,
     kept: str = "Nothing of it is stored.",
 ) -> Iterator[Callable[..., None]]:
-    """Show a progress bar with the time left, on a terminal unless `quiet`.
+    """Show a progress bar with the time left: on a terminal, and unless `quiet`.
 
-    Yields a function that advances the bar, and may change its text; `total` is the amount of work.
-    With `ends` that function also ends the work after Ctrl-C: the sentence `kept` then tells the
-    user how much of the work is stored.
+    Yields a function that advances the bar by an amount of work, and may change its text `what`.
+    `total` is the whole amount. If `ends`, that function raises KeyboardInterrupt after Ctrl-C. A
+    KeyboardInterrupt without a message gets the sentence `kept`, which tells the user how much of
+    the work is stored.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:
@@ -47,7 +48,7 @@ def progress(
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that Ctrl-C ends with exit code 130, once no work is half done."""
+    """Return a command that ends with exit code 130 after Ctrl-C, once no work is half done."""
 
     @functools.wraps(command)
     def wrapped(*arguments: object, **options: object) -> None:

@@ -1,4 +1,4 @@
-"""`flockenv replay`: recordings as a page that plays them, or as a moving picture."""
+"""`flockenv replay`: recordings as a page that plays them, or as moving pictures."""
 
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -13,7 +13,7 @@ from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError
 
 _FPS = {".gif": 12.5, ".mp4": 25.0}
-_OF_PICTURES = ("colors", "speed", "start", "seconds")
+_PICTURE_OPTIONS = ("colors", "speed", "start", "seconds")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +40,12 @@ class ReplayOptions(Printing):
 
     def __post_init__(self) -> None:
         for option_ in fields(self):
-            given = getattr(self, option_.name) != option_.default
-            if given and option_.name in (("show",) if self.pictures else _OF_PICTURES):
-                where = "--gif and --mp4" if self.pictures else "a page, which has it itself"
+            is_given = getattr(self, option_.name) != option_.default
+            refused = ("show",) if self.pictures else _PICTURE_OPTIONS
+            if is_given and option_.name in refused:
+                output = "--gif and --mp4" if self.pictures else "a page, which has it itself"
                 name = "open" if option_.name == "show" else option_.name
-                raise ParameterError(f"--{name} is not accepted with {where}")
+                raise ParameterError(f"--{name} is not accepted with {output}")
         if self.pictures and self.html is not None:
             raise ParameterError("--html is not accepted with --gif or --mp4")
         count = len(self.paths)
@@ -60,11 +61,11 @@ class ReplayOptions(Printing):
 
     @property
     def pictures(self) -> list[Path]:
-        """The moving pictures that are written instead of the page."""
+        """The files of moving pictures, which are written instead of the page."""
         return [path for path in (self.gif, self.mp4) if path is not None]
 
     def named(self) -> dict[str, Path]:
-        """Return the recordings' files by the names that they have in pages and pictures."""
+        """Return the recordings' files by the names that pages and pictures show."""
         names = self.name or [path.stem for path in self.paths]
         if len(set(names)) < len(names):
             names = [f"{name} ({index})" for index, name in enumerate(names, 1)]
@@ -84,13 +85,13 @@ def replay(options: ReplayOptions) -> None:
     Example: `flockenv replay law.npz learned.npz --html law_and_learned.html`
     """
     if options.pictures:
-        _pictures(options, options.pictures)
+        _write_pictures(options, options.pictures)
     else:
-        _page(options)
+        _write_page(options)
 
 
-def _page(options: ReplayOptions) -> None:
-    # The page's code is not needed by any other command.
+def _write_page(options: ReplayOptions) -> None:
+    # Imported here, since most commands do not need the page's code.
     from flockenv.replay import write_replay
 
     named = options.named()
@@ -103,40 +104,41 @@ def _page(options: ReplayOptions) -> None:
     if options.as_json:
         print_json({"html": str(page), "bytes": written.size, "every": written.every})
     else:
-        thinned = "" if written.every == 1 else f", every {written.every}th sample"
-        echo(f"Written to {page} ({written.size / 1e6:.1f} MB{thinned})")
+        thinning = "" if written.every == 1 else f", every {written.every}th sample"
+        echo(f"Written to {page} ({written.size / 1e6:.1f} MB{thinning})")
     if options.show:
         open_page(page)
 
 
-def _pictures(options: ReplayOptions, paths: list[Path]) -> None:
+def _write_pictures(options: ReplayOptions, paths: list[Path]) -> None:
     """Write one recording, or two side by side, as a GIF, a video, or both."""
     from flockenv.rendering import frame, save_animation
 
     named = options.named()
     prepare(*paths)
     runs = [load_recording(path, quiet=options.shows_nothing) for path in named.values()]
-    # A lone recording needs no name, unless it is given one.
+    # A lone recording gets no caption, unless the user names it.
     captions = list(named) if options.name or len(runs) > 1 else [""]
     for path in paths:
         fps = _FPS[path.suffix.lower()]
-        longest_s = max(run.duration_s for run in runs) - options.start
-        lasting_s = min(options.seconds, longest_s / options.speed)
-        count = max(1, round(lasting_s * fps))
-        steps_s = options.start + np.arange(count) * options.speed / fps
-        with progress("drawing", len(steps_s), options.shows_nothing) as advance:
+        recorded_s = max(run.duration_s for run in runs) - options.start
+        picture_s = min(options.seconds, recorded_s / options.speed)
+        count = max(1, round(picture_s * fps))
+        offsets_s = options.start + np.arange(count) * options.speed / fps
+        with progress("drawing", len(offsets_s), options.shows_nothing) as advance:
 
-            def drawn(step_s: float) -> NDArray[np.uint8]:
+            def draw(offset_s: float) -> NDArray[np.uint8]:
+                """Draw all recordings, side by side, at a time after their first samples."""
                 advance()
                 # The shorter of two recordings stays at its last sample.
-                times = (min(run.time_s[0] + step_s, run.time_s[-1]) for run in runs)
+                times = (min(run.time_s[0] + offset_s, run.time_s[-1]) for run in runs)
                 frames = (
                     frame(run, time_s, colors=options.colors, caption=caption)
                     for run, time_s, caption in zip(runs, times, captions, strict=True)
                 )
                 return np.concatenate(list(frames), axis=1)
 
-            save_animation(path, map(drawn, steps_s.tolist()), fps)
+            save_animation(path, map(draw, offsets_s.tolist()), fps)
     if options.as_json:
         print_json({"files": list(map(printable, paths))})
     else:

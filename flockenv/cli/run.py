@@ -21,8 +21,8 @@ from flockenv.simulation import simulate
 
 _OUT = Path("results/run.npz")
 
-_OF_A_RUN = re.compile(rb"# flockenv \S+: seed \d+, policy ")
-"""The start of the parameters that a run writes beside its recording."""
+_RUN_HEADER = re.compile(rb"# flockenv \S+: seed \d+, policy ")
+"""The start of the file of parameters that a run writes beside its recording."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,9 +67,9 @@ def run(options: RunOptions) -> None:
     parameters = options.parameters()
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
     out = options.out or _free_path(_OUT)
-    beside = out.with_suffix(".toml")
-    _check_no_other_file(beside)
-    prepare(out, beside, overwrites=options.force)
+    parameter_file = out.with_suffix(".toml")
+    _check_no_other_file(parameter_file)
+    prepare(out, parameter_file, overwrites=options.force)
     duration_s = 60 * options.minutes
     with progress("simulating", duration_s, options.shows_nothing) as advance:
         recording = simulate(
@@ -84,36 +84,36 @@ def run(options: RunOptions) -> None:
         )
     recording.save(out)
     policy_name = printable(options.policy)
-    made = f"flockenv {recording.version}: seed {options.seed}, policy {policy_name}, "
-    write_text(beside, f"# {made}{options.minutes:g} min\n{parameters.to_toml()}")
+    header = f"# flockenv {recording.version}: seed {options.seed}, policy {policy_name}, "
+    write_text(parameter_file, f"{header}{options.minutes:g} min\n{parameters.to_toml()}")
     if options.as_json:
-        files = {"recording": str(out), "parameters": str(beside)}
-        given = {"seed": options.seed, "policy": options.policy}
-        print_json({**files, **given, **summary_of(recording)})
+        files = {"recording": str(out), "parameters": str(parameter_file)}
+        conditions = {"seed": options.seed, "policy": options.policy}
+        print_json({**files, **conditions, **summary_of(recording)})
         return
     echo(f"{parameters.n_boats} boats, seed {options.seed}: {in_words(recording)}")
-    echo(f"Written to {out} and {beside}")
+    echo(f"Written to {out} and {parameter_file}")
     echo(f"See it: {shlex.join(['flockenv', 'replay', str(out)])}")
 
 
-def _check_no_other_file(beside: Path) -> None:
-    """Refuse to replace, even with --force, a TOML file that no run wrote: a sweep's, or yours."""
-    if beside.is_file() and not _OF_A_RUN.match(beside.read_bytes()):
+def _check_no_other_file(parameter_file: Path) -> None:
+    """Refuse to replace a TOML file that no run wrote, such as a sweep's, even with --force."""
+    if parameter_file.is_file() and not _RUN_HEADER.match(parameter_file.read_bytes()):
         raise ParameterError(
-            f"{beside} already exists, and no run wrote it: --out needs another name, since the "
-            "parameters are written beside the recording"
+            f"{parameter_file} already exists, and no run wrote it: --out needs another name, "
+            "since the parameters are written beside the recording"
         )
 
 
 def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
-    """Return the schedule of texts ``TIME:FIELD=VALUE``."""
+    """Return the times and changes that texts ``TIME:FIELD=VALUE`` name."""
     changes = []
     for text in texts:
         time_s, colon, change = text.partition(":")
         try:
-            changes.append(
-                (float(time_s if colon else "no time"), changed_fields([change], "--at"))
-            )
+            if not colon:
+                raise ValueError("no time")
+            changes.append((float(time_s), changed_fields([change], "--at")))
         except ValueError as error:
             accepted = "TIME:FIELD=VALUE, as in 60:bw_s=0.6"
             raise ParameterError(f"--at {short_repr(text)} is not accepted: {accepted}") from error
@@ -121,7 +121,7 @@ def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
 
 
 def _free_path(path: Path) -> Path:
-    """Return the path, or, if a run is there, the path with the first free number from 2 on."""
+    """Return the path; if a run has it, the path with the first free number from 2 on."""
     numbered = (path.with_stem(f"{path.stem}-{number}") for number in count(2))
     paths = chain([path], numbered)
     return next(p for p in paths if not (p.exists() or p.with_suffix(".toml").exists()))

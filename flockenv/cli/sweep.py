@@ -52,7 +52,7 @@ def sweep(options: SweepOptions) -> None:
     each, with `--shard 1/8` to `--shard 8/8`; afterwards the command without `--shard` writes the
     table.
     If the noise `bw_s` varies, the command prints at which noise each flock loses its order, with a
-    95 % interval (three runs of a noise at least).
+    95 % interval. It needs at least three runs at each noise.
     A folder holds one sweep: for another one, name another folder or give `--force`.
     `docs/runs.md` describes the TOML file. If a run fails, its row says why, the others go on, and
     the command ends with exit code 1.
@@ -63,8 +63,8 @@ def sweep(options: SweepOptions) -> None:
 
     engine = named(options.engine)
     shard = None if options.shard is None else Shard.parse(options.shard)
-    work = read_sweep(options.spec)
-    runs = list(dict.fromkeys(work.runs))
+    spec = read_sweep(options.spec)
+    runs = list(dict.fromkeys(spec.runs))
     if shard is not None:
         runs = shard.runs_of(runs)
     folder = options.out or Path("results/sweep") / options.spec.stem
@@ -74,7 +74,7 @@ def sweep(options: SweepOptions) -> None:
         return
     copy = folder / "sweep.toml"
     if not options.force:
-        _check_same(copy, work)
+        _check_same(copy, spec)
     prepare(copy)
     write_text(copy, options.spec.read_text("utf-8"))
     kept = f"The runs that were finished are stored in {folder}: the same command resumes."
@@ -88,13 +88,13 @@ def sweep(options: SweepOptions) -> None:
         if shard is not None:
             failures = run_missing(runs, store, engine, finished, options.workers)
         else:
-            table = run_sweep(work, folder, engine, finished, warn, options.workers)
+            table = run_sweep(spec, folder, engine, finished, warn, options.workers)
     if shard is not None:
-        failed, where = _show_shard(options, shard, len(runs), failures), "see the warnings"
+        failed, reasons = _show_shard(options, shard, len(runs), failures), "see the warnings"
     else:
-        failed, where = _show_table(options, folder, len(runs), table), "see the column failure"
+        failed, reasons = _show_table(options, folder, len(runs), table), "see the column failure"
     if failed:
-        echo(f"{failed} of {len(runs)} runs failed: {where}", errors)
+        echo(f"{failed} of {len(runs)} runs failed: {reasons}", errors)
         raise typer.Exit(1)
 
 
@@ -126,32 +126,39 @@ def _show_table(options: SweepOptions, folder: Path, runs: int, table: "pd.DataF
 
 
 def _show_critical_noises(table: "pd.DataFrame") -> None:
-    """Print where each flock loses its order, if the sweep has several noises."""
+    """Print at which noise each flock loses its order, if the sweep has several noises."""
     from flockenv.runs.sweep import critical_noises
     from flockenv.statistics import LEAST_ROTATION
 
-    found = critical_noises(table)
-    for row in found.to_dict("records"):
-        flock = ", ".join(f"{name} {row[name]}" for name in found.columns[:-4])
+    rows = critical_noises(table)
+    flock_columns = rows.columns[:-4]
+    for row in rows.to_dict("records"):
+        flock = ", ".join(f"{name} {row[name]}" for name in flock_columns)
         noise, low, high = (row[f"critical_bw_s{end}"] for end in ("", "_low", "_high"))
-        lost = f"order is lost at bw_s {noise:.3g} s ({low:.3g} to {high:.3g})"
-        if math.isnan(noise):
-            most = row["rotation_size"]
-            lost = f"no order to lose: mean |m| is {most:.2f} at most, below {LEAST_ROTATION}"
-            if most >= LEAST_ROTATION:
-                lost = (
-                    "no answer where order is lost: it takes three runs at each noise, and noises "
-                    "up to disorder"
-                )
-        echo(f"{flock}: {lost}" if flock else f"{lost[0].upper()}{lost[1:]}")
+        strongest = row["rotation_size"]
+        if not math.isnan(noise):
+            result = f"order is lost at bw_s {noise:.3g} s ({low:.3g} to {high:.3g})"
+        elif strongest >= LEAST_ROTATION:
+            result = (
+                "the noise at which order is lost is unknown: it takes three runs at each noise, "
+                "and noises up to disorder"
+            )
+        else:
+            result = (
+                f"no order to lose: mean |m| is {strongest:.2f} at most, below {LEAST_ROTATION}"
+            )
+        echo(f"{flock}: {result}" if flock else f"{result[0].upper()}{result[1:]}")
 
 
-def _check_same(path: Path, work: "SweepSpec") -> None:
-    """Refuse to replace a folder's sweep by another one; the spelling of the file may differ."""
+def _check_same(path: Path, spec: "SweepSpec") -> None:
+    """Refuse to replace the sweep of a folder by a different one.
+
+    Two files that specify the same runs are the same sweep, whatever their spelling.
+    """
     from flockenv.runs.sweep import read_sweep
 
     try:
-        is_same = not path.exists() or read_sweep(path) == work
+        is_same = not path.exists() or read_sweep(path) == spec
     except ParameterError:
         is_same = False
     if not is_same:
@@ -174,7 +181,7 @@ def _show_workload(options: SweepOptions, runs: list[RunSpec], store: RunStore) 
 
 
 def _in_units(seconds: float) -> str:
-    """Return a time with a unit that suits it, such as "3.0 h"."""
+    """Return a time in seconds, minutes or hours, such as "3.0 h"."""
     if seconds < 100.0:
         return f"{max(seconds, 1.0):.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 6000.0 else f"{seconds / 3600:.1f} h"

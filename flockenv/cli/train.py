@@ -49,12 +49,12 @@ class TrainOptions(Printing):
             )
 
     def settings(self) -> dict[str, object]:
-        """Return the training's settings that the user has set."""
+        """Return the settings of the training that the user has set."""
         environment = changed_fields(self.change or [])
         for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):
             if value is not None and environment.setdefault(name, value) is not value:
                 raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
-        given = {
+        settings = {
             "pool": self.pool,
             "n_leaders": self.n_leaders,
             "flock_hours": self.flock_hours,
@@ -62,7 +62,7 @@ class TrainOptions(Printing):
             "environment": environment or None,
             "ppo": changed_fields(self.ppo or [], "--ppo") or None,
         }
-        return {name: value for name, value in given.items() if value is not None}
+        return {name: value for name, value in settings.items() if value is not None}
 
 
 @takes(TrainOptions)
@@ -80,16 +80,16 @@ def train(options: TrainOptions) -> None:
 
     Example: `flockenv train --algorithm branches --pool wide --n-leaders 3`
     """
-    given, out = options.settings(), options.out
+    user_settings, out = options.settings(), options.out
     if options.algorithm == "branches":
         from flockenv.cli.train_branches import train_branches
 
-        train_branches(given, out, options.episodes, options, resume=options.resume)
+        train_branches(user_settings, out, options.episodes, options, resume=options.resume)
         return
     from flockenv.training import ppo
     from flockenv.training.learning_curve import draw_curve
 
-    model, settings = _trained(options, given)
+    model, settings = _train(options, user_settings)
     rows = ppo.compare_with_laws(model, settings, options.episodes)
     write_csv(out / "comparison.csv", rows)
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
@@ -99,31 +99,33 @@ def train(options: TrainOptions) -> None:
     _show(options, rows)
 
 
-def _trained(options: TrainOptions, given: dict[str, Any]) -> tuple["PPO", "TrainingSettings"]:
-    """Train with PPO, or continue a training, and return the model."""
+def _train(
+    options: TrainOptions, user_settings: dict[str, Any]
+) -> tuple["PPO", "TrainingSettings"]:
+    """Train with PPO, or continue a training; return the model and its settings."""
     from flockenv.training import ppo
 
     out = options.out
     quiet, kept = options.shows_nothing, checkpoint_note(out)
     with progress("training", 1.0, quiet, ends=False, kept=kept) as advance:
-        reported = 0.0
+        reported_share = 0.0
 
-        def report(now: "Progress") -> None:
-            nonlocal reported
-            share, order = now.samples / now.total, now.signed_order
-            advance(share - reported, None if order is None else f"signed order {order:.3f}")
-            reported = share
+        def report(state: "Progress") -> None:
+            nonlocal reported_share
+            share, order = state.samples / state.total, state.signed_order
+            advance(share - reported_share, None if order is None else f"signed order {order:.3f}")
+            reported_share = share
 
         if options.resume:
             echo(f"Resuming from {out / ppo.CHECKPOINT}", errors)
             settings = ppo.stored_settings(out, options.flock_hours)
             return ppo.resume(out, flock_hours=options.flock_hours, report=report), settings
-        settings = ppo.TrainingSettings.from_dict(given)
+        settings = ppo.TrainingSettings.from_dict(user_settings)
         return ppo.train(settings, out, report), settings
 
 
 def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
-    """Print the order of the trained leaders beside that of the laws."""
+    """Print the mean signed orders of the trained leaders and of the laws."""
     from flockenv.comparison.report import overlap_notes
     from flockenv.training import ppo
 
@@ -131,8 +133,11 @@ def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
     means = rows.groupby("policy", sort=False)["signed_order"].mean()
     gain = paired_difference(orders[ppo.TRAINED], orders[TUNED_LAW])
     if options.as_json:
-        found = {"signed_order": means.to_dict(), "gain": [gain.mean, gain.low, gain.high]}
-        print_json({**found, "model": str(options.out / ppo.MODEL)})
+        orders_and_gain = {
+            "signed_order": means.to_dict(),
+            "gain": [gain.mean, gain.low, gain.high],
+        }
+        print_json({**orders_and_gain, "model": str(options.out / ppo.MODEL)})
         return
     for name, order in means.items():
         echo(f"{name}: signed order {order:.3f} in {options.episodes} held-out flocks")
@@ -140,7 +145,7 @@ def _show(options: TrainOptions, rows: "pd.DataFrame") -> None:
         f"{ppo.TRAINED} minus {TUNED_LAW}: {gain.mean:+.3f} ({gain.low:+.3f} to "
         f"{gain.high:+.3f}), paired by flock"
     )
-    own = overlap_notes(ppo.episodes_of(options.out), "episodes of the training")
-    for line in own + overlap_notes(rows):
+    notes = overlap_notes(ppo.episodes_of(options.out), "episodes of the training")
+    for line in notes + overlap_notes(rows):
         echo(line)
     echo(f"Written to {options.out}")

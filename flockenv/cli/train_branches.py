@@ -32,67 +32,70 @@ from flockenv.training.branches import (
     training_flocks,
 )
 
-#: Time in s between two lines of progress.
+#: Shortest time in s between two lines of progress.
 _BETWEEN_LINES_S = 3.0
 
 
 def train_branches(
-    given: dict[str, Any], out: Path, flocks: int, printing: Printing, *, resume: bool
+    user_settings: dict[str, Any], out: Path, flocks: int, printing: Printing, *, resume: bool
 ) -> None:
     """Train, write the policy with its curve, and compare it with the laws in this many flocks."""
-    start, command = time.process_time(), _command(given)
+    start, command = time.process_time(), _command(user_settings)
     if resume:
         echo(f"Resuming from {out / CHECKPOINT}", errors)
-        training = stored_training(out, given.get("flock_hours"))
+        training = stored_training(out, user_settings.get("flock_hours"))
     else:
-        training = _training(given)
+        training = _training(user_settings)
         if (out / CHECKPOINT).exists():
             raise ParameterError(f"{out} holds a run already: resume it, or name another folder")
     try:
         policy = train(training, out, command, _lines(printing.shows_nothing))
     except KeyboardInterrupt:
         raise KeyboardInterrupt(checkpoint_note(out)) from None
-    compared = compare_with_laws(policy, training.parameters, flocks)
-    orders = {name: columns["signed_order"] for name, columns in compared.items()}
+    measurements = compare_with_laws(policy, training.parameters, flocks)
+    orders = {name: columns["signed_order"] for name, columns in measurements.items()}
     _write(out, training, orders)
-    gain, error = _mean(orders[TRAINED] - orders[TUNED_LAW])
+    gain, gain_error = _mean(orders[TRAINED] - orders[TUNED_LAW])
     if printing.as_json:
-        means = {name: _mean(own)[0] for name, own in orders.items()}
-        print_json({"signed_order": means, "gain": [gain, error], "policy": str(out / POLICY)})
+        means = {name: _mean(values)[0] for name, values in orders.items()}
+        print_json({"signed_order": means, "gain": [gain, gain_error], "policy": str(out / POLICY)})
         return
-    for name, of_flocks in orders.items():
-        mean, own_error = _mean(of_flocks)
-        echo(f"{name}: signed order {mean:.3f} ± {own_error:.3f} in {len(of_flocks)} fresh flocks")
-    echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {error:.3f} (standard errors)")
-    lines = overlap_note(*training.overlaps, "branches of the training")
-    for line in lines + overlap_note(*_overlaps(compared), "episodes"):
+    for name, values in orders.items():
+        mean, error = _mean(values)
+        echo(f"{name}: signed order {mean:.3f} ± {error:.3f} in {len(values)} fresh flocks")
+    echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {gain_error:.3f} (standard errors)")
+    notes = overlap_note(*training.overlaps, "branches of the training")
+    for line in notes + overlap_note(*_overlaps(measurements), "episodes"):
         echo(line)
     echo(f"Written to {out}, with {time.process_time() - start:.0f} s of processor time")
 
 
-def _training(given: dict[str, Any]) -> BranchTraining:
-    """Return the training that the options ask for."""
-    if "ppo" in given:
+def _training(user_settings: dict[str, Any]) -> BranchTraining:
+    """Return a new training with the user's settings."""
+    if "ppo" in user_settings:
         raise ParameterError("--ppo is for --algorithm ppo")
-    changes = dict(given.get("environment", {}))
+    changes = dict(user_settings.get("environment", {}))
     names = [parameter.name for parameter in fields(FlockParameters)]
     refuse_unknown(changes, [*OPTIONS, *names], "option of the training")
-    own = {name: changes.pop(name) for name in OPTIONS if name in changes}
-    own |= {name: given[name] for name in ("flock_hours", "seed") if name in given}
-    flock = {name: given[name] for name in ("pool", "n_leaders") if name in given}
-    return BranchTraining(training_flocks(**flock, **changes), **own)
+    options = {name: changes.pop(name) for name in OPTIONS if name in changes}
+
+    def chosen(*names: str) -> dict[str, Any]:
+        return {name: user_settings[name] for name in names if name in user_settings}
+
+    flocks = training_flocks(**chosen("pool", "n_leaders"), **changes)
+    return BranchTraining(flocks, **options, **chosen("flock_hours", "seed"))
 
 
 def _lines(is_quiet: bool) -> Callable[[Progress], None]:
-    """Return a function that prints progress every few seconds, unless it is to be quiet."""
-    last = 0.0
+    """Return a function that prints progress every few seconds, or nothing if `is_quiet`."""
+    last_line_s = 0.0
 
-    def report(now: Progress) -> None:
-        nonlocal last
-        if not is_quiet and time.monotonic() - last > _BETWEEN_LINES_S:
-            last = time.monotonic()
-            done = f"{now.flock_hours:.0f} of {now.total:.0f} flock-hours"
-            echo(f"{done}: signed order {now.signed_order:.3f} while leaders try", errors)
+    def report(state: Progress) -> None:
+        nonlocal last_line_s
+        if not is_quiet and time.monotonic() - last_line_s > _BETWEEN_LINES_S:
+            last_line_s = time.monotonic()
+            done = f"{state.flock_hours:.0f} of {state.total:.0f} flock-hours"
+            echo(f"{done}: signed order {state.signed_order:.3f} while leaders try", errors)
 
     return report
 
@@ -102,18 +105,22 @@ def _mean(values: NDArray[np.float64]) -> tuple[float, float]:
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 
 
-def _overlaps(compared: Mapping[str, Mapping[str, Any]]) -> tuple[int, int, float]:
-    """Return the numbers of episodes and of those with overlaps, and the deepest overlap."""
+def _overlaps(measurements: Mapping[str, Mapping[str, Any]]) -> tuple[int, int, float]:
+    """Return the number of episodes, the number with overlaps, and the deepest overlap in cm.
+
+    Only overlaps beyond the tolerance count.
+    """
     unsolved, worst_cm = (
-        np.concatenate([columns[name] for columns in compared.values()])
+        np.concatenate([columns[name] for columns in measurements.values()])
         for name in ("unsolved", "worst_overlap_cm")
     )
-    deep = unsolved > 0
-    return len(deep), int(deep.sum()), float(worst_cm[deep].max(initial=0.0))
+    has_overlaps = unsolved > 0
+    deepest_cm = float(worst_cm[has_overlaps].max(initial=0.0))
+    return len(has_overlaps), int(has_overlaps.sum()), deepest_cm
 
 
 def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
-    """Write the comparison, and the picture of the curve where matplotlib is installed."""
+    """Write the comparison and, if matplotlib is installed, a picture of the learning curve."""
     rows = ["seed," + ",".join(orders)]
     for seed, row in enumerate(zip(*orders.values(), strict=True)):
         rows.append(f"{seed}," + ",".join(f"{order:.5f}" for order in row))
@@ -121,16 +128,17 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
     if find_spec("matplotlib") is not None:
         from flockenv.training.learning_curve import draw_curve
 
-        laws = {name: float(own.mean()) for name, own in orders.items() if name != TRAINED}
+        laws = {name: float(values.mean()) for name, values in orders.items() if name != TRAINED}
         draw_curve(training.curve, laws, out / "curve.png")
 
 
-def _command(given: Mapping[str, Any]) -> str:
+def _command(user_settings: Mapping[str, Any]) -> str:
     """Return the command line that repeats this training."""
     words = ["flockenv", "train", "--algorithm", "branches"]
-    for name, value in given.items():
+    for name, value in user_settings.items():
         if isinstance(value, dict):
-            words += [word for key in value for word in ("--set", f"{key}={value[key]}")]
+            for option, option_value in value.items():
+                words += ["--set", f"{option}={option_value}"]
         else:
             words += [option_of(name), str(value)]
     return shlex.join(words)

@@ -25,7 +25,7 @@ def test_the_table_and_the_files(cli, tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = cli.succeeds("sweep", spec, "--out", out)
     assert "8 runs" in done.stdout
-    assert "n_boats 5: no answer where order is lost" in done.stdout
+    assert "n_boats 5: the noise at which order is lost is unknown" in done.stdout
     table = load_sweep(out)
     assert table[["n_boats", "bw_s", "seed"]].drop_duplicates().shape == (8, 3)
     before = (out / "sweep.csv").read_bytes()
@@ -41,7 +41,8 @@ def test_why_no_critical_noise_is_named(capsys) -> None:
         {"bw_s": [0.0, 0.4], "seed": 0, "psi_o_mean": [0.9, 0.2], "rotation_size": [0.9, 0.1]}
     ).assign(failure="")
     _show_critical_noises(table)
-    assert capsys.readouterr().out.startswith("No answer where order is lost: it takes three runs")
+    unknown = "The noise at which order is lost is unknown: it takes three runs"
+    assert capsys.readouterr().out.startswith(unknown)
     _show_critical_noises(table.assign(rotation_size=0.45))
     assert capsys.readouterr().out == "No order to lose: mean |m| is 0.45 at most, below 0.5\n"
 
