@@ -16,7 +16,7 @@ from flockenv.cli.options import takes
 from flockenv.cli.output import prepare, printable
 from flockenv.cli.progress import progress
 from flockenv.comparison.levels import SUITE as LEVELS_SUITE
-from flockenv.comparison.report import ComparisonReport, overlap_notes, titled
+from flockenv.comparison.report import ComparisonReport, overlap_notes, policy_title
 from flockenv.comparison.suite import scores_table
 
 _TRIAL_FLOCKS = 16
@@ -29,7 +29,7 @@ def compare(options: CompareOptions) -> None:
     """Print and plot order against the number of leaders, for your policies and others.
 
     Runs each policy on the same seeds: 27 boats in the pool `wide`, at its critical noise, unless
-    the options say otherwise. Differences are your first policy minus each of the others.
+    the options say otherwise. Differences are each policy minus each later one, yours first.
     Writes `runs.csv`, `means.csv`, `differences.csv`, `lines.csv`, `leader_curve.png`, `run.toml`
     (seeds, policies, environment), the parameters of each case for `--params`, and the card of
     your first policy, `card.md`.
@@ -100,7 +100,7 @@ def _run_cases(options: CompareOptions, plan: Plan) -> ComparisonReport:
     cases, policies = plan.cases, plan.policies
     command = printable(shlex.join(["flockenv", *sys.argv[1:]]))
     titles = {
-        case.name: {name: titled(policy) for name, policy in policies[case.name].items()}
+        case.name: {name: policy_title(policy) for name, policy in policies[case.name].items()}
         for case in cases
     }
     conditions = {"command": command, "policies": titles}

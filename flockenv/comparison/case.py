@@ -40,7 +40,7 @@ class Case:
             object.__setattr__(self, name, items(getattr(self, name), name))
 
     def flock_hours(self, policies: int) -> float:
-        """Return the hours of simulated time that a number of policies takes."""
+        """Return the simulated hours of all flocks that this number of policies leads."""
         flocks = sum(policies if k > 0 else 1 for k in self.leaders) * len(self.seeds)
         return flocks * self.episode_s / 3600.0
 
@@ -50,10 +50,10 @@ class Case:
         progress: Progress = no_progress,
         finished: Finished = nothing_finished,
     ) -> "pd.DataFrame":
-        """Run every policy; return a row per episode, as `compare_leaders` with a column ``case``.
+        """Run every policy; return the table of `compare_leaders` with a column ``case``.
 
-        Calls `finished` with the rows of each policy and number of leaders when they are complete,
-        and raises the errors of `compare_leaders`.
+        Calls `finished` with the rows of each policy and number of leaders when they are complete.
+        Raises the errors of `compare_leaders`.
         """
         targets = self.targets or (self.parameters.target,)
         parts = [
@@ -74,7 +74,7 @@ class Case:
         return runs
 
     def described(self) -> dict[str, object]:
-        """Return everything but the parameters, in types of TOML."""
+        """Return the fields that `run.toml` holds: all but the name and the parameters."""
         return {
             "leaders": list(self.leaders),
             "seeds": {"first": self.seeds[0], "number": len(self.seeds)},

@@ -1,4 +1,4 @@
-"""`Comparison`: policies and numbers of leaders on the same seeds, order by number of leaders."""
+"""`Comparison`: the order of flocks by policy and number of leaders, on the same seeds."""
 
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -35,7 +35,7 @@ _SET_BY = {
     **dict.fromkeys(("autoreset_mode", "render_mode", "render_size"), "the comparison"),
     **dict.fromkeys(("num_envs", "reward", "reward_horizon_s"), "the comparison"),
 }
-"""The argument that sets an option which `environment` may not hold, by the option's name."""
+"""What sets each of the options that `environment` may not hold."""
 
 
 def nothing_finished(rows: "pd.DataFrame") -> None:
@@ -70,19 +70,19 @@ class Comparison:
         """Return the comparison that `compare_leaders` describes, or raise its errors."""
         options = _environment(environment)
         seeds = _evaluation_seeds(seeds)
-        steers = _policies(policies)
-        counts = _counts(leaders, parameters, steers)
+        named_policies = _policies(policies)
+        counts = _counts(leaders, parameters, named_policies)
         entries = []
-        for name, policy in ({NO_LEADERS: None} | steers).items():
+        for name, policy in ({NO_LEADERS: None} | named_policies).items():
             for k in counts:
                 if (k == 0) != (name == NO_LEADERS):
                     continue
-                flock, own = parameters.replace(n_leaders=k), policy
-                if isinstance(own, Mapping) and k < max(counts):
+                flock, steering = parameters.replace(n_leaders=k), policy
+                if isinstance(steering, Mapping) and k < max(counts):
                     # With k leaders, the policies of the first k steer.
-                    own = dict(itertools.islice(own.items(), k))
-                found = Episodes.parse(flock, own, seeds, duration_s, options)
-                entries.append(Entry(name, k, found))
+                    steering = dict(itertools.islice(steering.items(), k))
+                episodes = Episodes.parse(flock, steering, seeds, duration_s, options)
+                entries.append(Entry(name, k, episodes))
         if not entries:
             raise ParameterError("nothing to compare: leaders and policies name no flocks")
         return cls(tuple(entries))
@@ -92,65 +92,66 @@ class Comparison:
         pandas = require("pandas", "plot")
         tables = []
         for entry in self.entries:
-            measured = entry.episodes.measure(progress)
+            columns = entry.episodes.measure(progress)
             names = {"policy": entry.policy, "leaders": entry.leaders, "seed": entry.episodes.seeds}
-            tables.append(pandas.DataFrame(names | measured))
+            tables.append(pandas.DataFrame(names | columns))
             finished(tables[-1])
         runs: pd.DataFrame = pandas.concat(tables, ignore_index=True)
         return runs
 
 
 def _environment(options: Mapping[str, object]) -> dict[str, object]:
-    """Return options; refuse those that another argument sets."""
-    found = by_name(options, "environment")
-    for name, value in found.items():
-        # A range of noises is not a parameter of one flock.
-        if name in _SET_BY and not (name == "bw_s" and isinstance(value, tuple | list)):
+    """Return a copy of the options; refuse those that another argument sets."""
+    checked = by_name(options, "environment")
+    for name, value in checked.items():
+        # A range of noises is accepted: the parameters of a flock hold a single noise.
+        is_noise_range = name == "bw_s" and isinstance(value, tuple | list)
+        if name in _SET_BY and not is_noise_range:
             raise ParameterError(
                 f"{name} = {short_repr(value)} is not accepted in the environment of a comparison: "
                 f"{_SET_BY[name]} sets it"
             )
-    return found
+    return checked
 
 
 def _evaluation_seeds(seeds: Iterable[int]) -> Sequence[int]:
-    found = seeds_of_episodes(seeds)
-    check_evaluation_seeds(found)
-    if len(set(found)) < len(found):
+    checked = seeds_of_episodes(seeds)
+    check_evaluation_seeds(checked)
+    if len(set(checked)) < len(checked):
         raise ParameterError("seeds holds a seed more than once, which would count twice")
-    return found
+    return checked
 
 
 def _policies(
     policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
 ) -> dict[str, PolicyLike | Mapping[str, PolicyLike]]:
-    found = by_name(policies, "policies")
-    if NO_LEADERS in found:
+    checked = by_name(policies, "policies")
+    if NO_LEADERS in checked:
         raise ParameterError(
             f"{NO_LEADERS!r} is not a name for a policy: it names flocks without leaders"
         )
-    return found
+    return checked
 
 
 def _counts(
     leaders: Iterable[int], flock: FlockParameters, policies: Mapping[str, object]
 ) -> list[int]:
-    """Return the different numbers of leaders of a flock, or refuse those that it cannot have."""
+    """Return the numbers of leaders, each once; refuse numbers that the flock cannot have."""
     if not isinstance(flock, FlockParameters):
         raise TypeError(f"parameters must be FlockParameters, not {short_repr(flock)}")
-    found = list(dict.fromkeys(as_int(k, "leaders") for k in items(leaders, "leaders")))
-    most = max(found, default=0)
+    counts = list(dict.fromkeys(as_int(k, "leaders") for k in items(leaders, "leaders")))
+    most = max(counts, default=0)
     if most >= flock.n_boats:
         raise ParameterError(
             f"{most} leaders among n_boats = {flock.n_boats} are not accepted: the order is "
             "measured of normal boats (on the command line --n-leaders and --n-boats)"
         )
-    if policies and found and most == 0:
+    if policies and counts and most == 0:
         raise ParameterError(
             f"leaders = {short_repr(leaders)} are not accepted with policies: they have nobody to "
             "steer"
         )
-    return found
+    return counts
 
 
 def compare_leaders(
@@ -180,7 +181,7 @@ def compare_leaders(
         with one policy for each of ``"leader_0"``, ``"leader_1"`` and so on. A function is called
         for each number of leaders; anything else is one object for all of them.
     seeds
-        One episode each; of the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
+        One episode each; from the range ``"evaluation"`` of `flockenv.runs.seeds.POLICY_SEEDS`.
     duration_s
         Length of an episode in s.
     progress
@@ -201,12 +202,14 @@ def compare_leaders(
     Raises
     ------
     ParameterError
-        For parameters, options, names and durations out of range, for options that another argument
-        or a policy sets, for training seeds and seeds given twice, and for policies made for
+        For parameters, options, names and durations that are not accepted, for options that another
+        argument or a policy sets, for training seeds, for repeated seeds, and for policies made for
         another number of leaders or another action mode.
     """
     require("pandas", "plot")
     check_function(progress, "progress")
     check_function(finished, "finished")
-    found = Comparison.parse(parameters, leaders, policies, seeds, duration_s, environment or {})
-    return found.run(progress, finished)
+    comparison = Comparison.parse(
+        parameters, leaders, policies, seeds, duration_s, environment or {}
+    )
+    return comparison.run(progress, finished)

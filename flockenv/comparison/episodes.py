@@ -1,4 +1,4 @@
-"""Seeded episodes of flocks that policies lead, and their measurements (figure 12)."""
+"""Seeded episodes of flocks that policies lead, and their measured quantities (figure 12)."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,13 +20,14 @@ from flockenv.policies.base import CONTROL_HZ, Policy
 from flockenv.policies.leaders import Leaders
 from flockenv.policies.registry import PolicyLike
 
-Decide = Callable[[NDArray[np.float32]], NDArray[np.float64] | None]
+DecisionFunction = Callable[[NDArray[np.float32]], NDArray[np.float64] | None]
+"""Function from the observations of all leaders to their actions; None: the paper's law steers."""
 
 Progress = Callable[[float], object]
 """Function that takes the flock-seconds simulated since its last call."""
 
 NO_LEADERS = "no leaders"
-"""Name under which runs without leaders are listed."""
+"""Name of runs without leaders in the column ``policy``."""
 
 QUANTITIES = ("psi_o", "signed_order", "share_towards_target")
 """Compared columns: mean Ψ_o and mean signed order of the normal boats, and the fraction of the
@@ -39,8 +40,8 @@ ORDERING_TIMES = dict(
 """Ordering times (eq. 7) with the angle as printed and a wider one; infinite if a flock did not
 order."""
 
-_OF_THE_FLOCK = ("target", "bw_s", "physics")
-"""Options that flocks without decisions accept, too."""
+_FLOCK_OPTIONS = ("target", "bw_s", "physics")
+"""The only options for flocks in which no policy decides."""
 
 
 def no_progress(flock_seconds: float) -> None:
@@ -70,81 +71,84 @@ class Episodes:
             raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
         k, options = parameters.n_leaders, by_name(options, "options")
         leaders = Leaders.from_policies(policy, parameters)
-        given = {
+        settings = {
             "target": parameters.target,
             **options,
-            # An environment needs at least one leader; the batch then has none.
+            # `EnvOptions` needs at least one leader; `_batch` sets the real number.
             "params": parameters.replace(n_leaders=max(1, k)),
             "episode_s": duration_s,
-            **_layout(leaders, options),
+            **_decision_options(leaders, options),
         }
-        found = cls(EnvOptions.parse(given), leaders, k, seeds_of_episodes(seeds))
-        found._batch(1)
-        return found
+        episodes = cls(EnvOptions.parse(settings), leaders, k, seeds_of_episodes(seeds))
+        episodes._batch(1)  # It raises errors before anything runs.
+        return episodes
 
     def _batch(self, flocks: int) -> LeaderBatch:
         return LeaderBatch(self.flock, [self.n_leaders] * flocks, "disabled")
 
     def measure(self, progress: Progress = no_progress) -> dict[str, NDArray[Any]]:
-        """Run the episodes; return what `run_episodes` returns."""
+        """Run the episodes; return the columns that `run_episodes` returns."""
         count = len(self.seeds)
         batch = self._batch(count)
         batch.core.reset([{"seed": seed} for seed in self.seeds])
-        decide, observed = self._decide(batch), batch.core.observe()
+        decide, observations = self._decision_function(batch), batch.core.observe()
         ended = np.zeros(count, np.bool_)
         while not ended.all():
-            observed, _, ended = batch.core.step(decide(observed))
+            observations, _, ended = batch.core.step(decide(observations))
             progress(count / batch.decisions_hz)
             end_if_interrupted()
         summaries = [batch.core.finished(flock) or {} for flock in range(count)]
-        # A value that is unknown is missing from a summary.
+        # A summary lacks the values that are unknown.
         return {
             name: np.array([summary.get(name, np.nan) for summary in summaries])
             for name in (*QUANTITIES, *ORDERING_TIMES, *STEP_STATISTICS)
         }
 
-    def _decide(self, batch: LeaderBatch) -> Decide:
-        """Return the function that turns observations into actions; None: the law acts alone."""
+    def _decision_function(self, batch: LeaderBatch) -> DecisionFunction:
+        """Return the function that decides in all flocks of a batch."""
         if self.leaders.is_per_leader:
-            return _decide_each(self.leaders, batch)
+            return _decision_function_per_leader(self.leaders, batch)
         policy, state = self.leaders.assignments[0].policy.started(), None
         if policy.control_hz is None:
-            return lambda observed: None
-        rows = batch.num_flocks * self.n_leaders
+            return lambda observations: None
+        leaders = batch.num_flocks * self.n_leaders
 
-        def decide(observed: NDArray[np.float32]) -> NDArray[np.float64]:
+        def decide(observations: NDArray[np.float32]) -> NDArray[np.float64]:
             nonlocal state
-            each_flock = observed.reshape(batch.num_flocks, -1)
-            actions, state = policy.decide(each_flock, state, rows)
+            rows = observations.reshape(batch.num_flocks, -1)
+            actions, state = policy.decide(rows, state, leaders)
             return actions
 
         return decide
 
 
-def _decide_each(leaders: Leaders, batch: LeaderBatch) -> Decide:
-    """Return the function that decides for leaders whose policies differ, as may their layouts."""
+def _decision_function_per_leader(leaders: Leaders, batch: LeaderBatch) -> DecisionFunction:
+    """Return the function that decides if each leader has its own policy and observation."""
     core, decisions = batch.core, leaders.decisions(batch.settings["control_hz"])
 
     def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
-        observed = (core.observe_in(*layout) for layout in decisions.layouts)
-        return decisions.rudders(core.target_signs().ravel(), *observed)
+        observations = (core.observe_in(*layout) for layout in decisions.layouts)
+        return decisions.rudders(core.target_signs().ravel(), *observations)
 
     return decide
 
 
-def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
-    """Return the environment's options that the policies need; refuse contradicting ones."""
+def _decision_options(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
+    """Return the environment's options that the policies need.
+
+    Refuses options that contradict them.
+    """
     if leaders.is_per_leader:
         if "decision_period_s" in options:
             raise ParameterError(
                 "decision_period_s is not accepted with a policy for each leader: each has its own"
             )
         _check_action_mode(leaders, options)
-        rate = options.get("control_hz")
-        return {"control_hz": leaders.decisions().control_hz if rate is None else rate}
+        control_hz = options.get("control_hz")
+        return {"control_hz": leaders.decisions().control_hz if control_hz is None else control_hz}
     policy: Policy = leaders.assignments[0].policy
     if policy.control_hz is None:
-        if refused := [name for name in options if name not in _OF_THE_FLOCK]:
+        if refused := [name for name in options if name not in _FLOCK_OPTIONS]:
             name = policy.name if leaders.assignments[0].leaders else NO_LEADERS
             raise ParameterError(
                 f"{name!r} makes no decisions in the environment, which then takes no "
@@ -152,13 +156,13 @@ def _layout(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object
             )
         return {"control_hz": CONTROL_HZ}
     _check_action_mode(leaders, options)
-    own = policy.decision_period_s
+    period_s = policy.decision_period_s
     return {
         "observation": policy.observation,
         "mirror_to_target": policy.mirror_to_target,
         "control_hz": options.get("control_hz", policy.control_hz),
         "action_mode": policy.action_mode,
-        "decision_period_s": options.get("decision_period_s") if own is None else own,
+        "decision_period_s": (options.get("decision_period_s") if period_s is None else period_s),
     }
 
 
@@ -170,8 +174,8 @@ def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
 
 def seeds_of_episodes(seeds: Iterable[int]) -> Sequence[int]:
     """Return the seeds, one for each episode; refuse anything but a sequence of whole numbers."""
-    found = items(seeds, "seeds")
-    return found if isinstance(found, range) else tuple(as_int(seed, "seed") for seed in found)
+    values = items(seeds, "seeds")
+    return values if isinstance(values, range) else tuple(as_int(seed, "seed") for seed in values)
 
 
 def run_episodes(

@@ -1,4 +1,4 @@
-"""The leader-count curve. Nothing upstream imports this module."""
+"""The leader-count curve: order against the number of leaders."""
 
 import itertools
 from collections.abc import Iterable, Mapping
@@ -41,7 +41,8 @@ def leader_curve(
 ) -> None:
     """Draw order against the number of leaders, as figure 12 does, a panel for each case.
 
-    A `ComparisonReport` has the means and the runs, each a dot. Titles are by case.
+    `means` and `runs` are those of a `ComparisonReport`; each run is a dot. `titles` holds the
+    panels' titles by case.
     """
     policies = [name for name in means["policy"].unique() if name != NO_LEADERS]
     cases = list(means["case"].unique())
@@ -49,17 +50,18 @@ def leader_curve(
         figure = Figure(figsize=(0.6 + 3.6 * len(cases), 4.0), layout="constrained")
         panels = figure.subplots(1, len(cases), sharey=True, squeeze=False)[0]
         for axes, case in zip(panels, cases, strict=True):
-            own = means[means["case"] == case]
+            case_means = means[means["case"] == case]
             for index, (policy, color) in enumerate(policy_colors(policies).items()):
                 shift = 0.1 * (index - (len(policies) - 1) / 2)
-                shown = [policy, NO_LEADERS]
+                names = [policy, NO_LEADERS]
                 if runs is not None:
-                    dots = runs[(runs["case"] == case) & runs["policy"].isin(shown)]
+                    dots = runs[(runs["case"] == case) & runs["policy"].isin(names)]
                     k = dots["leaders"] + shift
                     axes.plot(k, dots["signed_order"], ".", ms=3, alpha=0.3, color=color, mew=0)
-                _draw(axes, own[own["policy"].isin(shown)], shift, policy, color)
+                policy_means = case_means[case_means["policy"].isin(names)]
+                _draw_policy(axes, policy_means, shift, policy, color)
             axes.set_xlabel("number of leaders k")
-            axes.set_xticks(sorted(own["leaders"].unique()))
+            axes.set_xticks(sorted(case_means["leaders"].unique()))
             title = (titles or {}).get(case, case).replace(", ", "\n", 1)
             axes.set_title(title, fontsize=8, parse_math=False, wrap=True)
         panels[0].set_ylabel(_ORDER)
@@ -74,17 +76,19 @@ def leader_curve(
             figure.savefig(file, dpi=200, format=path.suffix.removeprefix("."))
 
 
-def _draw(axes: Axes, means: pd.DataFrame, shift: float, policy: str, color: str) -> None:
+def _draw_policy(axes: Axes, means: pd.DataFrame, shift: float, policy: str, color: str) -> None:
+    """Draw the means of a policy with their intervals, shifted along the axis of leaders."""
     means = means.sort_values("leaders")
     order = means["signed_order"]
-    ends = means[["signed_order_low", "signed_order_high"]].sub(order, axis=0).abs().to_numpy().T
-    # Names of policies may be names of files. A dollar sign in one must not start a formula, and
-    # Matplotlib leaves names that start with an underscore out of a legend.
+    bounds = means[["signed_order_low", "signed_order_high"]]
+    bar_lengths = bounds.sub(order, axis=0).abs().to_numpy().T
+    # A policy may have the name of a file. A dollar sign in it must not start a formula. The space
+    # in front is for names that start with an underscore: Matplotlib's legends leave them out.
     label = " " + policy[-40:].replace("$", r"\$")
     axes.errorbar(
         means["leaders"] + shift,
         order,
-        ends,
+        bar_lengths,
         fmt="o-",
         ms=4,
         lw=1,

@@ -1,6 +1,6 @@
 """Suite v3: frozen levels in which leaders learn to steer from nothing, and their scores.
 
-If a level or a number in one changes, it is another suite.
+If a level or one of its numbers changes, it is another suite.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,13 +32,13 @@ NO_STEERING, REFERENCE = "straight ahead", DAMPED_LAW
 """The policies whose scores are 0 and 1."""
 
 MEASURED = ("signed_order", *STEP_STATISTICS)
-"""What is known of each flock: its signed order, and whether its run kept the tolerance."""
+"""Columns of each flock: its signed order, and whether its run kept the tolerance."""
 
 Led = Mapping[str, NDArray[Any]]
-"""The `MEASURED` of flocks by name, shape (flocks,), or (policies, flocks) of several policies."""
+"""The columns `MEASURED` by name: shape (flocks,), or (policies, flocks) for several policies."""
 
 BUDGETS = (30, 100, 300)
-"""Flock-hours of a training, by which entries are classed; the last rollout may add 2 %."""
+"""Most flock-hours of a training in each class of entries; the last rollout may add 2 %."""
 
 LEVEL_IDS: Mapping[str, str] = {
     "order-easy": "flockenv/Order-easy-v0",
@@ -79,27 +79,27 @@ class Level:
         )
 
     def flock_hours(self, flocks: int = FLOCKS) -> float:
-        """Return the hours of simulated time that a policy takes."""
+        """Return the simulated hours of all flocks that one policy leads."""
         return flocks * self.episode_s / 3600.0
 
     def run(
         self, steers: Policy | str, flocks: int = FLOCKS, progress: Progress = no_progress
     ) -> Led:
-        """Return the `MEASURED` of the level's first flocks, led by a policy, shape (flocks,)."""
+        """Return `MEASURED` for the level's first flocks, led by a policy: shape (flocks,)."""
         if not 2 <= flocks <= FLOCKS:
             raise ParameterError(
                 f"flocks = {short_repr(flocks)} is not accepted: from 2 to {FLOCKS}"
             )
-        checked = policy(steers, self.parameters.pool)
-        found = run_episodes(
-            self.parameters, checked, _SEEDS[:flocks], self.episode_s, progress, self.environment
+        leaders = policy(steers, self.parameters.pool)
+        columns = run_episodes(
+            self.parameters, leaders, _SEEDS[:flocks], self.episode_s, progress, self.environment
         )
-        return {name: found[name] for name in MEASURED}
+        return {name: columns[name] for name in MEASURED}
 
     def references(self, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
-        """Return the `MEASURED` of flocks without steering and under the damped law.
+        """Return `MEASURED` without steering and under the damped law: shape (2, flocks).
 
-        Their shape is (2, flocks); both policies lead the same flocks.
+        Both policies lead the same flocks.
         """
         return stacked([self.run(name, flocks, progress) for name in (NO_STEERING, REFERENCE)])
 
@@ -111,8 +111,8 @@ LEVELS: Mapping[str, Level] = {
 
 
 def stacked(led: Sequence[Led]) -> Led:
-    """Return the flocks of several policies as one, shape (policies, flocks)."""
-    return {name: np.array([own[name] for own in led]) for name in MEASURED}
+    """Return the columns of several policies in one array each, shape (policies, flocks)."""
+    return {name: np.array([columns[name] for columns in led]) for name in MEASURED}
 
 
 def score(
@@ -130,22 +130,26 @@ def score(
     Returns
     -------
     tuple of float
-        The mean, and the ends of its interval. The interval accounts for the luck of the flocks,
-        also in the two references, and for the luck of the trainings if there are two or more.
+        The mean score, and the ends of its interval. The interval accounts for chance in the
+        flocks, which also moves the two references. With two trainings or more it also accounts for
+        chance in the trainings.
     """
-    led = np.atleast_2d(np.asarray(orders, float))
-    scale = float((reference - no_steering).mean())
+    gains = np.atleast_2d(np.asarray(orders, float)) - no_steering
+    reference_gains = reference - no_steering
+    scale = float(reference_gains.mean())
     if not scale > 0.0:
         raise ParameterError(
-            f"the damped law gains {scale:.3f} on no steering in these {led.shape[1]} flocks: "
+            f"the damped law gains {scale:.3f} on no steering in these {gains.shape[1]} flocks: "
             "there is no scale for a score"
         )
-    found = float((led - no_steering).mean()) / scale
-    # Each flock's effect on the ratio, to first order.
-    moved = found + ((led - no_steering) - found * (reference - no_steering)) / scale
-    return two_way_interval(moved) if len(moved) > 1 else mean_interval(moved[0])
+    mean_score = float(gains.mean()) / scale
+    # The score is a ratio of means. To first order it is the mean of these scores of flocks.
+    flock_scores = mean_score + (gains - mean_score * reference_gains) / scale
+    if len(flock_scores) > 1:
+        return two_way_interval(flock_scores)
+    return mean_interval(flock_scores[0])
 
 
 def budget_of(flock_hours: float) -> str:
-    """Return the class of a training by its flock-hours."""
+    """Return the class of a training by its flock-hours: one of `BUDGETS` as text, or "more"."""
     return next((str(most) for most in BUDGETS if flock_hours <= 1.02 * most), "more")

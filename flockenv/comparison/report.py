@@ -52,13 +52,14 @@ class ComparisonReport:
         """Means with intervals by case, policy and number of leaders.
 
         Further columns are ``ordered``, the fraction of the episodes in which the flock ordered,
-        and the median time that these took (infinite if there are none).
+        and the median ordering times of these episodes (infinite if there are none).
         """
         by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
         means = summarize(self.runs, by, list(QUANTITIES))
-        came = self.runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
-        columns = came[times].median().fillna(math.inf)
-        columns["ordered"] = came["ordering_time_wide_s"].count() / came.size()
+        # Without the infinite times of episodes in which the flock did not order.
+        finite = self.runs[[*by, *times]].replace(math.inf, math.nan).groupby(by, sort=False)
+        columns = finite[times].median().fillna(math.inf)
+        columns["ordered"] = finite["ordering_time_wide_s"].count() / finite.size()
         merged: pd.DataFrame = means.merge(columns.reset_index(), on=by, validate="one_to_one")
         return merged
 
@@ -66,47 +67,48 @@ class ComparisonReport:
     def differences(self) -> "pd.DataFrame":
         """Signed order of each policy minus that of every later policy, its ``reference``.
 
-        Seed by seed, for each case and number of leaders; empty for a single policy.
+        Differences are taken seed by seed, for each case and number of leaders. The table is empty
+        for a single policy.
         """
         rows = []
-        led = self.runs[self.runs["leaders"] > 0]
-        for (case, k), own in led.groupby(["case", "leaders"], sort=False):
-            orders = own.pivot_table(
+        runs_with_leaders = self.runs[self.runs["leaders"] > 0]
+        for (case, k), runs in runs_with_leaders.groupby(["case", "leaders"], sort=False):
+            orders = runs.pivot_table(
                 index="seed", columns="policy", values="signed_order", dropna=False
             )
             for policy, reference in itertools.combinations(self.policies, 2):
                 if {policy, reference} <= set(orders):
-                    found = asdict(paired_difference(orders[policy], orders[reference]))
+                    difference = asdict(paired_difference(orders[policy], orders[reference]))
                     names = {"case": case, "policy": policy, "reference": reference, "leaders": k}
-                    rows.append(names | found)
+                    rows.append(names | difference)
         return _table(rows, ["case", "policy", "reference", "leaders"], Difference)
 
     @cached_property
     def lines(self) -> "pd.DataFrame":
         """A straight line of each quantity over the number of leaders, by case and policy.
 
-        It is fitted to the policy's episodes and those without leaders; empty for a single number
-        of leaders.
+        The line is fitted to the policy's episodes and to those without leaders. The table is empty
+        if all episodes have the same number of leaders.
         """
         rows = []
-        for case, every in self.runs.groupby("case", sort=False):
+        for case, case_runs in self.runs.groupby("case", sort=False):
             for policy in self.policies:
-                own = every[every["policy"].isin([policy, NO_LEADERS])].dropna(
-                    subset=list(QUANTITIES)
-                )
-                if policy in set(own["policy"]) and own["leaders"].nunique() > 1 and len(own) > 2:
+                runs = case_runs[case_runs["policy"].isin([policy, NO_LEADERS])]
+                runs = runs.dropna(subset=list(QUANTITIES))
+                counts = runs["leaders"]
+                if policy in set(runs["policy"]) and counts.nunique() > 1 and len(runs) > 2:
                     for quantity in QUANTITIES:
-                        line = asdict(fit_line(own["leaders"], own[quantity]))
+                        line = asdict(fit_line(counts, runs[quantity]))
                         rows.append({"case": case, "policy": policy, "quantity": quantity} | line)
         return _table(rows, ["case", "policy", "quantity"], Line)
 
     def write(self, folder: Path) -> None:
-        """Write the comparison into a folder, which is made.
+        """Write the comparison into a folder, which is made if it does not exist.
 
-        ``runs.csv``, ``means.csv``, ``differences.csv``, ``lines.csv``, ``run.toml`` (everything
-        that the numbers depend on, except for the parameters), for each case its parameters in
-        ``NAME.toml``, and ``leader_curve.png`` if a case has several numbers of leaders. Each file
-        is either complete or unchanged.
+        The files are ``runs.csv``, ``means.csv``, ``differences.csv`` and ``lines.csv``;
+        ``run.toml`` with everything that the numbers depend on, except for the parameters;
+        ``NAME.toml`` with the parameters of each case; and ``leader_curve.png`` if a case has
+        several numbers of leaders. Each file is either complete or unchanged.
         """
         folder.mkdir(parents=True, exist_ok=True)
         for name in _TABLES:
@@ -137,13 +139,13 @@ class ComparisonReport:
         for name in columns:
             table.add_column(Text(name), min_width=12, overflow="fold")
         for case in self.cases:
-            own = self.means[self.means["case"] == case.name]
+            case_means = self.means[self.means["case"] == case.name]
             title = case.name
-            for k in sorted(own["leaders"].unique()):
-                found = own[own["leaders"] == k].set_index("policy")
+            for k in sorted(case_means["leaders"].unique()):
+                means = case_means[case_means["leaders"] == k].set_index("policy")
                 # Flocks without leaders are the same for all policies.
                 names = columns if k > 0 else [NO_LEADERS] * len(columns)
-                cells = [_plus_minus(found.loc[n]) if n in found.index else "" for n in names]
+                cells = [_plus_minus(means.loc[n]) if n in means.index else "" for n in names]
                 table.add_row(Text(title), str(k), *cells)
                 title = ""
         return table
@@ -166,21 +168,21 @@ class ComparisonReport:
 
     def card(self, name: str, policy: Policy | Mapping[str, Policy]) -> str:
         """Return a policy's model card as Markdown: its provenance and its comparison."""
-        lines = [f"# {name}", "", f"The policy is `{titled(policy)}`.", ""]
-        alone = policy.source if isinstance(policy, Policy) else None
-        provenance = getattr(alone, "provenance", None) or {}
+        lines = [f"# {name}", "", f"The policy is `{policy_title(policy)}`.", ""]
+        source = policy.source if isinstance(policy, Policy) else None
+        provenance = getattr(source, "provenance", None) or {}
         lines += [f"- {key}: `{text}`" for key, text in provenance.items()]
-        made = f"`{self.conditions.get('command', '')}` made this with flockenv {__version__}."
-        lines += ["", "## Comparison", "", made, ""]
+        origin = f"`{self.conditions.get('command', '')}` made this with flockenv {__version__}."
+        lines += ["", "## Comparison", "", origin, ""]
         lines += [
             f"- {case.name}: {case.title()}; {len(case.seeds)} episodes of {case.episode_s:g} s"
             for case in self.cases
         ]
-        printed = StringIO()
-        Console(file=printed, width=120).print(self.table())
-        text = "\n".join(line.rstrip() for line in printed.getvalue().splitlines())
-        words = [self.in_words(), *overlap_notes(self.runs)]
-        return "\n".join([*lines, "", "```text", text, "", *words, "```", ""])
+        output = StringIO()
+        Console(file=output, width=120).print(self.table())
+        table = "\n".join(line.rstrip() for line in output.getvalue().splitlines())
+        notes = [self.in_words(), *overlap_notes(self.runs)]
+        return "\n".join([*lines, "", "```text", table, "", *notes, "```", ""])
 
 
 def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str]:
@@ -190,7 +192,10 @@ def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str
 
 
 def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str]:
-    """Return the line that says `deep` of `total` episodes had such overlaps; no line for none."""
+    """Return the line that says in how many episodes overlaps exceeded the tolerance, if any.
+
+    `deep` of `total` episodes had such overlaps; the deepest was `worst_cm`.
+    """
     if deep == 0:
         return []
     return [
@@ -199,14 +204,15 @@ def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str
     ]
 
 
-def titled(policy: Policy | Mapping[str, Policy]) -> str:
-    """Return in one line the name of a policy, or the names of each leader's policy."""
+def policy_title(policy: Policy | Mapping[str, Policy]) -> str:
+    """Return in one line a policy's name, or the name of each leader's policy."""
     if isinstance(policy, Policy):
         return policy.name
-    return "; ".join(f"{leader}: {one.name}" for leader, one in policy.items())
+    return "; ".join(f"{leader}: {own_policy.name}" for leader, own_policy in policy.items())
 
 
 def _plus_minus(row: Mapping[str, float]) -> str:
+    """Return the mean signed order of a row with half its interval."""
     half = (row["signed_order_high"] - row["signed_order_low"]) / 2
     return "unknown" if math.isnan(half) else f"{row['signed_order']:.3f} ±{half:.3f}"
 

@@ -1,4 +1,4 @@
-"""The score of a policy: its mean signed order, and its gain on another policy's."""
+"""The score of a policy: its mean signed order, and its gain over a reference policy."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 SCORE = ("flocks", "signed_order", "low", "high", "gain", "gain_low", "gain_high")
 """The columns of a score: the number of flocks, their mean signed order with the ends of its
-interval, and the gain on the reference with the ends of its interval."""
+interval, and the gain over the reference with the ends of its interval."""
 
 
 def score_policies(
@@ -28,14 +28,15 @@ def score_policies(
     orders
         The signed order of each flock by the policy's name, as `run_episodes` returns it.
     reference
-        Name of the policy that the others are compared with, flock by flock: all policies led the
-        same flocks, in the same order.
+        Name of the policy that the others are compared with, flock by flock. All policies must have
+        led the same flocks, in the same order.
 
     Returns
     -------
     pandas.DataFrame
-        One row per policy, in the order given: ``policy`` and the columns `SCORE`. The gains are
-        NaN for the reference itself and without one, and intervals for a single flock.
+        One row per policy, in the order of `orders`: ``policy`` and the columns `SCORE`. Gains are
+        NaN for the reference itself, and for all policies without a reference. Intervals are NaN
+        for a single flock.
 
     Raises
     ------
@@ -44,18 +45,19 @@ def score_policies(
         policy whose number of flocks differs from the reference's.
     """
     pandas = require("pandas", "plot")
-    values = {
-        name: series(own, f"orders[{name!r}]") for name, own in by_name(orders, "orders").items()
+    orders_by_policy = {
+        name: series(values, f"orders[{name!r}]")
+        for name, values in by_name(orders, "orders").items()
     }
     if reference is not None:
-        refuse_unknown([reference], values, "policy of these")
+        refuse_unknown([reference], orders_by_policy, "policy of these")
     rows = []
-    for name, own in values.items():
+    for name, values in orders_by_policy.items():
         gain = (np.nan,) * 3
         if reference is not None and name != reference:
-            found = paired_difference(own, values[reference])
-            gain = (found.mean, found.low, found.high)
-        scored = (len(own), *mean_interval(own), *gain)
-        rows.append({"policy": name, **dict(zip(SCORE, scored, strict=True))})
+            difference = paired_difference(values, orders_by_policy[reference])
+            gain = (difference.mean, difference.low, difference.high)
+        score = (len(values), *mean_interval(values), *gain)
+        rows.append({"policy": name, **dict(zip(SCORE, score, strict=True))})
     table: pd.DataFrame = pandas.DataFrame(rows, columns=["policy", *SCORE])
     return table

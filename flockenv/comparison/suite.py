@@ -1,7 +1,7 @@
 """Suite v2: six frozen tasks on which policies of any origin are scored against the tuned law.
 
-If a task or a number in one changes, it is another suite. The seeds follow from the name of the
-release, so that a later release scores all entries again, on flocks that are new to all of them.
+If a task or one of its numbers changes, it is another suite. The seeds follow from the name of a
+release, so that a later release scores all policies again, on flocks that are new to all of them.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -47,9 +47,9 @@ def _task(name: str, env_id: str) -> Case:
     parameters = FlockParameters.from_dict(options.pop("params"))
     targets: tuple[object, ...] = ()
     if isinstance(options.get("target"), tuple):
-        # In half of the episodes the directions are exchanged, so that neither is favored.
-        told = options.pop("target")
-        targets = (told, told[::-1])
+        # In half of the episodes the leaders exchange their targets, so that neither is favored.
+        leader_targets = options.pop("target")
+        targets = (leader_targets, leader_targets[::-1])
     return Case(
         name=name,
         parameters=parameters,
@@ -92,10 +92,11 @@ def aggregate(differences: Sequence[NDArray[np.float64]]) -> dict[str, tuple[flo
     Returns
     -------
     dict
-        Two statistics, each as value, lower and upper end. The ``interquartile mean`` is over the
-        episodes of all tasks. The ``probability of improvement`` is how often an episode has a
-        higher signed order than with `REFERENCE`; it is a mean over the tasks. The intervals are
-        BCa bootstraps that draw episodes within each task (Agarwal et al. 2021 draw runs).
+        Two statistics by name, each as value, lower end and upper end. The ``interquartile mean``
+        is over the episodes of all tasks. The ``probability of improvement`` is how often an
+        episode has a higher signed order than with `REFERENCE`; it is a mean over the tasks. The
+        intervals are BCa bootstraps that draw episodes within each task (Agarwal et al. 2021 draw
+        runs).
     """
     statistics = {
         "interquartile mean": interquartile_mean,
@@ -123,13 +124,14 @@ def scores_table(result: ComparisonReport) -> "pd.DataFrame":
     )
     rows: list[tuple[object, ...]] = []
     for policy in (name for name in orders if name != REFERENCE):
-        beyond = []
-        for case, own in orders.groupby(level="case", sort=False):
-            beyond.append((own[policy] - own[REFERENCE]).to_numpy())
-            rows.append((policy, case, own[policy].mean(), *mean_interval(beyond[-1])))
-        if len(beyond) > 1:
-            for name, found in aggregate(beyond).items():
-                rows.append((policy, name, np.nan, *found))
+        differences = []
+        for case, task_orders in orders.groupby(level="case", sort=False):
+            difference = (task_orders[policy] - task_orders[REFERENCE]).to_numpy()
+            differences.append(difference)
+            rows.append((policy, case, task_orders[policy].mean(), *mean_interval(difference)))
+        if len(differences) > 1:
+            for name, value_and_ends in aggregate(differences).items():
+                rows.append((policy, name, np.nan, *value_and_ends))
     columns = ["policy", "task", "signed_order", "score", "score_low", "score_high"]
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

@@ -1,4 +1,4 @@
-"""An entry of suite v3: a file that names policies, checked before anything runs, and its rows."""
+"""Entries of suite v3: files that name policies, checked before anything runs, and their rows."""
 
 import math
 import os
@@ -95,8 +95,9 @@ class SuiteEntry:
     @classmethod
     def _from_values(cls, values: Mapping[str, Any], folder: Path, trust: bool) -> Self:
         refuse_unknown(values, _KEYS, "key of an entry")
-        for key in (key for key in _KEYS if key not in values and key != "searched_hours"):
-            raise ParameterError(f"{key} is missing")
+        missing = [key for key in _KEYS if key not in values and key != "searched_hours"]
+        if missing:
+            raise ParameterError(f"{missing[0]} is missing")
         _check_suite(values)
         _check_training_seeds(values["training_seeds"])
         searched = values.get("searched_hours")
@@ -107,32 +108,32 @@ class SuiteEntry:
             flock_hours=_hours(values["flock_hours"], "flock_hours"),
             searched_hours=math.nan if searched is None else _hours(searched, "searched_hours"),
             trainings={
-                name: _trainings(given, LEVELS[name], folder, trust)
-                for name, given in _levels(values["levels"]).items()
+                name: _trainings(policies, LEVELS[name], folder, trust)
+                for name, policies in _levels(values["levels"]).items()
             },
         )
 
     @property
     def budget(self) -> str:
-        """The class of its trainings by flock-hours."""
+        """The class of the trainings by flock-hours, one of `BUDGETS` or ``"more"``."""
         return budget_of(self.flock_hours)
 
     def run(self, level: str, flocks: int = FLOCKS, progress: Progress = no_progress) -> Led:
-        """Return the `MEASURED` of a level's trainings, shape (trainings, flocks).
+        """Return `MEASURED` for a level's trainings: shape (trainings, flocks).
 
-        Raises ParameterError if a policy cannot steer to the end of the episode.
+        Raises ParameterError if a policy fails before the end of the episode.
         """
-        found = []
+        columns_of_trainings = []
         for training in self.trainings[level]:
             try:
-                found.append(LEVELS[level].run(training.policy, flocks, progress))
-            except Exception as error:  # An object's own code may raise anything.
+                columns_of_trainings.append(LEVELS[level].run(training.policy, flocks, progress))
+            except Exception as error:  # The code of a policy may raise anything.
                 kind = "" if isinstance(error, FlockError) else f"{type(error).__name__}: "
                 raise ParameterError(
                     f"{self.name}, {level}, {training.given}: {kind}{error}; nothing of the "
                     "entry is scored"
                 ) from error
-        return stacked(found)
+        return stacked(columns_of_trainings)
 
     def row(
         self,
@@ -141,17 +142,20 @@ class SuiteEntry:
         no_steering: NDArray[np.float64],
         reference: NDArray[np.float64],
     ) -> dict[str, object]:
-        """Return the row of the table for the signed orders of a level."""
+        """Return an entry's row for a level, from signed orders.
+
+        `orders` has shape (trainings, flocks); `no_steering` and `reference` have shape (flocks,).
+        """
         trainings = self.trainings[level]
         mean, low, high = score(orders, no_steering, reference)
-        is_default = all(_sees_as_given(training.policy, LEVELS[level]) for training in trainings)
+        is_as_given = all(_sees_as_given(training.policy, LEVELS[level]) for training in trainings)
         seconds = [float(training.provenance.get("cpu_s", "nan")) for training in trainings]
         return {
             "level": level,
             "budget": self.budget,
             "entry": self.name,
             "class": self.kind,
-            "sees": "as given" if is_default else "its own",
+            "sees": "as given" if is_as_given else "its own",
             "trainings": len(trainings),
             "flocks": orders.shape[1],
             "signed_order": float(orders.mean()),
@@ -166,13 +170,13 @@ class SuiteEntry:
 
 
 class Scored(NamedTuple):
-    """The results so far."""
+    """The results of all entries so far."""
 
     #: The ranked rows of entries.
     rows: "pd.DataFrame"
-    #: The `MEASURED` of all flocks; those of each level's two references come first.
+    #: `MEASURED` for all flocks; those of each level's two references come first.
     orders: "pd.DataFrame"
-    #: Why other entries have no row, in a sentence each.
+    #: For each entry without a row, a sentence that tells why.
     broken: tuple[str, ...]
 
 
@@ -188,25 +192,26 @@ def scored(
     """
     pandas = require("pandas", "plot")
     named = [name for name in levels if any(name in entry.trainings for entry in entries)]
-    ends = {name: LEVELS[name].references(flocks, progress) for name in named}
-    parts = [
-        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), flocks_led)
-        for name, flocks_led in ends.items()
+    references = {name: LEVELS[name].references(flocks, progress) for name in named}
+    tables = [
+        orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), columns)
+        for name, columns in references.items()
     ]
     rows: list[dict[str, object]] = []
     broken: list[str] = []
     for entry in entries:
-        own = [name for name in named if name in entry.trainings]
+        entry_levels = [name for name in named if name in entry.trainings]
         try:
-            led = {name: entry.run(name, flocks, progress) for name in own}
+            led = {name: entry.run(name, flocks, progress) for name in entry_levels}
         except ParameterError as error:
             led = {}
             broken.append(str(error))
-        for name, flocks_led in led.items():
-            rows.append(entry.row(name, flocks_led["signed_order"], *ends[name]["signed_order"]))
-            given = [training.given for training in entry.trainings[name]]
-            parts.append(orders_table(name, entry.budget, entry.name, given, flocks_led))
-        yield Scored(ranked(rows), pandas.concat(parts, ignore_index=True), tuple(broken))
+        for name, columns in led.items():
+            reference_orders = references[name]["signed_order"]
+            rows.append(entry.row(name, columns["signed_order"], *reference_orders))
+            policies = [training.given for training in entry.trainings[name]]
+            tables.append(orders_table(name, entry.budget, entry.name, policies, columns))
+        yield Scored(ranked(rows), pandas.concat(tables, ignore_index=True), tuple(broken))
 
 
 def orders_table(
@@ -227,13 +232,13 @@ def ranked(rows: Sequence[Mapping[str, object]]) -> "pd.DataFrame":
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows)
     if table.empty:
         return table
-    order = {
+    sort_keys = {
         "level": table["level"].map([*LEVELS].index),
         "budget": table["budget"].map([*map(str, BUDGETS), "more"].index),
         "score": -table["score"],
     }
-    ranked = table.assign(**order).sort_values([*order], kind="stable").index
-    return table.loc[ranked].reset_index(drop=True)
+    index = table.assign(**sort_keys).sort_values([*sort_keys], kind="stable").index
+    return table.loc[index].reset_index(drop=True)
 
 
 _KEYS = (
@@ -259,7 +264,7 @@ def _check_training_seeds(seeds: object) -> None:
 
 
 def _levels(levels: object) -> Mapping[str, object]:
-    """Return the policies that an entry names, by level."""
+    """Return an entry's table of policies by level; refuse unknown levels."""
     if not isinstance(levels, Mapping) or not levels:
         raise ParameterError(f"levels = {short_repr(levels)} is not a table of levels and policies")
     refuse_unknown(levels, LEVELS, f"level of suite {SUITE}")
@@ -276,10 +281,10 @@ def _text(value: object, name: str) -> str:
 
 
 def _hours(value: object, name: str) -> float:
-    found = float(number(value, name))
-    if not 0.0 <= found < math.inf:
+    hours = float(number(value, name))
+    if not 0.0 <= hours < math.inf:
         raise ParameterError(f"{name} = {short_repr(value)} is not accepted: hours, at least 0")
-    return found
+    return hours
 
 
 def _check_seeds(first: int, last: int, name: str) -> None:
@@ -291,38 +296,39 @@ def _check_seeds(first: int, last: int, name: str) -> None:
         )
 
 
-def _trainings(given: object, level: Level, folder: Path, trust: bool) -> tuple[Training, ...]:
-    """Return the policies that an entry names for a level, checked."""
-    names = [given] if isinstance(given, str) else given
+def _trainings(policies: object, level: Level, folder: Path, trust: bool) -> tuple[Training, ...]:
+    """Read and check the policies that an entry names for a level."""
+    names = [policies] if isinstance(policies, str) else policies
     if not isinstance(names, list) or not names or not all(isinstance(n, str) for n in names):
         raise ParameterError(
-            f"{level.name} = {short_repr(given)} is not accepted: files of policies"
+            f"{level.name} = {short_repr(policies)} is not accepted: files of policies"
         )
     if len(set(names)) < len(names):
         raise ParameterError(f"{level.name} names a policy twice, which would count twice")
     return tuple(_training(name, level, folder, trust) for name in names)
 
 
-def _training(given: str, level: Level, folder: Path, trust: bool) -> Training:
+def _training(name: str, level: Level, folder: Path, trust: bool) -> Training:
+    """Read a policy; check its weights and, if its provenance names them, its training seeds."""
     try:
-        is_file = given.endswith(FILES)
-        found = policy(folder / given if is_file else given, level.parameters.pool, trust=trust)
+        is_file = name.endswith(FILES)
+        trained = policy(folder / name if is_file else name, level.parameters.pool, trust=trust)
     except OSError as error:
-        raise ParameterError(f"{given} cannot be read: {error.strerror}") from error
+        raise ParameterError(f"{name} cannot be read: {error.strerror}") from error
     except ParameterError as error:
-        raise ParameterError(f"{level.name}, {given}: {error}") from error
-    _check_weights(found.source, given)
-    provenance = getattr(found.source, "provenance", None) or {}
+        raise ParameterError(f"{level.name}, {name}: {error}") from error
+    _check_weights(trained.source, name)
+    provenance = getattr(trained.source, "provenance", None) or {}
     if seeds := provenance.get("training_seeds"):
         first, separator, last = seeds.partition("-")
         if not separator or not (first.isdecimal() and last.isdecimal()):
-            raise ParameterError(f"{given} says training_seeds = {seeds!r}, not FIRST-LAST")
-        _check_seeds(int(first), int(last), f"training_seeds of {given}")
-    return Training(given, found, provenance)
+            raise ParameterError(f"{name} says training_seeds = {seeds!r}, not FIRST-LAST")
+        _check_seeds(int(first), int(last), f"training_seeds of {name}")
+    return Training(name, trained, provenance)
 
 
 def _sees_as_given(policy: Policy, level: Level) -> bool:
-    """Return whether a policy has the level's own observations, without a wrapper."""
+    """Return whether a policy sees the level's observation itself, without a wrapper."""
     if isinstance(policy.source, WrappedPolicy):
         return False
     return not differing_options(
@@ -330,10 +336,10 @@ def _sees_as_given(policy: Policy, level: Level) -> bool:
     )
 
 
-def _check_weights(source: object, given: str) -> None:
-    """Refuse a torch model whose weights are not finite; other files were checked when read."""
+def _check_weights(source: object, name: str) -> None:
+    """Refuse a torch model whose weights are not finite; other files are checked when read."""
     model = getattr(source, "model", None)
     parameters = getattr(getattr(model, "policy", model), "parameters", None)
     for weights in parameters() if callable(parameters) else ():
         if not bool(weights.isfinite().all()):
-            raise ParameterError(f"{given} holds weights that are not finite")
+            raise ParameterError(f"{name} holds weights that are not finite")

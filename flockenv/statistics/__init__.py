@@ -1,8 +1,8 @@
 """Statistics of finished runs.
 
 Intervals of means, of differences and of any statistic of independent runs; a straight line with
-its test; times of events that some runs never reach; the noise at which order is lost. The
-structure of a flock is in the module `structure`.
+its test; times of events that some runs never reach; the noise at which order is lost; and, in the
+module `structure`, where boats are relative to each other.
 """
 
 from flockenv.statistics.aggregates import interquartile_mean, probability_of_improvement

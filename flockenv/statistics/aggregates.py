@@ -11,7 +11,7 @@ def interquartile_mean(
 ) -> np.float64 | NDArray[np.float64]:
     """Return the mean of the middle half of the values of all tasks together.
 
-    A few very bad or very good episodes change it less than they change the mean.
+    A few very bad or very good episodes change it less than the mean.
 
     Parameters
     ----------
@@ -20,10 +20,11 @@ def interquartile_mean(
     axis
         The axis of the values.
     """
-    found: np.float64 | NDArray[np.float64] = require("scipy.stats", "plot").trim_mean(
-        np.concatenate(tasks, axis), 0.25, axis
+    values = np.concatenate(tasks, axis)
+    mean: np.float64 | NDArray[np.float64] = require("scipy.stats", "plot").trim_mean(
+        values, 0.25, axis
     )
-    return found
+    return mean
 
 
 def probability_of_improvement(
@@ -34,5 +35,5 @@ def probability_of_improvement(
     Takes the arguments of `interquartile_mean`, for paired differences.
     """
     shares = [((task > 0.0) + 0.5 * (task == 0.0)).mean(axis) for task in tasks]
-    found: np.float64 | NDArray[np.float64] = np.mean(shares, axis=0)
-    return found
+    mean: np.float64 | NDArray[np.float64] = np.mean(shares, axis=0)
+    return mean

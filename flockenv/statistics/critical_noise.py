@@ -1,4 +1,4 @@
-"""Critical noise: where a flock loses its order as the noise rises."""
+"""The critical noise, at which a flock loses its order as the noise rises."""
 
 import math
 from collections.abc import Sequence
@@ -37,8 +37,8 @@ def critical_noise(
     -------
     tuple of float
         The noise and both ends of its interval. All are NaN if a level has fewer than three runs,
-        or if there is no order to lose: mean ``|m|`` is below `LEAST_ROTATION` at every noise, as
-        in a flock that is jammed or disordered.
+        or if mean ``|m|`` is below `LEAST_ROTATION` at every noise: such a flock is jammed or
+        disordered, and has no order to lose.
 
     Raises
     ------
@@ -59,26 +59,25 @@ def critical_noise(
     if max(group[:, 1].mean() for group in groups) < LEAST_ROTATION:
         return unknown
 
-    def of_drawn_runs(*indices: object, axis: int) -> NDArray[np.float64]:
-        drawn = [group[np.asarray(at, int)] for group, at in zip(groups, indices, strict=True)]
+    def noise_of_drawn_runs(*indices: object, axis: int) -> NDArray[np.float64]:
+        """Return the critical noise of the runs with these indices, an array for each level."""
+        drawn = [group[np.asarray(runs, int)] for group, runs in zip(groups, indices, strict=True)]
         psi_o, rotation = (
-            np.stack(np.broadcast_arrays(*(curve[..., column].mean(-1) for curve in drawn)))
+            np.stack(np.broadcast_arrays(*(level[..., column].mean(-1) for level in drawn)))
             for column in (0, 1)
         )
         return loss_of_order(levels, psi_o, rotation)
 
-    return bootstrap_interval(
-        [np.arange(len(g)) for g in groups], of_drawn_runs, seed, paired=False
-    )
+    run_indices = [np.arange(len(group)) for group in groups]
+    return bootstrap_interval(run_indices, noise_of_drawn_runs, seed, paired=False)
 
 
 def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> NDArray[np.float64]:
     """Return the noise at which mean Ψ_o falls through the middle between order and disorder.
 
-    The ordered level is mean Ψ_o at the noise of the strongest rotation, so that a jam, which has a
-    high Ψ_o too, is not taken for order. The disordered level is mean Ψ_o at the last noise. The
-    curve is straight between levels. If it crosses the middle several times, the last crossing
-    counts.
+    Order is mean Ψ_o at the noise of the strongest rotation: a jam has a high Ψ_o too, but does not
+    rotate. Disorder is mean Ψ_o at the last noise. The curve is straight between levels. If it
+    crosses the middle several times, the last crossing counts.
 
     Parameters
     ----------
@@ -92,19 +91,25 @@ def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> ND
     numpy.ndarray
         Shape (...).
     """
-    x = np.asarray(noise, float)
-    order, turning = np.asarray(psi_o, float), np.asarray(rotation, float)
-    curves = zip(order.reshape(len(x), -1).T, turning.reshape(len(x), -1).T, strict=True)
-    return np.array([_middle(x, *curve) for curve in curves]).reshape(order.shape[1:])
+    levels = np.asarray(noise, float)
+    orders, rotations = np.asarray(psi_o, float), np.asarray(rotation, float)
+    order_curves = orders.reshape(len(levels), -1).T
+    rotation_curves = rotations.reshape(len(levels), -1).T
+    noises = [
+        _noise_at_middle(levels, *curves)
+        for curves in zip(order_curves, rotation_curves, strict=True)
+    ]
+    return np.array(noises).reshape(orders.shape[1:])
 
 
-def _middle(
-    x: NDArray[np.float64], psi_o: NDArray[np.float64], rotation: NDArray[np.float64]
+def _noise_at_middle(
+    levels: NDArray[np.float64], psi_o: NDArray[np.float64], rotation: NDArray[np.float64]
 ) -> float:
-    top = int(rotation.argmax())
-    middle = (psi_o[top] + psi_o[-1]) / 2
-    last = top + int(np.flatnonzero(psi_o[top:] >= middle)[-1])
-    if last == len(x) - 1:
-        return float(x[-1])
-    share = (psi_o[last] - middle) / (psi_o[last] - psi_o[last + 1])
-    return float(x[last] + share * (x[last + 1] - x[last]))
+    """Return the noise at which one curve of Ψ_o last falls through its middle."""
+    strongest = int(rotation.argmax())
+    middle = (psi_o[strongest] + psi_o[-1]) / 2
+    last_above = strongest + int(np.flatnonzero(psi_o[strongest:] >= middle)[-1])
+    if last_above == len(levels) - 1:
+        return float(levels[-1])
+    share = (psi_o[last_above] - middle) / (psi_o[last_above] - psi_o[last_above + 1])
+    return float(levels[last_above] + share * (levels[last_above + 1] - levels[last_above]))

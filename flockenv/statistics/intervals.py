@@ -1,8 +1,8 @@
-"""Intervals at one level: of means, of differences, and of any statistic of independent runs.
+"""Intervals of means, of differences, and of any statistic of independent runs.
 
-The mean of a few values has Student's interval, the mean of more values a BCa bootstrap
-(`mean_interval`). `bootstrap_interval` takes any statistic, and `two_way_interval` a table of runs
-that share two sources of luck.
+All have the level `CONFIDENCE`. `mean_interval` gives the mean of a few values Student's interval,
+and the mean of more values a BCa bootstrap. `bootstrap_interval` takes any statistic.
+`two_way_interval` takes a table whose values depend on chance in its rows and in its columns.
 
 An interval from 24 normal values holds the true mean 93 times out of 100, and one from 64 values 94
 times.
@@ -29,8 +29,8 @@ CONFIDENCE = 0.95
 """Level of every interval."""
 
 FEW = 12
-"""Below this number of values a mean has Student's interval: BCa intervals hold the mean of 4, 8
-and 12 normal values 80, 89 and 93 times out of 100."""
+"""Below this number of values a mean has Student's interval. BCa intervals would be too narrow:
+those of 4, 8 and 12 normal values hold the mean 80, 89 and 93 times out of 100."""
 
 _BCA_RESAMPLES = 9999
 
@@ -131,7 +131,7 @@ def bootstrap_interval(
     -------
     tuple of float
         The value and the ends at level `CONFIDENCE`; the ends are NaN for a single run. With
-        fewer than `FEW` runs they are too narrow.
+        fewer than `FEW` runs the interval is too narrow.
     """
     data = tuple(series(sample, "samples") for sample in items(samples, "samples"))
     value = float(statistic(*data, axis=-1))
@@ -146,22 +146,23 @@ def bootstrap_interval(
     )
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
-        found = bootstrap(n_resamples=_BCA_RESAMPLES, rng=np.random.default_rng(seed))
-    if np.isnan(found.confidence_interval).any():  # Leaving out one run changes nothing.
-        found = bootstrap(n_resamples=0, bootstrap_result=found, method="percentile")
-    low, high = found.confidence_interval
+        result = bootstrap(n_resamples=_BCA_RESAMPLES, rng=np.random.default_rng(seed))
+    # BCa is undefined if the statistic stays the same whichever run is left out.
+    if np.isnan(result.confidence_interval).any():
+        result = bootstrap(n_resamples=0, bootstrap_result=result, method="percentile")
+    low, high = result.confidence_interval
     return value, float(low), float(high)
 
 
 def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, float]:
-    """Return the mean of a table whose rows share the luck of its columns, with its interval.
+    """Return the mean of a table, with an interval for chance in its rows and in its columns.
 
     For example, each row is a training and each column a flock in which all trainings are judged.
-    An interval over the trainings' means would ignore the luck of the flocks, which all trainings
+    An interval over the trainings' means would ignore chance in the flocks, which all trainings
     share. Here the bootstrap draws both rows and columns, 9999 times. Deviations are scaled by the
     ratio of Student's interval to the bootstrap's, so that intervals for few rows or columns are as
-    wide as those of `mean_interval`. The residual that neither effect explains is counted twice, so
-    a table of pure noise gets an interval 1.4 times too wide.
+    wide as those of `mean_interval`. The residual that neither rows nor columns explain is counted
+    twice, so a table of independent values gets an interval 1.4 times too wide.
 
     Parameters
     ----------
@@ -178,7 +179,7 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     Raises
     ------
     ParameterError
-        For another shape, and numbers that are not finite.
+        For another shape, and for numbers that are not finite.
     """
     try:
         table = np.asarray(values, float)
@@ -193,8 +194,8 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     mean, random = table.mean(), np.random.default_rng(seed)
     drawn = np.full(_BCA_RESAMPLES, mean)
     for axis in (0, 1):
-        away = table.mean(1 - axis) - mean
-        drawn += _width_ratio(len(away)) * _means_of_draws(away, random)
+        deviations = table.mean(1 - axis) - mean
+        drawn += _width_ratio(len(deviations)) * _means_of_draws(deviations, random)
     low, high = np.quantile(drawn, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
     return float(mean), float(low), float(high)
 
@@ -202,12 +203,14 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
 def _means_of_draws(
     values: NDArray[np.float64], random: np.random.Generator
 ) -> NDArray[np.float64]:
+    """Return the means of 9999 resamples of the values, each as large as the sample."""
     count = len(values)
-    return random.multinomial(count, np.full(count, 1 / count), _BCA_RESAMPLES) @ values / count
+    times_drawn = random.multinomial(count, np.full(count, 1 / count), _BCA_RESAMPLES)
+    return times_drawn @ values / count
 
 
 def _width_ratio(count: int) -> float:
-    """Return how much wider Student's interval is than a bootstrap's, for normal values."""
+    """Return the width of Student's interval over that of a bootstrap, for normal values."""
     stats, upper = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
     ratio = stats.t.ppf(upper, count - 1) / stats.norm.ppf(upper)
     return float(ratio * math.sqrt(count / (count - 1)))

@@ -1,4 +1,4 @@
-"""A straight line by least squares, and the test of figure 12."""
+"""A straight line by least squares, and the F test of its slope, as in figure 12."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from flockenv.errors import ParameterError
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight line fitted by least squares, and the tests of its slope.
+    """A straight line fitted by least squares, and the test of its slope.
 
     Attributes
     ----------
@@ -21,9 +21,9 @@ class Line:
         The slope in units of y over x, and the intercept in units of y.
     f : float
         F statistic with 1 and n - 2 degrees of freedom, against no linear dependence; NaN if all y
-        are the same. It does not depend on the sign of the slope.
+        are the same. The sign of the slope does not change it.
     p : float
-        Probability of such an F or a larger one if y did not depend on x; NaN likewise.
+        Probability of such an F or a larger one if y did not depend on x; NaN if `f` is NaN.
     n : int
         Number of points.
     """

@@ -1,4 +1,4 @@
-"""Structure of a flock: where boats are relative to each other and to the wall."""
+"""Structure of a flock: positions and headings of boats relative to each other and to the wall."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,9 +18,9 @@ def structure_series(
     ----------
     name
         A name in the table of quantities: ``"largest_cluster"``, ``"on_outer_wall"`` or
-        ``"polarization"``, which is 1 if all boats point the same way in the axes of the world, and
-        some 0.886/√n if n headings are independent (Vicsek et al. 1995). Unlike Ψ_o, whose
-        orientations are relative to the pool, it is small if boats go around the pool.
+        ``"polarization"``. The polarization is 1 if all boats have the same heading in the axes of
+        the world, and about 0.886/√n if n headings are independent (Vicsek et al. 1995). It is
+        small if boats go around the pool; Ψ_o, whose orientations are relative to the pool, is not.
     parameters
         Parameters of the flock; only the hull and the pool matter.
     pose
@@ -35,14 +35,14 @@ def structure_series(
 
 
 def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.int64]]:
-    """Return the sizes of the jams, an array of ascending numbers for each time.
+    """Return the numbers of boats in the jams: for each time an array, ascending.
 
     A jam has at least three boats with gaps below 0.5 cm that face outward within 60°.
 
     The arguments and errors are those of `structure_series`.
     """
-    found = _core.jam_sizes(parameters, _poses(pose))
-    return [np.sort(np.array(sizes, np.int64)) for sizes in found]
+    sizes_by_time = _core.jam_sizes(parameters, _poses(pose))
+    return [np.sort(np.array(sizes, np.int64)) for sizes in sizes_by_time]
 
 
 def _poses(pose: ArrayLike) -> NDArray[np.float64]:

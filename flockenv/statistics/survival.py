@@ -69,16 +69,16 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
         If there are no runs, for times that are NaN or negative, and for events after the end of
         their run.
     """
-    found = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
-    came = np.diff(found.probabilities, prepend=1.0) < 0.0
+    survival = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
+    is_event = np.diff(survival.probabilities, prepend=1.0) < 0.0
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)  # The logarithms of a share of 0 or 1.
-        ends = found.confidence_interval(CONFIDENCE, method="log-log")
-    low, high = ends.low.probabilities[came], ends.high.probabilities[came]
+        ends = survival.confidence_interval(CONFIDENCE, method="log-log")
+    low, high = ends.low.probabilities[is_event], ends.high.probabilities[is_event]
     times = with_gaps(times_s, "times_s")
     return Survival(
-        np.asarray(found.quantiles[came], np.float64),
-        np.asarray(found.probabilities[came], np.float64),
+        np.asarray(survival.quantiles[is_event], np.float64),
+        np.asarray(survival.probabilities[is_event], np.float64),
         np.where(np.isnan(low), 0.0, low),
         np.where(np.isnan(high), 1.0, high),
         len(times),
@@ -87,6 +87,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
 
 
 def _censored(times_s: ArrayLike, until_s: ArrayLike) -> "CensoredData":
+    """Return the times in the form that scipy takes; refuse what `kaplan_meier` does not accept."""
     times = with_gaps(times_s, "times_s")
     ends = with_gaps(until_s, "until_s")
     if times.ndim != 1 or len(times) == 0:
