@@ -1,4 +1,4 @@
-"""Leaders as slots of stable-baselines3's vector interface, and evaluation that counts flocks.
+"""Leaders as slots of stable-baselines3's vector interface, and evaluation by episodes of flocks.
 
 Needs the extra ``train``.
 """

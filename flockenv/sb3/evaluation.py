@@ -1,4 +1,4 @@
-"""Evaluation of models on a `LeaderVecEnv` that counts episodes of flocks, not of leaders."""
+"""Evaluation of models on a `LeaderVecEnv` by episodes of flocks, not of leaders."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv._io.arguments import as_int
 from flockenv.errors import ParameterError
-from flockenv.sb3.as_trained import AsTrained, normalizing_layers, trained
+from flockenv.sb3.as_trained import AsTrained, as_trained, normalizing_layers
 from flockenv.sb3.per_flock import per_flock
 from flockenv.statistics import mean_interval
 
@@ -64,8 +64,8 @@ def evaluate_flocks(
     """Evaluate a model as stable-baselines3's `evaluate_policy` does, but count flocks' episodes.
 
     A model that was trained in `VecNormalize` gets observations that are normalized as in its
-    training, even if `env` is a plain `LeaderVecEnv`. If `env` has a `VecNormalize`, that one takes
-    over the training's statistics, ``clip_obs`` and ``epsilon``.
+    training, even if `env` is a plain `LeaderVecEnv`. A `VecNormalize` around `env` takes over the
+    training's statistics, ``clip_obs`` and ``epsilon``.
 
     Parameters
     ----------
@@ -99,28 +99,29 @@ def evaluate_flocks(
     episodes = as_int(n_eval_episodes, "n_eval_episodes")
     if episodes < 1:
         raise ParameterError(f"n_eval_episodes = {n_eval_episodes} is not accepted: at least 1")
-    counted = per_flock(env)
-    acting = trained(model, counted)
+    flocks = per_flock(env)
+    model_as_trained = as_trained(model, flocks)
     if seed is not None:
-        counted.seed(as_int(seed, "seed"))
-    return evaluated(acting, counted, episodes, deterministic)
+        flocks.seed(as_int(seed, "seed"))
+    return run_evaluation(model_as_trained, flocks, episodes, deterministic)
 
 
-def evaluated(
+def run_evaluation(
     model: AsTrained,
     flocks: VecEnv,
     episodes: int,
     deterministic: bool,
     render: bool = False,
-    keep: Callable[[dict[str, Any], dict[str, Any]], None] = lambda *_: None,
+    callback: Callable[[dict[str, Any], dict[str, Any]], None] = lambda *_: None,
 ) -> FlockEvaluation:
-    """Evaluate, and call `keep` at each step as `evaluate_policy` calls its callback."""
+    """Evaluate a model with `evaluate_policy`, which calls `callback` with its variables."""
     orders: list[float] = []
 
-    def kept(step: dict[str, Any], everything: dict[str, Any]) -> None:
-        keep(step, everything)
-        if step["done"]:
-            orders.append(step["info"]["episode_summary"].get("signed_order", np.nan))
+    def append_order(local_variables: dict[str, Any], global_variables: dict[str, Any]) -> None:
+        callback(local_variables, global_variables)
+        if local_variables["done"]:
+            summary = local_variables["info"]["episode_summary"]
+            orders.append(summary.get("signed_order", np.nan))
 
     with _unchanged_statistics(flocks):
         returns, lengths = evaluate_policy(
@@ -129,7 +130,7 @@ def evaluated(
             episodes,
             deterministic,
             render,
-            callback=kept,
+            callback=append_order,
             return_episode_rewards=True,
         )
     return FlockEvaluation(np.array(orders), np.array(returns), np.array(lengths))
@@ -137,13 +138,13 @@ def evaluated(
 
 @contextmanager
 def _unchanged_statistics(flocks: VecEnv) -> Iterator[None]:
-    """Stop every `VecNormalize` from learning: an evaluation may use the training's own flocks."""
+    """Keep the statistics of every `VecNormalize`: the flocks may be the training's own."""
     layers = normalizing_layers(flocks)
-    learned = [layer.training for layer in layers]
+    were_training = [layer.training for layer in layers]
     for layer in layers:
         layer.training = False
     try:
         yield
     finally:
-        for layer, training in zip(layers, learned, strict=True):
-            layer.training = training
+        for layer, was_training in zip(layers, were_training, strict=True):
+            layer.training = was_training

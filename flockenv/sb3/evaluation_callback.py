@@ -15,8 +15,8 @@ from flockenv._io.array_file import read_arrays
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.plain_file import check_writable
 from flockenv.errors import ParameterError
-from flockenv.sb3.as_trained import trained
-from flockenv.sb3.evaluation import FlockEvaluation, evaluated
+from flockenv.sb3.as_trained import as_trained
+from flockenv.sb3.evaluation import FlockEvaluation, run_evaluation
 from flockenv.sb3.per_flock import per_flock
 
 _BEST = "best_model.zip"
@@ -25,9 +25,9 @@ _BEST = "best_model.zip"
 class FlockEvalCallback(EvalCallback):
     """stable-baselines3's `EvalCallback` on a `LeaderVecEnv`, with episodes of flocks.
 
-    It prints what `evaluate_flocks` does, and logs the mean as ``eval/signed_order``. The best
-    model is the one with the highest mean signed order, or, if episodes end before the analysis
-    window, with the highest mean return. The file ``evaluations.npz`` has the signed orders as
+    It prints the result of `evaluate_flocks`, and logs the mean as ``eval/signed_order``. The best
+    model is the one with the highest mean signed order or, if episodes end before the analysis
+    window, the highest mean return. The file ``evaluations.npz`` has the signed orders as
     ``signed_order``, beside the returns. A continued training (``reset_num_timesteps=False``)
     appends to the file, and replaces the best model only by a better one.
 
@@ -76,7 +76,7 @@ class FlockEvalCallback(EvalCallback):
             # The types differ by `PerFlock` on purpose.
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
-        trained(self.model, self.eval_env)
+        as_trained(self.model, self.eval_env)  # It raises errors before the training.
         if self.log_path is not None:
             check_writable(f"{self.log_path}.npz")
         if self.best_model_save_path is not None:
@@ -85,24 +85,25 @@ class FlockEvalCallback(EvalCallback):
             self._resume()
 
     def _resume(self) -> None:
-        """Continue the evaluations of a continued training."""
+        """Read the evaluations before a continued training from the file, if there is one."""
         path = None if self.log_path is None else Path(f"{self.log_path}.npz")
         if path is None or not path.is_file():
             return
         stored = read_arrays(path)
-        before = stored["timesteps"] <= self.model.num_timesteps
-        parts = {name: values[before] for name, values in stored.items()}
-        episodes = parts["results"].shape[1]
+        # A training may continue from a model that was saved before the last evaluations.
+        is_before = stored["timesteps"] <= self.model.num_timesteps
+        columns = {name: values[is_before] for name, values in stored.items()}
+        episodes = columns["results"].shape[1]
         if episodes != self.n_eval_episodes:
             raise ParameterError(
                 f"n_eval_episodes = {self.n_eval_episodes} is not accepted: {path} goes on, which "
                 f"has {episodes} episodes in each evaluation"
             )
-        self.evaluations_timesteps = parts["timesteps"].tolist()
-        self.evaluations_results = parts["results"].tolist()
-        self.evaluations_length = parts["ep_lengths"].tolist()
-        unknown = np.full(parts["results"].shape, np.nan)
-        self._evaluations_order = parts.get("signed_order", unknown).tolist()
+        self.evaluations_timesteps = columns["timesteps"].tolist()
+        self.evaluations_results = columns["results"].tolist()
+        self.evaluations_length = columns["ep_lengths"].tolist()
+        unknown = np.full(columns["results"].shape, np.nan)
+        self._evaluations_order = columns.get("signed_order", unknown).tolist()
         for orders, returns in zip(self._evaluations_order, self.evaluations_results, strict=True):
             self._is_best(float(np.mean(orders)), float(np.mean(returns)))
 
@@ -112,21 +113,21 @@ class FlockEvalCallback(EvalCallback):
         if self.seed is not None:
             self.eval_env.seed(self.seed)
         self._is_success_buffer = []
-        found = self.evaluation = evaluated(
-            trained(self.model, self.eval_env),
+        evaluation = self.evaluation = run_evaluation(
+            as_trained(self.model, self.eval_env),
             self.eval_env,
             self.n_eval_episodes,
             self.deterministic,
             self.render,
             self._log_success_callback,
         )
-        self._store(found)
-        self._log(found)
-        self.last_mean_reward = float(found.returns.mean())
-        is_best = self._is_best(found.mean, self.last_mean_reward)
+        self._store(evaluation)
+        self._log(evaluation)
+        self.last_mean_reward = float(evaluation.returns.mean())
+        is_best = self._is_best(evaluation.mean, self.last_mean_reward)
         if self.verbose >= 1:
             best = ", the best so far" if is_best else ""
-            print(f"{self.num_timesteps} steps: {found}{best}")  # noqa: T201
+            print(f"{self.num_timesteps} steps: {evaluation}{best}")  # noqa: T201
         goes_on = True
         if is_best:
             if self.best_model_save_path is not None:
@@ -137,7 +138,7 @@ class FlockEvalCallback(EvalCallback):
         return goes_on and (self.callback is None or self._on_event())
 
     def _is_best(self, order: float, mean_return: float) -> bool:
-        """Return whether a model is the best so far, and remember it."""
+        """Return whether a model is the best so far; if so, store its order and return."""
         if math.isnan(order) and math.isnan(self.best_signed_order):
             is_best = mean_return > self.best_mean_reward
         else:
@@ -146,11 +147,11 @@ class FlockEvalCallback(EvalCallback):
             self.best_signed_order, self.best_mean_reward = order, mean_return
         return is_best
 
-    def _store(self, found: FlockEvaluation) -> None:
+    def _store(self, evaluation: FlockEvaluation) -> None:
         self.evaluations_timesteps.append(self.num_timesteps)
-        self.evaluations_results.append(found.returns.tolist())
-        self.evaluations_length.append(found.lengths.tolist())
-        self._evaluations_order.append(found.signed_order.tolist())
+        self.evaluations_results.append(evaluation.returns.tolist())
+        self.evaluations_length.append(evaluation.lengths.tolist())
+        self._evaluations_order.append(evaluation.signed_order.tolist())
         if self._is_success_buffer:
             self.evaluations_successes.append(self._is_success_buffer)
         if self.log_path is not None:
@@ -165,10 +166,10 @@ class FlockEvalCallback(EvalCallback):
             with atomic_write(f"{self.log_path}.npz") as file:
                 np.savez(file, **columns)
 
-    def _log(self, found: FlockEvaluation) -> None:
-        self.logger.record("eval/signed_order", found.mean)
-        self.logger.record("eval/mean_reward", float(found.returns.mean()))
-        self.logger.record("eval/mean_ep_length", float(found.lengths.mean()))
+    def _log(self, evaluation: FlockEvaluation) -> None:
+        self.logger.record("eval/signed_order", evaluation.mean)
+        self.logger.record("eval/mean_reward", float(evaluation.returns.mean()))
+        self.logger.record("eval/mean_ep_length", float(evaluation.lengths.mean()))
         if self._is_success_buffer:
             self.logger.record("eval/success_rate", np.mean(self._is_success_buffer))
         # This logs the evaluation with its own number of steps.

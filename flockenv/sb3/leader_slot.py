@@ -26,7 +26,7 @@ class _Flocks(Protocol):
 class LeaderSlot:
     """The stand-in for one environment in a `LeaderVecEnv`: one leader of one flock.
 
-    ``get_attr`` and ``env_method`` of the vector environment reach these objects, which never
+    ``get_attr`` and ``env_method`` of the vector environment read these objects, which never
     change. ``set_attr`` accepts only ``bw_s`` and ``target``, for the next episodes.
     """
 

@@ -25,48 +25,48 @@ from flockenv.sb3.leader_slot import LeaderSlot
 
 
 class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
-    """Many flocks for stable-baselines3, each leader a slot: one policy is shared by all leaders.
+    """Many flocks for stable-baselines3, a slot per leader: one policy is shared by all leaders.
 
     ``flockenv.sb3.LeaderVecEnv(num_flocks=64, n_leaders=[1, 2, 3, 4], **options)``
 
     `LeadersEnv` specifies the task, the entries of an observation, the terms of the reward and the
-    options; this text says what differs.
+    options. This text describes the differences.
 
     ## Description
-    Slots are leaders, flock after flock. Flocks are stepped in parallel in Rust; results depend
-    neither on `num_flocks` nor on the number of threads. Arrays that are returned are never written
-    to again.
+    There is a slot for each leader, flock after flock. Flocks are stepped in parallel in Rust;
+    results depend neither on `num_flocks` nor on the number of threads. Arrays that are returned
+    are never written to again.
 
     **A leader is not an episode.** stable-baselines3's `evaluate_policy`, `EvalCallback` and
     `VecMonitor` count each slot, so that three leaders make three episodes with the same order.
     Counts are then three times too large, and deviations and intervals are too small. Use
     `evaluate_flocks`, `FlockEvalCallback` and, for a monitor file, `FlockMonitor` of `flockenv.sb3`
-    instead. No `VecMonitor` is needed: the first slot of a flock has the ``"episode"`` of SB3's
-    logs in its last info, with the return as mean over the flock's leaders.
+    instead. No `VecMonitor` is needed for SB3's logs: at the end of an episode the info of a
+    flock's first slot has the ``"episode"``, whose return is the mean over the flock's leaders.
 
     ## Action space
-    A slot's is `Box(-1, 1, (1,), float32)`, its leader's rudder; `Discrete(n)` with
+    The space of a slot is `Box(-1, 1, (1,), float32)`, its leader's rudder, or `Discrete(n)` with
     `rudder_levels=n`.
 
     ## Observation space
-    A slot's is a `Box` of shape (observation size,), float32. `state()` gives each slot the global
-    state of its flock. `flock_features()` gives it the features of its flock, in the frame of the
-    slot's target.
+    The space of a slot is a `Box` of shape (observation size,), float32. `state()` returns for each
+    slot the global state of its flock. `flock_features()` returns the features of its flock, in the
+    frame of the slot's target.
 
     ## Rewards
     Each slot gets the weighted sum of its terms. Terms of a single leader go to its slot only.
     `reward_terms()` returns the terms of the last step.
 
-    `reward` may also be a function of this environment, called once the flocks have moved, before
-    those that ended start again. It returns rewards (slots,), or (flocks,) for all leaders of a
-    flock. It looks at `poses()`, `velocities()`, `order_parameters()`, `reward_terms()` and the
-    like.
+    `reward` may also be a function that takes this environment. It is called after the flocks have
+    moved, and before those whose episodes ended start again. It returns rewards (slots,), or
+    (flocks,) for all leaders of a flock. It may call `poses()`, `velocities()`,
+    `order_parameters()`, `reward_terms()` and the like.
 
     ## Starting state
     `seed(s)` makes the next reset seed flock i with s + i, and `set_options` sets the options of
-    the next reset: a dictionary, or a list of one for each slot, equal for a flock's leaders.
-    Within `learn` nobody calls `reset`. For a curriculum, `set_attr("bw_s", 0.6)` and
-    `set_attr("target", "random")` hold for all episodes that start afterwards.
+    the next reset: a dictionary, or a list with a dictionary for each slot, equal for all leaders
+    of a flock. `learn` calls `reset` only at its start. For a curriculum, `set_attr("bw_s", 0.6)`
+    and `set_attr("target", "random")` hold for all episodes that start afterwards.
 
     ## Episode end
     A flock's slots end together and start the next episode in the same step. Their infos then have
@@ -99,13 +99,13 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         **options: object,
     ) -> None:
         num_flocks = at_least_one(num_flocks, "num_flocks")
-        counts = None if n_leaders is None else _leader_counts(n_leaders)
-        options = {**options, "n_leaders": max(counts)} if counts else options
+        dealt = None if n_leaders is None else _leader_counts(n_leaders)
+        options = {**options, "n_leaders": max(dealt)} if dealt else options
         parsed = EnvOptions.parse(options, takes_function=True, flocks_argument="num_flocks")
-        counts = counts or [parsed.parameters.n_leaders]
-        leaders = [counts[flock % len(counts)] for flock in range(num_flocks)]
-        # Flocks start again here, once their rewards are known.
-        self._batch = LeaderBatch(parsed, leaders, "disabled")
+        dealt = dealt or [parsed.parameters.n_leaders]
+        leader_counts = [dealt[flock % len(dealt)] for flock in range(num_flocks)]
+        # The core does not reset flocks: `step_wait` does, once their rewards are known.
+        self._batch = LeaderBatch(parsed, leader_counts, "disabled")
         self._own_reward = parsed.own_reward
         settings = self._batch.settings
         self.num_flocks = num_flocks
@@ -119,36 +119,36 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         #: Meaning of actions, and decisions per second.
         self.action_mode: str = settings["action_mode"]
         self.decisions_hz = fps
-        self.slots = self._made_slots(leaders)
+        self.slots = self._make_slots(leader_counts)
         #: Flock of each slot.
-        self.flock_of_slot = np.repeat(np.arange(num_flocks), leaders)
+        self.flock_of_slot = np.repeat(np.arange(num_flocks), leader_counts)
         self._actions: NDArray[np.float64] | None = None
         super().__init__(len(self.slots), self.observation_space, self.action_space)
         self.metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": fps}
         self._actions_shape = (self.num_envs, *(self.action_space.shape or ()))
 
-    def _made_slots(self, leaders: Sequence[int]) -> list[LeaderSlot]:
+    def _make_slots(self, leader_counts: Sequence[int]) -> list[LeaderSlot]:
         spaces = self.observation_space, self.action_space
         return [
             LeaderSlot(self, flock, leader, *spaces, self.render_mode)
-            for flock, k in enumerate(leaders)
+            for flock, k in enumerate(leader_counts)
             for leader in range(k)
         ]
 
     @cached_property
     def spec(self) -> EnvSpec | None:
         """The registered environment that has the same options; None if there is none."""
-        made = (self._batch.parameters(0), self._batch.settings, self._own_reward)
+        own_options = (self._batch.parameters(0), self._batch.settings, self._own_reward)
 
-        def is_ours(options: Mapping[str, Any]) -> bool:
+        def are_own(options: Mapping[str, Any]) -> bool:
             parsed = EnvOptions.parse(options, takes_function=True)
             n_leaders = parsed.parameters.n_leaders
             if {*self._batch.leaders} != {n_leaders}:
                 return False
             batch = LeaderBatch(parsed, [n_leaders], "disabled")
-            return _equal((batch.parameters(0), batch.settings, parsed.own_reward), made)
+            return _equal((batch.parameters(0), batch.settings, parsed.own_reward), own_options)
 
-        return registered(is_ours)
+        return registered(are_own)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""
@@ -169,34 +169,34 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         Raises
         ------
         ParameterError
-            For options whose values are not accepted; the next reset no longer has them.
+            For options whose values are not accepted; the next reset does not use them.
         """
         requests = self._requests(self._options)
-        first = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
-        seeds = [self._seeds[slot] for slot in first.tolist()]
-        # The next reset no longer has refused options.
+        first_slots = np.searchsorted(self.flock_of_slot, np.arange(self.num_flocks))
+        seeds = [self._seeds[slot] for slot in first_slots.tolist()]
+        # Options are dropped before the batch may refuse them, so that the next reset lacks them.
         self._reset_options()
         self._batch.reset(seeds, requests, self._drawn_seed)
         self._reset_seeds()
-        start = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
-        self.reset_infos = [dict(start[flock]) for flock in self.flock_of_slot]
+        flock_infos = [self._batch.reset_info(flock) for flock in range(self.num_flocks)]
+        self.reset_infos = [dict(flock_infos[flock]) for flock in self.flock_of_slot]
         return self._batch.core.observe()
 
     def set_options(self, options: object = None) -> None:
-        """Set the options of the next reset: a dictionary, or one for each slot.
+        """Set the options of the next reset: a dictionary, or a list of one for each slot.
 
         Raises
         ------
         ParameterError
-            For unknown options, for options that differ between the leaders of a flock, and for
-            flocks with different options. Options that were set before are dropped then.
+            For unknown options, and for options that differ between the leaders of a flock.
+            Options that were set before are dropped, too.
         TypeError
             For options that are not dictionaries.
         """
         self._reset_options()
-        given = materialized({} if options is None else options)
-        by_slot: Any = [given] * self.num_envs if isinstance(given, Mapping) else given
-        self._requests(by_slot)
+        values = materialized({} if options is None else options)
+        by_slot: Any = [values] * self.num_envs if isinstance(values, Mapping) else values
+        self._requests(by_slot)  # It raises the errors.
         super().set_options(list(by_slot))
 
     def _drawn_seed(self) -> int:
@@ -211,8 +211,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         ):
             raise TypeError("set_options: a dictionary, or a list of one for each slot")
         by_flock: list[dict[str, Any] | None] = [None] * self.num_flocks
-        for flock, given in zip(self.flock_of_slot.tolist(), options, strict=True):
-            (request,) = reset_requests(given, 1, lists_flocks=False)
+        for flock, slot_options in zip(self.flock_of_slot.tolist(), options, strict=True):
+            (request,) = reset_requests(slot_options, 1, lists_flocks=False)
             if by_flock[flock] is None:
                 by_flock[flock] = request
             elif not _equal(by_flock[flock], request):
@@ -222,7 +222,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return [request for request in by_flock if request is not None]
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Store actions for the step: rudders, shape (slots, 1), or numbers of levels, (slots,)."""
+        """Store actions for the step: rudders, shape (slots, 1), or levels, shape (slots,)."""
         levels = self._batch.settings["rudder_levels"]
         self._actions = _core.flat_actions(actions, self._actions_shape, levels, "actions")
 
@@ -240,17 +240,17 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         Raises
         ------
         ParameterError
-            For NaN actions; nothing has moved then.
+            For NaN actions, before anything moves.
         EpisodeError
             Before the first reset.
         """
         if self._actions is None:
             raise EpisodeError("step_wait was called without step_async")
-        flat, self._actions = self._actions, None
+        actions, self._actions = self._actions, None
         try:
-            observations, rewards, truncated = self._batch.step(self, flat, np.float32)
+            observations, rewards, truncated = self._batch.step(self, actions, np.float32)
         except Exception:
-            # After an error in the motion or in the reward, episodes that are over start again.
+            # Even after an error in the motion or in the reward, ended episodes start again.
             self._start_next(np.array([not running for running in self._batch.running()]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
@@ -261,35 +261,36 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return observations, rewards.astype(np.float32), truncated[self.flock_of_slot], infos
 
     def _start_next(self, ended: NDArray[np.bool_]) -> None:
-        """Start the next episodes of flocks."""
+        """Start the next episodes of the flocks whose episodes ended."""
         if not ended.any():
             return
         unseeded: list[int | None] = [None] * self.num_flocks
-        nothing: list[dict[str, Any]] = [{}] * self.num_flocks
-        self._batch.reset(unseeded, nothing, self._drawn_seed, ended)
+        no_options: list[dict[str, Any]] = [{}] * self.num_flocks
+        self._batch.reset(unseeded, no_options, self._drawn_seed, ended)
         for slot in np.flatnonzero(ended[self.flock_of_slot]).tolist():
             self.reset_infos[slot] = self._batch.reset_info(int(self.flock_of_slot[slot]))
 
     def _report_ends(
         self,
         truncated: NDArray[np.bool_],
-        last: NDArray[np.float32],
+        last_observations: NDArray[np.float32],
         infos: list[dict[str, Any]],
     ) -> None:
+        """Fill the infos of slots whose episodes ended."""
         states, features = self._batch.core.states(), self.flock_features()
         for slot in np.flatnonzero(truncated[self.flock_of_slot]).tolist():
             flock, leader = int(self.flock_of_slot[slot]), self.slots[slot].leader_index
             infos[slot] = {
                 **self._batch.end_info(flock),
                 "TimeLimit.truncated": True,
-                "terminal_observation": last[slot],
+                "terminal_observation": last_observations[slot],
                 "terminal_state": states[flock],
                 "terminal_flock_features": features[slot],
             }
             summary = infos[slot]["episode_summary"]
             if leader == 0:
-                # As the infos of `Monitor`, but without the time, so that they depend only on
-                # seeds.
+                # As in the infos of `Monitor`, but without the wall-clock time, on which results
+                # must not depend.
                 decisions = -(-summary["steps"] // self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
@@ -300,7 +301,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
     def _chosen(self, indices: VecEnvIndices) -> list[int]:
-        """Return the numbers of slots; raise an error for other values."""
+        """Return the slots that indices name; raise an error for other values."""
         chosen = [
             as_int(index, "indices") for index in items(self._get_indices(indices), "indices")
         ]
@@ -313,8 +314,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     def set_attr(self, attr_name: str, value: object, indices: VecEnvIndices = None) -> None:
         """Set ``bw_s`` or ``target`` of the slots' flocks for the next episodes.
 
-        They hold until they are set again, within `learn` too. Values are as for `reset`: bw_s is
-        drawn from a range (low, high), and a list of targets has one for each leader.
+        The values hold until they are set again, also within `learn`. They are as for `reset`: from
+        a range (low, high) each episode draws its bw_s, and a list has a target for each leader.
 
         Raises
         ------
@@ -362,8 +363,8 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
     def flock_features(self) -> NDArray[np.float32]:
         """Return features of each slot's flock, shape (slots, features), float32.
 
-        They depend neither on the order of boats nor on absolute angles. They are in the frame of
-        the slot's own target.
+        The features depend neither on the order of boats nor on absolute angles. They are in the
+        frame of the slot's own target.
         """
         return self._batch.core.flock_features(each_leader=True)
 
@@ -372,7 +373,10 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         return self._batch.reward_terms()
 
     def set_state(self, state: bytes) -> NDArray[np.float32]:
-        """Continue from `get_state` of the same options, bit for bit; return the observations."""
+        """Continue bit for bit from a state of `get_state`; return the observations.
+
+        The environment must have the same options as the one that returned the state.
+        """
         super().set_state(state)
         return self._batch.core.observe()
 
@@ -387,9 +391,10 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         """Do nothing: there is nothing to close."""
 
 
-def _equal(one: object, other: object) -> bool:
+def _equal(left: object, right: object) -> bool:
+    """Return whether nested containers are equal, arrays and NaN included."""
     try:
-        np.testing.assert_equal(one, other)
+        np.testing.assert_equal(left, right)
     except AssertionError:
         return False
     return True
@@ -397,9 +402,9 @@ def _equal(one: object, other: object) -> bool:
 
 def _leader_counts(n_leaders: object) -> list[int]:
     """Return the numbers of leaders that are dealt out to the flocks in turn."""
-    dealt = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
-    if not isinstance(dealt, Sequence) or isinstance(dealt, str):
-        dealt = [dealt]
-    if not dealt:
+    counts = n_leaders.tolist() if isinstance(n_leaders, np.ndarray) else materialized(n_leaders)
+    if not isinstance(counts, Sequence) or isinstance(counts, str):
+        counts = [counts]
+    if not counts:
         raise ParameterError("n_leaders = [] is not accepted: a number or a list of numbers")
-    return [at_least_one(count, "n_leaders") for count in dealt]
+    return [at_least_one(count, "n_leaders") for count in counts]

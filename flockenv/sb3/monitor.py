@@ -29,11 +29,11 @@ class FlockMonitor(VecEnvWrapper):
     filename
         The file; ``.monitor.csv`` is appended if it is missing.
     summary_keywords
-        Entries of the ``"episode_summary"`` to write, too, such as ``"signed_order"``. Entries that
-        an episode does not have are left empty.
+        Further columns: entries of the ``"episode_summary"``, such as ``"signed_order"``. A cell is
+        empty if the episode lacks the entry.
     override_existing
-        What happens to a file that has episodes already: True replaces it, False appends rows, as a
-        resumed training needs, and None refuses it.
+        Treatment of a file that has episodes already: True replaces it, False appends rows, as a
+        resumed training needs, and None raises an error.
 
     Raises
     ------
@@ -74,8 +74,9 @@ class FlockMonitor(VecEnvWrapper):
     def step_wait(self) -> VecEnvStepReturn:
         """Take the control step, and write the episodes that end with it."""
         step = self.venv.step_wait()
-        for slot in np.flatnonzero(step[2]).tolist():
-            info = step[3][slot]
+        _, _, dones, infos = step
+        for slot in np.flatnonzero(dones).tolist():
+            info = infos[slot]
             if "episode" in info:
                 summary = info["episode_summary"]
                 extra = {name: summary.get(name, "") for name in self._keywords}
@@ -90,7 +91,7 @@ class FlockMonitor(VecEnvWrapper):
 
 
 def _path(filename: str) -> Path:
-    """Return the path that stable-baselines3's writer makes from a name."""
+    """Return the path to which stable-baselines3's writer writes for a name."""
     if filename.endswith(Monitor.EXT):
         return Path(filename)
     return (
@@ -101,20 +102,21 @@ def _path(filename: str) -> Path:
 
 
 def _start_of(path: Path, columns: list[str]) -> float | None:
-    """Return when the training of a monitor file started; None without episodes."""
+    """Return the start time of a monitor file's training, or None for a file without episodes."""
     if not path.is_file():
         return None
     with path.open(encoding="utf-8", newline="") as file:
-        header, found, rows = file.readline(), file.readline().strip().split(","), file.readline()
-    if not rows:
+        header, column_line, first_row = (file.readline() for _ in range(3))
+    if not first_row:
         return None
     try:
         started = float(json.loads(header.removeprefix("#"))["t_start"])
     except (ValueError, KeyError, TypeError) as error:
         raise ParameterError(f"{path} is not a monitor file: give another name") from error
-    if found != columns:
+    present_columns = column_line.strip().split(",")
+    if present_columns != columns:
         raise ParameterError(
-            f"{path} has the columns {', '.join(found)}, and not {', '.join(columns)}: give "
-            "another name, or override_existing=True"
+            f"{path} has the columns {', '.join(present_columns)}, and not {', '.join(columns)}: "
+            "give another name, or override_existing=True"
         )
     return started

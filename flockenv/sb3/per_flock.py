@@ -1,4 +1,4 @@
-"""`PerFlock`: a `LeaderVecEnv` whose ends and infos come once per flock, for evaluation."""
+"""`PerFlock`: a `LeaderVecEnv` with one reward, end and info per flock, for evaluation."""
 
 from typing import Any
 
@@ -11,13 +11,12 @@ from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
 
 class PerFlock(VecEnvWrapper):
-    """A `LeaderVecEnv` whose rewards, ends and infos come once per flock; for evaluation only.
+    """A `LeaderVecEnv` with one reward, end and info per flock, for evaluation only.
 
-    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes. A flock's leaders
-    have one episode with one order. Here `num_envs` is the number of flocks, a reward is the mean
-    over a flock's leaders, and the info is the first leader's, which has the ``"episode"``.
-    Observations and actions still have a row per leader, so that the model sees what it was trained
-    on.
+    stable-baselines3's `evaluate_policy` counts the ends of slots as episodes, but the leaders of a
+    flock share one episode with one order. Here `num_envs` is the number of flocks, a reward is the
+    mean over a flock's leaders, and the info is the first leader's, which has the ``"episode"``.
+    Observations and actions still have a row per leader, as in the model's training.
 
     Parameters
     ----------
@@ -35,8 +34,9 @@ class PerFlock(VecEnvWrapper):
         if not isinstance(leaders, LeaderVecEnv):
             raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
         super().__init__(venv)
-        self._leaders = np.bincount(leaders.flock_of_slot)
-        self._first = np.cumsum(self._leaders) - self._leaders
+        self._leader_counts = np.bincount(leaders.flock_of_slot)
+        #: The first slot of each flock.
+        self._first_slots = np.cumsum(self._leader_counts) - self._leader_counts
         self.num_envs = leaders.num_flocks
         self.leaders = leaders
 
@@ -47,11 +47,12 @@ class PerFlock(VecEnvWrapper):
     def step_wait(self) -> VecEnvStepReturn:
         """Return observations, a row per leader, and rewards, ends and infos, one per flock."""
         observations, rewards, dones, infos = self.venv.step_wait()
-        means = np.add.reduceat(rewards, self._first) / self._leaders
-        return observations, means, dones[self._first], [infos[slot] for slot in self._first]
+        means = np.add.reduceat(rewards, self._first_slots) / self._leader_counts
+        flock_infos = [infos[slot] for slot in self._first_slots]
+        return observations, means, dones[self._first_slots], flock_infos
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: object = None) -> list[bool]:
-        """Return, for each flock, True for `Monitor`: the ``"episode"`` is in the infos."""
+        """Return a list of one entry per flock: True for `Monitor`, as infos have ``"episode"``."""
         wrapped = issubclass(wrapper_class, Monitor)
         return [wrapped or self.venv.env_is_wrapped(wrapper_class)[0]] * self.num_envs
 
@@ -62,7 +63,7 @@ def per_flock(env: VecEnv) -> VecEnv:
 
 
 def layers_of(env: VecEnv) -> list[VecEnv]:
-    """Return a vector environment and those within its wrappers."""
+    """Return a vector environment, and all that it wraps, from the outside in."""
     layers = [env]
     while isinstance(layers[-1], VecEnvWrapper):
         layers.append(layers[-1].venv)

@@ -1,4 +1,4 @@
-"""Exploration that all leaders of a flock share and hold for a time."""
+"""Exploration noise that all leaders of a flock share, held for several decisions."""
 
 from collections.abc import Sequence
 from typing import Any, Self
@@ -27,7 +27,7 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     venv
         A `LeaderVecEnv`, also inside other wrappers.
     hold_s
-        Time in s that a noise is held, a whole number of the environment's decisions.
+        Time in s for which a noise is held, a whole number of the environment's decisions.
 
     Returns
     -------
@@ -51,14 +51,14 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
 
 
 class HeldNoise:
-    """Normally distributed numbers, one row per flock, drawn again after a number of decisions.
+    """Normally distributed numbers, one row per flock, drawn again every `hold_steps` decisions.
 
     Parameters
     ----------
     flock_of_slot, hold_steps
         As for `SharedNoisePolicy`.
     size
-        Numbers of a row.
+        Length of a row.
     """
 
     def __init__(self, flock_of_slot: Sequence[int], hold_steps: int, size: int) -> None:
@@ -68,7 +68,7 @@ class HeldNoise:
         self._noise = torch.zeros(int(self._flock_of_slot.max()) + 1, size)
 
     def next(self, slots: int, device: torch.device) -> torch.Tensor:
-        """Return the rows of the next decision, shape (slots, size).
+        """Return the row of each slot's flock at the next decision, shape (slots, size).
 
         If the number of slots is not the training's, as in a prediction, rows are independent.
         """
@@ -84,8 +84,8 @@ class HeldNoise:
 class SharedNoiseDistribution(DiagGaussianDistribution):
     """Gaussian actions: leaders of a flock share one deviation from the mean, held for a time.
 
-    Each action by itself is distributed as with independent noise, and so is its probability. If
-    the number of slots differs from the training's, the noise is independent.
+    A single action has the same distribution and the same probability as with independent noise.
+    If the number of slots differs from the training's, the noise is independent.
     """
 
     def __init__(self, action_dim: int, flock_of_slot: Sequence[int], hold_steps: int) -> None:
@@ -99,11 +99,10 @@ class SharedNoiseDistribution(DiagGaussianDistribution):
 
 
 class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
-    """gSDE (Raffin et al. 2021) with one matrix per flock, held for a time, and a constant feature.
+    """gSDE (Raffin et al. 2021) with one noise matrix per flock, held for a time.
 
     A deviation is the matrix times the inputs of the last layer, to which a constant 1 is appended.
-    So the leaders of a flock follow one policy, whose last layer differs from the mean's, biases
-    included.
+    So the leaders of a flock follow one policy, whose last layer has perturbed weights and biases.
     """
 
     noise: HeldNoise
@@ -118,7 +117,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     def proba_distribution_net(
         self, latent_dim: int, log_std_init: float = -2.0, latent_sde_dim: int | None = None
     ) -> tuple[torch.nn.Module, torch.nn.Parameter]:
-        """Return the last layer, and the logarithms of the deviations of its weights and biases."""
+        """Return the last layer, and the log standard deviations of its weights and biases."""
         features = (latent_dim if latent_sde_dim is None else latent_sde_dim) + 1
         self.noise = HeldNoise(self._flock_of_slot, self._hold_steps, features * self.action_dim)
         return super().proba_distribution_net(latent_dim, log_std_init, features)
@@ -138,7 +137,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
     def get_noise(self, latent_sde: torch.Tensor) -> torch.Tensor:
         """Return deviations from the mean actions, shape (slots, actions).
 
-        The last of the inputs is the constant feature.
+        `latent_sde` holds the inputs of the last layer, and the constant 1 as the last of them.
         """
         drawn = self.noise.next(len(latent_sde), latent_sde.device)
         matrices = drawn.reshape(len(latent_sde), *self._deviations.shape) * self._deviations
@@ -154,9 +153,10 @@ class SharedNoisePolicy(ActorCriticPolicy):
     that cancel. The noise is drawn from torch's generator, so that the seed of the algorithm fixes
     it.
 
-    With ``use_sde=True`` of the algorithm the noise is gSDE: it perturbs the weights of the
-    last layer, so that leaders deviate by what they observe (`SharedWeightNoiseDistribution`). It
-    is held for `hold_steps` decisions, whatever ``sde_sample_freq``.
+    If the algorithm has ``use_sde=True``, the noise is gSDE: it perturbs the weights of the last
+    layer, so that a leader's deviation depends on its observation
+    (`SharedWeightNoiseDistribution`). It is held for `hold_steps` decisions, whatever
+    ``sde_sample_freq``.
 
     Parameters
     ----------
@@ -170,8 +170,8 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Raises
     ------
     ParameterError
-        For discrete actions, for a hold of less than one decision, and, in a training, for flocks
-        whose number of leaders the policy was not made for.
+        For discrete actions, for `hold_steps` below 1, and, in a training, for flocks with another
+        number of leaders than the policy was made for.
     """
 
     def __init__(
@@ -190,22 +190,24 @@ class SharedNoisePolicy(ActorCriticPolicy):
                 f"hold_steps = {short_repr(hold_steps)} and {len(flock_of_slot)} slots are not "
                 "accepted: at least 1 each"
             )
-        self._shared: dict[str, Any] = {
+        self._noise_options: dict[str, Any] = {
             "flock_of_slot": flock_of_slot,
             "hold_steps": hold_steps,
         }
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
     def _build(self, lr_schedule: Schedule) -> None:
-        kind, actions = type(self.action_dist), get_action_dim(self.action_space)
-        if kind is DiagGaussianDistribution:
-            self.action_dist = SharedNoiseDistribution(actions, **self._shared)
-        elif kind is StateDependentNoiseDistribution:
+        distribution, actions = type(self.action_dist), get_action_dim(self.action_space)
+        if distribution is DiagGaussianDistribution:
+            self.action_dist = SharedNoiseDistribution(actions, **self._noise_options)
+        elif distribution is StateDependentNoiseDistribution:
             options: dict[str, Any] = dict(self.dist_kwargs or {})
-            self.action_dist = SharedWeightNoiseDistribution(actions, **self._shared, **options)
+            self.action_dist = SharedWeightNoiseDistribution(
+                actions, **self._noise_options, **options
+            )
         else:
             raise ParameterError(
-                f"{kind.__name__} is not accepted with a shared noise: continuous actions"
+                f"{distribution.__name__} is not accepted with a shared noise: continuous actions"
             )
         super()._build(lr_schedule)
 
@@ -213,7 +215,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
         self, obs: torch.Tensor, deterministic: bool = False
     ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """Return actions, values and log probabilities of a step of the training."""
-        slots = len(self._shared["flock_of_slot"])
+        slots = len(self._noise_options["flock_of_slot"])
         if len(obs) != slots:
             raise ParameterError(
                 f"{len(obs)} leaders are not accepted: this policy shares its noise among "
@@ -223,4 +225,4 @@ class SharedNoisePolicy(ActorCriticPolicy):
         return super().forward(obs, deterministic)
 
     def _get_constructor_parameters(self) -> dict[str, Any]:
-        return {**super()._get_constructor_parameters(), **self._shared}
+        return {**super()._get_constructor_parameters(), **self._noise_options}

@@ -35,8 +35,8 @@ TRAINED = "trained"
 OPTIONS: tuple[str, ...] = tuple(option["name"] for option in _core.BRANCH_OPTIONS)
 """Names of the options of a training; docs/training_reference.md describes them."""
 
-#: Time between two checkpoints in s.
-_PATIENCE_S = 5.0
+#: Shortest time between two checkpoints in s.
+_BETWEEN_CHECKPOINTS_S = 5.0
 _EPISODE_S = 480.0
 _LARGEST_FILE = 1 << 30
 
@@ -50,7 +50,7 @@ class Progress:
     flock_hours, total
         Simulated time of all flocks together, now and at the end.
     signed_order
-        Mean of the last round, in which leaders try offsets.
+        Mean of the last round, in which leaders explore; NaN before the first round ends.
     """
 
     flock_hours: float
@@ -59,6 +59,7 @@ class Progress:
 
 
 Report = Callable[[Progress], object]
+"""Function that takes the progress after each round."""
 
 
 class BranchTraining:
@@ -74,7 +75,7 @@ class BranchTraining:
     seed
         Seed of the training, from 0 to 2³² - 1.
     options
-        Options of the training that differ from the usual ones of the ``action_mode``.
+        Options of the training that differ from the defaults of the ``action_mode``.
 
     Raises
     ------
@@ -84,13 +85,13 @@ class BranchTraining:
 
     def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: object) -> None:
         refuse_unknown(options, OPTIONS, "option of the training")
-        first = branch_seed(as_int(seed, "seed"))
-        self._core = _core.Trainer(parameters, options, seed, first)
+        first_flock_seed = branch_seed(as_int(seed, "seed"))
+        self._core = _core.Trainer(parameters, options, seed, first_flock_seed)
         self.parameters = parameters
 
     @property
     def options(self) -> dict[str, Any]:
-        """Every option by name."""
+        """The value of every option by name, defaults included."""
         return self._core.options
 
     @property
@@ -100,7 +101,7 @@ class BranchTraining:
 
     @property
     def curve(self) -> dict[str, NDArray[np.float64]]:
-        """Columns ``flock_hours`` and ``signed_order`` of each round, in which leaders explore."""
+        """Columns ``flock_hours`` and ``signed_order``, by round; leaders explore in a round."""
         rows = np.array(self._core.curve, float).reshape(-1, 2)
         return {"flock_hours": rows[:, 0], "signed_order": rows[:, 1]}
 
@@ -108,8 +109,8 @@ class BranchTraining:
     def progress(self) -> Progress:
         """Progress of the training."""
         done, total = self._core.flock_hours
-        order = self.curve["signed_order"]
-        return Progress(done, total, float(order[-1]) if len(order) else math.nan)
+        orders = self.curve["signed_order"]
+        return Progress(done, total, float(orders[-1]) if len(orders) else math.nan)
 
     @property
     def overlaps(self) -> tuple[int, int, float]:
@@ -117,14 +118,14 @@ class BranchTraining:
         return self._core.overlaps
 
     def advance(self) -> None:
-        """Run a round: one branch of every pair, then a step of the weights.
+        """Run a round: one branch of every pair, then an update of the weights.
 
         If Ctrl-C ends it early, the training is as before the round.
         """
         self._core.advance(self.options["pairs"])
 
     def policy(self, provenance: Mapping[str, str] | None = None) -> LeaningLaw:
-        """Return the law of the mean weights over the second half of the rounds until now.
+        """Return the law whose weights are the mean over the second half of the rounds so far.
 
         Parameters
         ----------
@@ -140,7 +141,9 @@ class BranchTraining:
 
     @classmethod
     def from_bytes(cls, state: bytes, *, flock_hours: float | None = None) -> Self:
-        """Return a stored training, which continues bit for bit, or until other `flock_hours`.
+        """Return a stored training, which continues bit for bit.
+
+        `flock_hours` changes when it ends.
 
         Raises FlockError for a state that is damaged, has another format, or is not finite.
         """
@@ -151,20 +154,22 @@ class BranchTraining:
 
 
 def training_flocks(pool: str = "wide", **changes: Any) -> FlockParameters:
-    """Return 27 boats with three leaders at a pool's critical noise, with trainings' physics.
+    """Return the usual flocks of a training: 27 boats, three leaders, the pool's critical noise.
+
+    They have the physics ``"training"``.
 
     Parameters
     ----------
     pool
         ``"wide"`` or ``"narrow"``.
     changes
-        Other fields of `flockenv.FlockParameters`.
+        Fields of `flockenv.FlockParameters` that differ.
     """
-    usual: dict[str, Any] = {"pool": pool, "n_boats": 27, "n_leaders": 3}
-    usual |= _core.physics_fields("training")
+    fields: dict[str, Any] = {"pool": pool, "n_boats": 27, "n_leaders": 3}
+    fields |= _core.physics_fields("training")
     if "bw_s" not in changes:
-        usual["bw_s"] = FlockParameters.critical_bw_s("simulation", pool)
-    return FlockParameters(**{**usual, **changes})
+        fields["bw_s"] = FlockParameters.critical_bw_s("simulation", pool)
+    return FlockParameters(**{**fields, **changes})
 
 
 def train(
@@ -175,8 +180,8 @@ def train(
 ) -> LeaningLaw:
     """Continue a training to its end, and return the policy.
 
-    The folder gets ``checkpoint.bin`` every few seconds, and ``policy.json``, ``curve.csv`` and
-    ``settings.toml``. Ctrl-C leaves a checkpoint of the last whole round.
+    The folder gets ``settings.toml``, every few seconds ``checkpoint.bin``, and at the end
+    ``policy.json`` and ``curve.csv``. Ctrl-C leaves a checkpoint of the last whole round.
 
     Parameters
     ----------
@@ -194,24 +199,22 @@ def train(
     write_text(
         folder / SETTINGS, tomli_w.dumps({**settings, "flocks": training.parameters.to_dict()})
     )
-    start, stored = time.process_time(), time.monotonic()
+    start, last_stored = time.process_time(), time.monotonic()
     try:
         while not training.has_ended:
             training.advance()
             report(training.progress)
-            if time.monotonic() - stored > _PATIENCE_S:
+            if time.monotonic() - last_stored > _BETWEEN_CHECKPOINTS_S:
                 _store(training, folder)
-                stored = time.monotonic()
+                last_stored = time.monotonic()
             end_if_interrupted()
     finally:
         _store(training, folder)
     policy = training.policy(_provenance(training, command, time.process_time() - start))
     policy.save(folder / POLICY)
-    rows = ["flock_hours,signed_order"]
-    rows += [
-        f"{hours:.6g},{order:.5f}" for hours, order in zip(*training.curve.values(), strict=True)
-    ]
-    write_text(folder / CURVE, "\n".join(rows) + "\n")
+    points = zip(*training.curve.values(), strict=True)
+    lines = ["flock_hours,signed_order", *(f"{hours:.6g},{order:.5f}" for hours, order in points)]
+    write_text(folder / CURVE, "\n".join(lines) + "\n")
     return policy
 
 
@@ -243,7 +246,7 @@ def stored_training(folder: Path, flock_hours: float | None = None) -> BranchTra
 def compare_with_laws(
     policy: LeaningLaw, parameters: FlockParameters, flocks: int
 ) -> dict[str, dict[str, NDArray[np.float64]]]:
-    """Return the measurements of `run_episodes` in new flocks, by the policy that leads them.
+    """Return what `run_episodes` measures in new flocks, by the name of the policy that leads them.
 
     Parameters
     ----------
@@ -252,14 +255,14 @@ def compare_with_laws(
     parameters
         Parameters of the flocks.
     flocks
-        Number of flocks; the laws and the trained leaders get the same starts and noises.
+        Number of flocks. The laws and the trained leaders get the same starts and noises.
     """
-    led: dict[str, Any] = {PAPERS_LAW: PAPERS_LAW, TUNED_LAW: TUNED_LAW, TRAINED: policy}
+    policies: dict[str, Any] = {PAPERS_LAW: PAPERS_LAW, TUNED_LAW: TUNED_LAW, TRAINED: policy}
     seeds = range(flocks)
     options = {"target": "random"}
     return {
-        name: run_episodes(parameters, own, seeds, _EPISODE_S, options=options)
-        for name, own in led.items()
+        name: run_episodes(parameters, leaders, seeds, _EPISODE_S, options=options)
+        for name, leaders in policies.items()
     }
 
 
@@ -269,11 +272,11 @@ def _store(training: BranchTraining, folder: Path) -> None:
 
 
 def _provenance(training: BranchTraining, command: str, cpu_s: float) -> dict[str, str]:
-    done = training.progress.flock_hours
+    flock_hours = training.progress.flock_hours
     return {
         "command": command,
         "flockenv": _core.__version__,
         "results_version": str(RESULTS_VERSION),
-        "flock_hours": f"{done:.6g}",
+        "flock_hours": f"{flock_hours:.6g}",
         "cpu_s": f"{cpu_s:.0f}",
     }

@@ -1,4 +1,4 @@
-"""Flocks that branch from one state and have the same noise: only their leaders differ."""
+"""Groups of flocks that branch from one state with the same noise: only their leaders differ."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,7 +11,7 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 
 _SEEDS = POLICY_SEEDS["branches"]
-#: An observation of the lean features alone.
+#: The observation that holds only the lean features.
 _OBSERVATION: dict[str, Any] = {
     **dict.fromkeys(("own", "phase", "target", "order"), False),
     "neighbors": 0,
@@ -23,16 +23,16 @@ Leans = Callable[[NDArray[np.float32]], NDArray[np.floating]]
 
 
 def branch_seed(run: int) -> int:
-    """Return the first of 2²⁴ seeds of a training by branches."""
+    """Return the first of the 2²⁴ seeds that the flocks of a training with this seed have."""
     return _SEEDS.seeds(1, run=run)[0]
 
 
 class BranchingFlocks:
     """Groups of flocks of 27 boats with three leaders, at the pool's critical noise.
 
-    Flocks i, i + groups, i + 2·groups and so on are a group: they start each branch from the same
-    state and have the same noise. After a branch one of them is drawn, and all continue from its
-    state. When their episode is over they start again at rest.
+    Flocks i, i + groups, i + 2·groups and so on are a group. They start each branch from the same
+    state and have the same noise. After a branch one of them is drawn at random, and all of the
+    group continue from its state. When their episode is over, they start again at rest.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class BranchingFlocks:
     branch_s, episode_s
         Whole seconds of a branch and of an episode.
     seed
-        Seed of the training for which they are used, from 0 to 2³² - 1.
+        Seed of the training that uses them, from 0 to 2³² - 1.
     """
 
     def __init__(
@@ -65,15 +65,16 @@ class BranchingFlocks:
             reward_horizon_s=1.0,
             physics="training",
         )
-        self._coins = np.random.default_rng([seed, 1])
+        self._random = np.random.default_rng([seed, 1])
         self._seeds = iter(_SEEDS.seeds(1 << 20, run=seed))
-        self._branches = episode_s // branch_s
+        self._branches_of_episode = episode_s // branch_s
         #: Branches so far in each group's episode. At the start groups differ, so that their
         #: episodes end at different times.
-        self._had = np.arange(groups) % self._branches
+        self._branches_done = np.arange(groups) % self._branches_of_episode
+        #: State of each group after the last branch.
         self._snapshots: list[bytes] = []
         self._targets = np.full(groups, "ccw")
-        self._rest(np.ones(groups, bool))
+        self._start_episodes(np.ones(groups, bool))
 
     @property
     def branch_hours(self) -> float:
@@ -81,45 +82,47 @@ class BranchingFlocks:
         return self.size * self.groups * self.branch_s / 3600.0
 
     def branch(self, leans: Leans) -> NDArray[np.float64]:
-        """Lead all flocks for a branch, and return their order in each second of it.
+        """Lead all flocks for a branch, and return their signed order in each of its seconds.
 
         Parameters
         ----------
         leans
-            Function that decides once per second, by the 29 lean features; leans are clipped to
-            [-1, 1].
+            Function that decides once per second, from the 29 lean features. Its leans are clipped
+            to [-1, 1].
 
         Returns
         -------
         numpy.ndarray
             Shape (seconds, flocks).
         """
-        seen, orders = self._start(), []
+        observations, orders = self._start_branch(), []
         for _ in range(self.branch_s):
-            rows = seen.reshape(len(seen), 3, -1)
-            seen, rewards, *_ = self.env.step(np.clip(leans(rows), -1.0, 1.0))
+            features = observations.reshape(len(observations), 3, -1)
+            observations, rewards, *_ = self.env.step(np.clip(leans(features), -1.0, 1.0))
             orders.append(rewards)
-        continued = (self._coins.random(self.groups) * self.size).astype(int)
+        drawn_members = (self._random.random(self.groups) * self.size).astype(int)
         ends = self.env.snapshots()
-        self._snapshots = [ends[group + self.groups * k] for group, k in enumerate(continued)]
-        self._had += 1
+        self._snapshots = [
+            ends[group + self.groups * member] for group, member in enumerate(drawn_members)
+        ]
+        self._branches_done += 1
         return np.array(orders)
 
-    def _start(self) -> NDArray[np.float32]:
+    def _start_branch(self) -> NDArray[np.float32]:
         """Start the next branch of each group, and return the leaders' observations."""
         if self._snapshots:
-            branching = self._had < self._branches
+            continues = self._branches_done < self._branches_of_episode
             options = {"snapshot": self.size * self._snapshots, "target": self._target_of_flocks()}
-            self.env.reset(options={**options, "reset_mask": np.tile(branching, self.size)})
-            if not branching.all():
-                self._rest(~branching)
-                self._had[~branching] = 0
+            self.env.reset(options={**options, "reset_mask": np.tile(continues, self.size)})
+            if not continues.all():
+                self._start_episodes(~continues)
+                self._branches_done[~continues] = 0
         return self.env.observe()
 
-    def _rest(self, groups: NDArray[np.bool_]) -> None:
+    def _start_episodes(self, groups: NDArray[np.bool_]) -> None:
         """Start the episodes of these groups at rest; all flocks of a group have the same seed."""
         seeds = [next(self._seeds) if starts else None for starts in groups]
-        self._targets[groups] = self._coins.choice(["cw", "ccw"], groups.sum())
+        self._targets[groups] = self._random.choice(["cw", "ccw"], groups.sum())
         options = {"target": self._target_of_flocks(), "reset_mask": np.tile(groups, self.size)}
         self.env.reset(seed=self.size * seeds, options=options)
 

@@ -20,12 +20,12 @@ def draw_curve(
     laws: Mapping[str, float],
     path: Path,
 ) -> None:
-    """Draw a learning curve, with the laws' orders as level lines.
+    """Draw a learning curve, with a horizontal line at the order of each law.
 
     Parameters
     ----------
     curve
-        Its columns ``flock_hours`` and ``signed_order`` by name.
+        The columns ``flock_hours`` and ``signed_order``.
     laws
         Mean signed order by the name of a law.
     path

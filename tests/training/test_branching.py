@@ -33,7 +33,7 @@ def test_groups_start_at_rest_in_turn():
     had = []
     for _ in range(2):
         flocks.branch(held(*[0.0] * 8))
-        had.append(flocks._had.tolist())
+        had.append(flocks._branches_done.tolist())
     assert had == [[1, 2, 1, 2], [2, 1, 2, 1]]
 
 

@@ -1,4 +1,4 @@
-"""Results of a training: its learning curve, and its leaders beside the laws."""
+"""Results of a training: its learning curve, and a comparison of its leaders with the laws."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 _EPISODE_S = 480.0
 TRAINED = "trained"
-"""The name of the trained leaders in the comparison."""
+"""Name of the trained leaders in a comparison."""
 
 
 def episodes_of(folder: Path) -> "pd.DataFrame":
-    """Return the episodes of a training, as stable-baselines3's ``load_results``.
+    """Return the episodes of a training as stable-baselines3's ``load_results`` reads them.
 
     Parameters
     ----------
@@ -51,17 +51,16 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
     """
     episodes = episodes_of(folder)
     hours = episodes["l"].cumsum() / decisions_hz / 3600.0
-    group = (episodes.index * points // max(1, len(episodes))).to_numpy()
-    order = episodes["signed_order"].groupby(group).mean()
-    return order.to_frame().assign(flock_hours=hours.groupby(group).last())[
-        ["flock_hours", "signed_order"]
-    ]
+    point = (episodes.index * points // max(1, len(episodes))).to_numpy()
+    orders = episodes["signed_order"].groupby(point).mean()
+    curve = orders.to_frame().assign(flock_hours=hours.groupby(point).last())
+    return curve[["flock_hours", "signed_order"]]
 
 
 def compare_with_laws(
     model: "BaseAlgorithm", settings: TrainingSettings, episodes: int
 ) -> "pd.DataFrame":
-    """Return the orders that a model and the laws reach in held-out flocks of its training.
+    """Lead held-out flocks by a trained model and by the laws, and return their orders.
 
     Parameters
     ----------
@@ -75,7 +74,7 @@ def compare_with_laws(
     Returns
     -------
     pandas.DataFrame
-        As from `flockenv.comparison.compare_leaders`.
+        The table of `flockenv.comparison.compare_leaders`.
     """
     policies: dict[str, PolicyLike] = {
         PAPERS_LAW: PAPERS_LAW,

@@ -1,4 +1,4 @@
-"""The training run: PPO of stable-baselines3, checkpoints, and resuming after a kill."""
+"""A run of PPO of stable-baselines3: checkpoints, and resuming after an interruption."""
 
 import json
 import zipfile
@@ -25,12 +25,12 @@ from flockenv.sb3 import FlockMonitor, LeaderVecEnv
 from flockenv.training.ppo.settings import TrainingSettings
 
 CHECKPOINT, MODEL, SETTINGS = "checkpoint.zip", "model.zip", "settings.toml"
-#: Numbers that are logged for each episode.
-_SUMMARY = ("signed_order", "worst_overlap_cm", "unsolved")
+#: Entries of the episode summary in the monitor file.
+_SUMMARY_KEYWORDS = ("signed_order", "worst_overlap_cm", "unsolved")
 
 
 class TrainingError(FlockError, RuntimeError):
-    """Training cannot continue; the last checkpoint is intact, and the message names it."""
+    """Training cannot continue. The message names the last checkpoint, which is intact."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Progress:
     samples, total
         Number of leaders' decisions so far, and at the end.
     signed_order
-        Mean of the last episodes, in which leaders explore; None before the first episode ends.
+        Mean of the episodes that ended last, in which leaders explore; None before the first one.
     """
 
     samples: int
@@ -51,14 +51,16 @@ class Progress:
 
 
 Report = Callable[[Progress], object]
+"""Function that takes the progress before each rollout and at the end."""
 
 
 def train(settings: TrainingSettings, folder: Path, report: Report = lambda progress: None) -> PPO:
     """Train into an empty folder, and return the model.
 
     The folder gets ``model.zip``, ``checkpoint.zip``, ``settings.toml``, ``0.monitor.csv`` with the
-    order and overlaps of each flock's episodes, and stable-baselines3's log in ``log-0``. After a
-    resume, names have the number of samples so far instead of 0.
+    order and overlaps of each flock's episodes, and stable-baselines3's log in ``log-0``. A resumed
+    training writes a further monitor file and log, whose names have its first sample's number
+    instead of 0.
 
     Parameters
     ----------
@@ -74,7 +76,7 @@ def train(settings: TrainingSettings, folder: Path, report: Report = lambda prog
     ParameterError
         If the folder holds a run already, and for options that are not accepted.
     InUseError
-        If another training is at work in the folder.
+        If another training uses the folder.
     TrainingError
         If weights are not finite or a file cannot be written; the last checkpoint is intact.
     """
@@ -99,7 +101,7 @@ def resume(
 ) -> PPO:
     """Continue from a folder's last checkpoint, with new flocks, and return the model.
 
-    Weights and the optimizer are read from the checkpoint, which executes nothing in it.
+    Weights and the optimizer's state are read from the checkpoint. No code in it is executed.
 
     Parameters
     ----------
@@ -127,10 +129,13 @@ def resume(
                 model.set_parameters(cast(str, file), device="cpu")
                 file.seek(0)
                 with zipfile.ZipFile(file) as archive:
-                    done = json.loads(archive.read("data"))["num_timesteps"]
-            if type(done) is not int or done < 0 or done % (model.n_steps * venv.num_envs):
-                raise ValueError(f"{short_repr(done)} samples are not a whole number of rollouts")
-            model.num_timesteps = done
+                    samples = json.loads(archive.read("data"))["num_timesteps"]
+            samples_of_rollout = model.n_steps * venv.num_envs
+            if type(samples) is not int or samples < 0 or samples % samples_of_rollout:
+                raise ValueError(
+                    f"{short_repr(samples)} samples are not a whole number of rollouts"
+                )
+            model.num_timesteps = samples
         # zipfile, pickle and torch raise errors of several kinds for a damaged archive.
         except Exception as error:
             raise ParameterError(
@@ -140,7 +145,7 @@ def resume(
 
 
 def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingSettings:
-    """Return the settings that `resume` continues with, and raise its errors."""
+    """Return the settings with which `resume` continues; raise its errors."""
     if not (Path(folder) / CHECKPOINT).exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = TrainingSettings.from_file(Path(folder) / SETTINGS)
@@ -151,12 +156,12 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
 def _locked(folder: Path) -> Iterator[None]:
     """Lock a folder against other trainings."""
     try:
-        held = FileLock(folder / ".lock", blocking=False).acquire()
+        lock = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout as error:
         raise InUseError(f"{folder} is in use by another process: name another, or wait") from error
     except OSError as error:
         raise TrainingError(f"{folder} cannot be locked: {error}") from error
-    with held:
+    with lock:
         remove_leftovers(folder)
         yield
 
@@ -164,17 +169,20 @@ def _locked(folder: Path) -> Iterator[None]:
 def _advance(
     settings: TrainingSettings, folder: Path, model: PPO, venv: LeaderVecEnv, report: Report
 ) -> PPO:
-    """Train a model from its current number of samples to the total."""
+    """Train a model from its present number of samples to the number in the settings."""
     total, done = settings.samples(venv), model.num_timesteps
     rollouts = done // (model.n_steps * venv.num_envs)
     seeds = POLICY_SEEDS["training"]
+    # A resumed training has new flocks: the index of their first seed depends on the rollouts.
     first = rollouts * venv.num_flocks % (seeds.of_a_run - venv.num_flocks)
     threads = torch.get_num_threads()
-    # More threads do not speed up small networks, and sums would depend on their number.
+    # More threads do not speed up small networks, and sums would depend on the number of threads.
     torch.set_num_threads(1)
     try:
         with ExitStack() as stack:
-            monitor = FlockMonitor(venv, str(folder / str(done)), _SUMMARY, override_existing=True)
+            monitor = FlockMonitor(
+                venv, str(folder / str(done)), _SUMMARY_KEYWORDS, override_existing=True
+            )
             stack.callback(monitor.close)
             model.set_env(monitor)
             model.set_random_seed((settings.seed + rollouts) % (1 << 32))
@@ -189,10 +197,10 @@ def _advance(
     except OSError as error:
         raise TrainingError(
             f"{folder} cannot be written after {model.num_timesteps} samples: {error}; "
-            f"{_last_good(folder)}"
+            f"{_checkpoint_note(folder)}"
         ) from error
     except ValueError:
-        # Torch's distributions refuse the first NaN.
+        # Torch's distributions raise it for NaN weights.
         _check_finite(model, folder)
         raise
     finally:
@@ -201,13 +209,14 @@ def _advance(
 
 
 class _Checkpoints(BaseCallback):
-    """Stores the model before each rollout."""
+    """Stores the model and reports progress, before each rollout and at the end."""
 
     def __init__(self, folder: Path, total: int, report: Report) -> None:
         super().__init__()
         self.folder, self.total, self.report = folder, total, report
+        #: Signed orders of the episodes that ended since the last report.
         self.orders: list[float] = []
-        self.last: float | None = None
+        self.mean_order: float | None = None
 
     def _on_step(self) -> bool:
         end_if_interrupted()
@@ -223,7 +232,7 @@ class _Checkpoints(BaseCallback):
         self.store(CHECKPOINT, self.model)
 
     def store(self, name: str, model: BaseAlgorithm) -> None:
-        """Write the model, whole or not at all.
+        """Write the model, completely or not at all, and report the progress.
 
         Raises
         ------
@@ -234,19 +243,19 @@ class _Checkpoints(BaseCallback):
         with atomic_write(self.folder / name) as file:
             model.save(cast(BufferedIOBase, file))
         if self.orders:
-            self.last = sum(self.orders) / len(self.orders)
+            self.mean_order = sum(self.orders) / len(self.orders)
             self.orders.clear()
-        self.report(Progress(model.num_timesteps, self.total, self.last))
+        self.report(Progress(model.num_timesteps, self.total, self.mean_order))
 
 
 def _check_finite(model: BaseAlgorithm, folder: Path) -> None:
     if not all(bool(torch.isfinite(weights).all()) for weights in model.policy.parameters()):
         raise TrainingError(
             f"weights are not finite after {model.num_timesteps} samples: try a lower "
-            f"learning_rate or max_grad_norm; {_last_good(folder)}"
+            f"learning_rate or max_grad_norm; {_checkpoint_note(folder)}"
         )
 
 
-def _last_good(folder: Path) -> str:
+def _checkpoint_note(folder: Path) -> str:
     path = folder / CHECKPOINT
     return f"the last good checkpoint is {path}" if path.exists() else "there is no checkpoint yet"

@@ -20,13 +20,13 @@ from flockenv.parameters import FlockParameters
 from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
 
-#: Times in s by pool, chosen by how fast its order responds: of an episode, of the discount, of the
-#: advantages, and for which a flock's leaders hold one exploration.
+#: Times in s by pool, chosen by how fast its order responds: the length of an episode, the horizons
+#: of discount and advantage, and the time for which a flock's leaders hold one exploration noise.
 _TIMES_S: Mapping[str, Mapping[str, float]] = {
     "wide": {"episode": 480.0, "discount": 200.0, "advantage": 80.0, "hold": 240.0},
     "narrow": {"episode": 240.0, "discount": 60.0, "advantage": 27.0, "hold": 60.0},
 }
-#: Only the lean features, on which leans depend.
+#: The observation that holds only the lean features, on which leans depend.
 _OBSERVATION: Mapping[str, Any] = {
     "own": False,
     "phase": False,
@@ -36,16 +36,16 @@ _OBSERVATION: Mapping[str, Any] = {
     "lean_features": True,
 }
 _PHYSICS: Mapping[str, Any] = {"physics": "training"}
-#: Arguments that `TrainingSettings` itself gives to PPO.
-_OWN = ("policy", "env", "seed", "_init_setup_model")
+#: Arguments of PPO that `TrainingSettings` sets, so that ``ppo`` may not hold them.
+_SET_HERE = ("policy", "env", "seed", "_init_setup_model")
 
 
 @dataclass(frozen=True)
 class TrainingSettings:
     """Settings of PPO with one policy shared by all leaders; checked once, to and from TOML.
 
-    Leaders lean by a linear function of the lean features. All leaders of a flock explore with the
-    same perturbed weights, held for minutes (`flockenv.sb3.SharedNoisePolicy`).
+    A leader's lean is a linear function of its lean features. All leaders of a flock explore with
+    the same perturbed weights, held for minutes (`flockenv.sb3.SharedNoisePolicy`).
 
     Attributes
     ----------
@@ -91,11 +91,11 @@ class TrainingSettings:
         for name in ("environment", "ppo"):
             if not isinstance(getattr(self, name), Mapping):
                 raise ParameterError(f"{name} = {short_repr(getattr(self, name))} is not a table")
-        refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_OWN}, "option of PPO")
+        refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_SET_HERE}, "option of PPO")
         POLICY_SEEDS["training"].seeds(1, as_int(self.seed, "seed"))
 
     def flocks(self) -> dict[str, Any]:
-        """Return the options of the environment that say which flocks are led."""
+        """Return the options of the environment for the pool, boats, leaders and noise."""
         return {
             "pool": self.pool,
             "n_boats": 27,
@@ -106,14 +106,14 @@ class TrainingSettings:
     def held_out(self) -> FlockParameters:
         """Return the parameters of the flocks in which trained leaders are compared.
 
-        They have the training's physics and its other parameters. If the training draws the noise
+        They have the parameters of the training, physics included. If the training draws the noise
         from a range, they have the critical noise.
         """
-        changed = dict(self.environment)
-        if isinstance(changed.get("bw_s"), list | tuple):
-            del changed["bw_s"]
-        changed.pop("n_leaders", None)
-        return EnvOptions.parse({**self.flocks(), **_PHYSICS, **changed}).parameters
+        options = dict(self.environment)
+        if isinstance(options.get("bw_s"), list | tuple):
+            del options["bw_s"]
+        options.pop("n_leaders", None)
+        return EnvOptions.parse({**self.flocks(), **_PHYSICS, **options}).parameters
 
     def venv(self) -> LeaderVecEnv:
         """Return the environment.
@@ -133,7 +133,7 @@ class TrainingSettings:
             "decision_period_s": 1.0,
             "reward": {"signed_order": 1.0, "contact_alignment": 30.0},
             "episode_s": times["episode"],
-            "reward_horizon_s": 40.0,  # returns of order 1, for the critic
+            "reward_horizon_s": 40.0,  # It scales returns to about 1, as the critic needs.
             **_PHYSICS,
         }
         return LeaderVecEnv(self.num_flocks, **{**options, **self.environment})
@@ -159,7 +159,7 @@ class TrainingSettings:
             "device": "cpu",
             **self.ppo,
         }
-        policy = {
+        policy_options = {
             **shared_noise(venv, times["hold"]),
             "net_arch": {"pi": [], "vf": [64, 64]},
             "log_std_init": -2.4,
@@ -167,16 +167,18 @@ class TrainingSettings:
             **(options.pop("policy_kwargs", None) or {}),
         }
         try:
-            model = PPO(SharedNoisePolicy, venv, policy_kwargs=policy, seed=self.seed, **options)
+            model = PPO(
+                SharedNoisePolicy, venv, policy_kwargs=policy_options, seed=self.seed, **options
+            )
         except (AssertionError, TypeError, ValueError) as error:
             raise ParameterError(f"PPO refuses its options: {error}") from error
-        # If the standard deviation were learned, weights with a small gradient would soon not be
-        # explored.
+        # A learned standard deviation would soon end the exploration of weights with a small
+        # gradient.
         model.policy.log_std.requires_grad_(False)
         return model
 
     def samples(self, venv: LeaderVecEnv) -> int:
-        """Return the samples (leaders' decisions) of `flock_hours`."""
+        """Return the number of samples (leaders' decisions) in `flock_hours`."""
         decisions = self.flock_hours * 3600.0 * venv.decisions_hz / venv.num_flocks
         return math.ceil(round(decisions, 6)) * venv.num_envs
 
@@ -185,13 +187,13 @@ class TrainingSettings:
         return type(self).from_dict({**self.to_dict(), **changes})
 
     def to_dict(self) -> dict[str, Any]:
-        """Return every field by name."""
-        own = {"environment": dict(self.environment), "ppo": dict(self.ppo)}
-        return {**{setting.name: getattr(self, setting.name) for setting in fields(self)}, **own}
+        """Return every field by name, in types of TOML."""
+        values = {setting.name: getattr(self, setting.name) for setting in fields(self)}
+        return {**values, "environment": dict(self.environment), "ppo": dict(self.ppo)}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Self:
-        """Return settings from fields by name, defaults for the others.
+        """Return settings from fields by name; missing fields have their defaults.
 
         Raises
         ------
