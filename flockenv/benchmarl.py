@@ -1,4 +1,4 @@
-"""The tasks of BenchMARL: many flocks behind TorchRL, and the policies that its learners find.
+"""Tasks for BenchMARL: many flocks through TorchRL, and the policies that its learners train.
 
 Needs the extra ``benchmarl``. ``python -m flockenv.benchmarl
 task=flockenv/lean algorithm=mappo`` is BenchMARL's own command with these tasks.
@@ -31,13 +31,13 @@ from flockenv.runs.seeds import POLICY_SEEDS
 from flockenv.torchrl import GROUP, STATES, LeadersEnv
 
 CONF = Path(__file__).parent / "benchmarl_tasks"
-"""The folder of the configurations, as Hydra searches it: ``task/flockenv/NAME.yaml``."""
+"""The folder in which Hydra searches configurations: ``task/flockenv/NAME.yaml``."""
 
 _ENV_NAME = "flockenv"
 
 
 class LeadersTaskClass(TaskClass):
-    """A task of BenchMARL: flocks whose leaders are the agents of one group.
+    """A task for BenchMARL: flocks in which all leaders are one group of agents.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class LeadersTaskClass(TaskClass):
         Name of the task.
     config
         ``state``, as for `flockenv.torchrl.LeadersEnv`, and options of the environments. With
-        ``rudder_levels`` the task has discrete actions too, for learners that need them.
+        ``rudder_levels`` the task also has discrete actions, for learners that need them.
 
     Raises
     ------
@@ -66,22 +66,22 @@ class LeadersTaskClass(TaskClass):
         seed: int | None,
         device: torch.device | str,
     ) -> Callable[[], EnvBase]:
-        """Return a function that makes the environment with a number of flocks.
+        """Return a function that makes the environment with `num_envs` flocks.
 
-        Flocks are seeded from the range of training seeds that a run of this number has; see
+        The flocks get the training seeds of the run whose number is `seed`; see
         `flockenv.runs.seeds.POLICY_SEEDS`.
         """
         options = {"state": "none", **copy.deepcopy(self.config)}
         if continuous_actions:
             options.pop("rudder_levels", None)
-        first = None if seed is None else POLICY_SEEDS["training"].seeds(1, run=seed)[0]
+        first_seed = None if seed is None else POLICY_SEEDS["training"].seeds(1, run=seed)[0]
 
-        def made() -> EnvBase:
+        def make() -> EnvBase:
             env = LeadersEnv(num_envs, device=device, **options)
-            env.set_seed(first)
+            env.set_seed(first_seed)
             return env
 
-        return made
+        return make
 
     def supports_continuous_actions(self) -> bool:
         """Return True: actions are rudders, leans or headings."""
@@ -97,7 +97,7 @@ class LeadersTaskClass(TaskClass):
         return steps
 
     def has_render(self, env: EnvBase) -> bool:
-        """Return False: recordings are played by ``flockenv replay``."""
+        """Return False: there are no frames; ``flockenv replay`` plays recordings."""
         return False
 
     def group_map(self, env: EnvBase) -> dict[str, list[str]]:
@@ -106,7 +106,7 @@ class LeadersTaskClass(TaskClass):
         return groups
 
     def observation_spec(self, env: EnvBase) -> Composite:
-        """Return the spec of what each leader observes."""
+        """Return the spec of each leader's observation."""
         return Composite({GROUP: env.observation_spec_unbatched[GROUP]})
 
     def state_spec(self, env: EnvBase) -> Composite | None:
@@ -129,7 +129,7 @@ class LeadersTaskClass(TaskClass):
 
     @staticmethod
     def env_name() -> str:
-        """Return the name of the folder of the configurations."""
+        """Return the name of the environment, which is also the folder of its configurations."""
         return _ENV_NAME
 
 
@@ -146,14 +146,13 @@ class LeadersTask(Task):
 
     def get_from_yaml(self, path: str | None = None) -> LeadersTaskClass:
         """Return the task with the configuration of a file, by default the task's own in `CONF`."""
-        own = CONF / "task" / _ENV_NAME / f"{self.name.lower()}.yaml"
-        task: LeadersTaskClass = self.get_task(
-            _read_yaml_config(str(own if path is None else path))
-        )
+        default_path = CONF / "task" / _ENV_NAME / f"{self.name.lower()}.yaml"
+        config = _read_yaml_config(str(default_path if path is None else path))
+        task: LeadersTaskClass = self.get_task(config)
         return task
 
 
-# BenchMARL then knows the tasks by name: ``flockenv/leaders`` and so on.
+# By this, BenchMARL finds the tasks by name: ``flockenv/leaders`` and so on.
 task_config_registry.update(
     {f"{_ENV_NAME}/{name.lower()}": task for name, task in LeadersTask.__members__.items()}
 )
@@ -175,8 +174,8 @@ def network_policy(
     Raises
     ------
     ParameterError
-        For another environment or policy: graph networks see other leaders' observations, but a
-        leader here sees only its own.
+        For another environment or another kind of policy. A graph network, for example, takes the
+        observations of other leaders, but a leader's policy here takes only its own.
     """
     env = experiment.test_env.base_env
     if not isinstance(env, LeadersEnv):
@@ -191,8 +190,8 @@ def network_policy(
     algorithm = experiment.algorithm
     actor = algorithm.get_policy_for_loss(GROUP)
     networks = [module for module in actor.modules() if isinstance(module, Mlp)]
-    shared = experiment.config.share_policy_params or env.num_leaders == 1
-    if len(networks) != 1 or not shared:
+    is_shared = experiment.config.share_policy_params or env.num_leaders == 1
+    if len(networks) != 1 or not is_shared:
         raise ParameterError(
             "this policy is not accepted: one MLP that all leaders share (model_config = "
             "MlpConfig, share_policy_params)"

@@ -1,4 +1,4 @@
-"""RLlib's module of leaders that share one network, for the native vector environment.
+"""A module for RLlib in which all leaders share one network, for the vector environment.
 
 Needs the extra ``ray`` and torch.
 """
@@ -32,26 +32,26 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
     """RLlib's module for ``flockenv/Leaders-v0``: each leader's action from its own observation.
 
     RLlib steps many environments at once only if each has one agent. The agent of
-    `LeadersVectorEnv` observes and steers all leaders. This module splits its observation, so that
-    all leaders share one network, and gives the value of the whole observation. It is for PPO and
-    other algorithms with a value function, and for continuous actions.
+    `LeadersVectorEnv` observes and steers all leaders. This module splits that observation by
+    leader, so that all leaders share one network. The value is of the whole observation. The module
+    is for PPO and other algorithms with a value function, and for continuous actions.
 
     ``RLModuleSpec(LeadersModule, model_config={"hidden": (64, 64)})``
 
     ``model_config`` may hold ``hidden`` (sizes of the hidden layers of both networks),
-    ``activation`` ("tanh" or "relu") and ``first_log_std`` (the
-    logarithm of the first standard deviation of an action, shared by all leaders and learned).
+    ``activation`` ("tanh" or "relu") and ``first_log_std`` (the logarithm of the standard deviation
+    of actions at the start; it is learned, and shared by all leaders).
     Raises ParameterError for unknown entries of ``model_config`` and for spaces of other
     environments.
     """
 
     def setup(self) -> None:
         """Make the networks."""
-        given = dict(self.model_config or {})
-        # RLlib adds its own entries, which say how it makes its networks.
-        of_rllib = {option.name for option in fields(DefaultModelConfig)}
-        refuse_unknown(given.keys() - of_rllib, _DEFAULTS, "entry of model_config")
-        config = {**_DEFAULTS, **given}
+        model_config = dict(self.model_config or {})
+        # RLlib adds entries for its own networks.
+        rllib_entries = {option.name for option in fields(DefaultModelConfig)}
+        refuse_unknown(model_config.keys() - rllib_entries, _DEFAULTS, "entry of model_config")
+        config = {**_DEFAULTS, **model_config}
         refuse_unknown((config["activation"],), _LAYERS, "activation")
         space, actions = self.observation_space, self.action_space
         if not isinstance(space, ObservationSpace) or not isinstance(actions, gymnasium.spaces.Box):
@@ -67,9 +67,9 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
 
     def _forward(self, batch: Mapping[str, Any], **_: object) -> dict[str, Any]:
         rows = batch[Columns.OBS].unflatten(-1, (self.leaders, -1))
-        mean = self.mean(rows).squeeze(-1)
-        spread = self.log_std.expand_as(mean)
-        return {Columns.ACTION_DIST_INPUTS: torch.cat([mean, spread], dim=-1)}
+        means = self.mean(rows).squeeze(-1)
+        log_stds = self.log_std.expand_as(means)
+        return {Columns.ACTION_DIST_INPUTS: torch.cat([means, log_stds], dim=-1)}
 
     def compute_values(self, batch: Mapping[str, Any], embeddings: object = None) -> torch.Tensor:
         """Return the value of each observation."""
@@ -77,12 +77,13 @@ class LeadersModule(TorchRLModule, ValueFunctionAPI):
         return values
 
     def network_policy(self, provenance: Mapping[str, str] | None = None) -> NetworkPolicy:
-        """Return the leaders' network as a policy; every command reads the file that it saves."""
+        """Return the leaders' network as a policy, whose saved file every command reads."""
         space = self.observation_space
         return NetworkPolicy.from_module(self.mean, space, provenance=provenance)
 
 
 def _network(inputs: int, config: Mapping[str, Any]) -> torch.nn.Sequential:
+    """Return a network with one output and the hidden layers of the configuration."""
     layers: list[torch.nn.Module] = []
     for size in config["hidden"]:
         layers += [torch.nn.Linear(inputs, size), _LAYERS[config["activation"]]()]

@@ -1,4 +1,4 @@
-"""TorchRL's environment for one batch of flocks, whose leaders are one group of agents.
+"""TorchRL's environment for a batch of flocks, in which all leaders are one group of agents.
 
 Needs the extra ``torchrl``.
 """
@@ -30,17 +30,17 @@ from flockenv.envs.spaces import ObservationSpace
 from flockenv.errors import UnknownOptionError, refuse_unknown
 
 GROUP = "leaders"
-"""Name of the group that all leaders of a flock are in."""
+"""Name of the group of agents that holds all leaders of a flock."""
 
 STATES = ("boats", "set", "features", "none")
-"""Contents of the entry ``state``."""
+"""Accepted values of the option `state`."""
 
 
 class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
-    """Many flocks for TorchRL, stepped at once in Rust: batch size ``[flocks]``, leaders a group.
+    """Many flocks for TorchRL, stepped in parallel in Rust: the batch size is ``[flocks]``.
 
-    All flocks have equally many leaders. Tensors share the memory of the arrays that the core
-    returns, and are never written to again.
+    All flocks have equally many leaders, which are one group of agents. On the processor, tensors
+    share the memory of the arrays that the core returns. They are never written to again.
 
     ========================================= =============================================
     key                                       shape, dtype
@@ -55,7 +55,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     ``"truncated"``                           terminated
     ========================================= =============================================
 
-    The same seed gives the same bits as in `LeadersVectorEnv`: ``set_seed(s)`` makes the next reset
+    The same seed gives the same bits as in `LeadersVectorEnv`. ``set_seed(s)`` makes the next reset
     seed flock i with s + i. Flocks that never had a seed draw one from `np_random`. ``reset`` with
     a ``"_reset"`` mask starts the flocks in it, and ``reset(options={...})`` takes the options of
     `LeadersVectorEnv.reset`.
@@ -65,19 +65,19 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
     num_flocks
         Number of flocks, at least 1.
     state
-        The observation of a centralized critic: "boats" (the global state, the boats one after
-        another), "set" (the same with a row for each boat, its own entries and then the clock's,
-        for networks that take sets), "features" (features of the flock that do not depend on the
-        order of boats, as `LeadersVectorEnv.flock_features`) or "none".
+        The observation of a centralized critic. "boats": the global state, the boats one after
+        another. "set": the same with a row for each boat, which holds the boat's own entries and
+        then the clock's, for networks that take sets. "features": features of the flock that do not
+        depend on the order of boats, as `LeadersVectorEnv.flock_features`. "none": no state.
     device
-        Where tensors are; the simulator itself runs on the processor.
+        The device of the tensors; the simulator itself runs on the processor.
     options
         The environments' options.
 
     Attributes
     ----------
     group_map : dict
-        Names of the agents in the group ``"leaders"``.
+        The names of the agents by group; the only group is ``"leaders"``.
     observation_space : flockenv.envs.spaces.ObservationSpace
         The space of one leader's observation, which `NetworkPolicy.from_module` takes.
     episode_steps : int
@@ -148,10 +148,12 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         self.reward_spec = grouped(
             reward=Unbounded(torch.Size([*per_leader, 1]), device, torch.float32)
         )
-        ends = ("done", "terminated", "truncated")
-        one = torch.Size([*flocks, 1])
+        per_flock = torch.Size([*flocks, 1])
         self.done_spec = Composite(
-            {name: Binary(shape=one, device=device, dtype=torch.bool) for name in ends},
+            {
+                name: Binary(shape=per_flock, device=device, dtype=torch.bool)
+                for name in ("done", "terminated", "truncated")
+            },
             shape=flocks,
         )
 
@@ -164,9 +166,9 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
 
         Raises ParameterError for anything but a seed.
         """
-        given = None if seed is None else as_int(seed, "seed")
-        following: int | None = super().set_seed(given, static_seed)
-        return following
+        checked = None if seed is None else as_int(seed, "seed")
+        next_seed: int | None = super().set_seed(checked, static_seed)
+        return next_seed
 
     def _set_seed(self, seed: int | None) -> None:
         flocks = self.num_flocks
@@ -186,14 +188,14 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
                 f"as options={{...}}, the seed by set_seed"
             )
         flocks = self.num_flocks
-        given = None if tensordict is None else tensordict.get("_reset", None)
-        mask = None if given is None else given.reshape(flocks).cpu().numpy()
+        reset_tensor = None if tensordict is None else tensordict.get("_reset", None)
+        mask = None if reset_tensor is None else reset_tensor.reshape(flocks).cpu().numpy()
         requests = reset_requests(options, flocks)
         self._batch.reset(self._seeds, requests, lambda: drawn_seed(self.np_random), mask)
-        started = np.ones(flocks, np.bool_) if mask is None else mask
-        for flock in np.flatnonzero(started).tolist():
+        was_reset = np.ones(flocks, np.bool_) if mask is None else mask
+        for flock in np.flatnonzero(was_reset).tolist():
             self._seeds[flock] = None
-        return self._seen(self._batch.core.observe())
+        return self._tensordict(self._batch.core.observe())
 
     def _step(self, tensordict: TensorDictBase) -> TensorDictBase:
         actions = tensordict[GROUP, "action"].detach().cpu().numpy()
@@ -201,7 +203,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         expected = shape if self.rudder_levels is not None else (*shape, 1)
         flat = _core.flat_actions(actions, expected, self.rudder_levels, "the leaders' action")
         observations, rewards, ended = self._batch.step(self, flat)
-        result = self._seen(observations)
+        result = self._tensordict(observations)
         reward = self._tensor(rewards.astype(np.float32)).reshape(*shape, 1)
         result.set((GROUP, "reward"), reward)
         truncated = self._tensor(ended).unsqueeze(-1)
@@ -210,14 +212,15 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         result.set("terminated", torch.zeros_like(truncated))
         return result
 
-    def _seen(self, rows: NDArray[np.float32]) -> TensorDict:
+    def _tensordict(self, observations: NDArray[np.float32]) -> TensorDict:
+        """Return the leaders' observations, a row per leader, and the present state."""
         shape = [self.num_flocks, self.num_leaders]
-        observation = self._tensor(rows).reshape(*shape, -1)
+        observation = self._tensor(observations).reshape(*shape, -1)
         leaders = TensorDict({"observation": observation}, shape, device=self.device)
-        seen: dict[str, Any] = {GROUP: leaders}
+        entries: dict[str, Any] = {GROUP: leaders}
         if self._state != "none":
-            seen["state"] = self._tensor(self._state_now())
-        return TensorDict(seen, self.batch_size, device=self.device)
+            entries["state"] = self._tensor(self._present_state())
+        return TensorDict(entries, self.batch_size, device=self.device)
 
     def _state_space(self) -> gymnasium.spaces.Box:
         if self._state == "features":
@@ -229,7 +232,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
         return gymnasium.spaces.Box(low, high, dtype=np.float32)
 
-    def _state_now(self) -> NDArray[np.float32]:
+    def _present_state(self) -> NDArray[np.float32]:
         if self._state == "features":
             return self._batch.core.flock_features(each_leader=False)
         states = self._batch.core.states()
@@ -240,8 +243,11 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
 
 
 def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
-    """Return states with a row for each boat, which also has the entries that belong to no boat."""
-    rest = len(state_entries(0))
-    own = states[:, :-rest].reshape(len(states), boats, -1)
-    clock = np.broadcast_to(states[:, None, -rest:], (len(states), boats, rest))
-    return np.concatenate([own, clock], axis=2)
+    """Return states with a row per boat: the boat's own entries, then those of the clock.
+
+    `states` has shape (flocks, state size), and the result (flocks, boats, entries).
+    """
+    n_clock = len(state_entries(0))
+    boat_entries = states[:, :-n_clock].reshape(len(states), boats, -1)
+    clock = np.broadcast_to(states[:, None, -n_clock:], (len(states), boats, n_clock))
+    return np.concatenate([boat_entries, clock], axis=2)

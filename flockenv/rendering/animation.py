@@ -1,4 +1,4 @@
-"""Moving pictures in a file: GIF by Pillow, video by FFmpeg."""
+"""Moving pictures in files: GIFs by Pillow, videos by FFmpeg."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -15,14 +15,14 @@ from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
 
-_LONGEST_SIDE = 65_535  # GIF counts in 16 bits
+_LONGEST_SIDE = 65_535  # GIF stores sizes in 16 bits.
 _SLOWEST, _FASTEST = 0.1, 100.0
 
 
 def save_animation(
     path: str | os.PathLike[str], frames: Iterable[NDArray[np.uint8]], fps: float
 ) -> None:
-    """Write frames as a moving picture.
+    """Write frames as a moving picture to a file.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def save_animation(
     TypeError
         For frames that are not such arrays.
     OSError
-        If the file cannot be written; the old file is still there then.
+        If the file cannot be written; an old file is then unchanged.
     MissingExtraError
         If the extra is not installed.
     """
@@ -62,16 +62,16 @@ def save_animation(
 def _gif(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
     image = require("PIL.Image", "render")
 
-    def timed() -> Iterator[Any]:
-        for count, frame in enumerate(frames):
+    def timed_pictures() -> Iterator[Any]:
+        for index, frame in enumerate(frames):
             picture = image.fromarray(frame)
-            # Durations in whole hundredths of a second; the rounding error is carried to the next
-            # frame.
-            hundredths = round(100 * (count + 1) / fps) - round(100 * count / fps)
-            picture.info["duration"] = 10 * hundredths
+            # GIF stores durations in whole hundredths of a second. Start and end are rounded, not
+            # the duration, so that rounding errors do not add up.
+            start, end = round(100 * index / fps), round(100 * (index + 1) / fps)
+            picture.info["duration"] = 10 * (end - start)  # Pillow takes milliseconds.
             yield picture
 
-    pictures = timed()
+    pictures = timed_pictures()
     content = BytesIO()
     next(pictures).save(content, "GIF", save_all=True, append_images=pictures, loop=0)
     return content.getvalue()
@@ -81,18 +81,18 @@ def _video(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
     ffmpeg = require("imageio_ffmpeg", "video")
     first = next(frames)
     with TemporaryDirectory() as folder:  # The encoder opens paths, not open files.
-        made = Path(folder, "made.mp4")
-        size = first.shape[1::-1]
-        video = ffmpeg.write_frames(str(made), size, fps=fps, macro_block_size=2)
-        video.send(None)
+        file = Path(folder, "video.mp4")
+        width_and_height = first.shape[1::-1]
+        encoder = ffmpeg.write_frames(str(file), width_and_height, fps=fps, macro_block_size=2)
+        encoder.send(None)
         for frame in chain([first], frames):
-            video.send(frame)
-        video.close()
-        return made.read_bytes()
+            encoder.send(frame)
+        encoder.close()
+        return file.read_bytes()
 
 
 def _checked(frames: Iterable[Any]) -> Iterator[NDArray[np.uint8]]:
-    """Yield the frames; refuse no frames at all, and frames that differ in shape."""
+    """Yield the frames; refuse other values, frames of different shapes, and having no frame."""
     shape: tuple[int, ...] | None = None
     for frame in frames:
         if not isinstance(frame, np.ndarray) or frame.dtype != np.uint8 or frame.ndim != 3:
@@ -108,4 +108,4 @@ def _checked(frames: Iterable[Any]) -> Iterator[NDArray[np.uint8]]:
         shape = expected
         yield np.ascontiguousarray(frame)
     if shape is None:
-        raise ParameterError("frames are none: at least one")
+        raise ParameterError("frames is empty: at least one frame is needed")

@@ -1,4 +1,4 @@
-"""Frames: pictures of a flock, drawn in Rust. They need no screen."""
+"""Frames: pictures of a flock, drawn in Rust without a screen."""
 
 from functools import lru_cache, singledispatch
 
@@ -28,14 +28,14 @@ def frame(
     ``frame(flock)`` shows a flock, ``frame(recording, time_s)`` the last sample of a recording up
     to a time in s. Both take a width and a height.
 
-    It shows the pool (in open water the part where the boats are) and the boats with a mark towards
-    the bow. Boats that head clockwise are blue, counter-clockwise ones orange, and those that head
-    along the radius (outward in a jam) gray; leaders have an amber ring. If leaders have opposite
-    targets, those with a counter-clockwise one have a plum ring. The corners show the time and
-    phase, the target and bw, Ψ_o and the signed order. Without a common target they
-    show the rotation Ψ_o·sin φ_o, positive clockwise, instead. Several threads may draw at the same
-    time. Raises ParameterError for a size out of range, unknown colors, and a time outside the
-    recording.
+    The picture shows the pool (in open water the part where the boats are) and the boats, with a
+    mark towards the bow. Boats that head clockwise are blue, counter-clockwise ones orange, and
+    those that head along the radius (outward in a jam) gray. Leaders have an amber ring. If leaders
+    have opposite targets, those with a counter-clockwise target have a plum ring. The corners show
+    the time and phase, the target and bw, Ψ_o and the signed order. Without a common target, the
+    rotation Ψ_o·sin φ_o, positive clockwise, replaces the signed order. Several threads may draw at
+    the same time. Raises ParameterError for a size out of range, unknown colors, and a time outside
+    the recording.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def frame(
         Size in pixels, 64 to 4096 each.
     colors
         The property that color shows: "direction", or "role" (leaders amber or plum, other boats
-        blue). In open water, where there is nothing to circle around, it is always the role.
+        blue). In open water there is nothing to circle around: color always shows the role.
     caption
         Text above the time, cut to fit its corner.
 
@@ -74,5 +74,5 @@ def _frame_of_recording(
 
 @lru_cache(maxsize=4)
 def renderer(width: int, height: int) -> FrameRenderer:
-    """Return a renderer for frames of this size; it keeps its background and letters."""
+    """Return a renderer for frames of this size; it caches background and letters."""
     return FrameRenderer(width, height)

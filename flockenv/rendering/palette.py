@@ -1,4 +1,4 @@
-"""Colors of pictures by name, as `src/draw/palette.rs` declares them."""
+"""Colors of pictures by name, declared in `src/draw/palette.rs`."""
 
 from collections.abc import Mapping
 

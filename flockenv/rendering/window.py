@@ -22,7 +22,7 @@ class Window:
     width, height
         Size in pixels.
     fps
-        Frames per second, of real and of simulated time.
+        Frames per second, both of real and of simulated time.
 
     Raises
     ------
@@ -45,15 +45,16 @@ class Window:
     def show(self, flock: Flock) -> None:
         """Show a flock and return when the next step is due, or at once if the window is closed."""
         display = self._pygame.display
-        is_there = display.get_init() and self._surface.get_size() == self._size
-        self.is_open = self.is_open and is_there
+        # A newer window may have closed or replaced this one.
+        has_display = display.get_init() and self._surface.get_size() == self._size
+        self.is_open = self.is_open and has_display
         if self.is_open and self._pygame.event.get(self._pygame.QUIT):
             self.close()
         if not self.is_open:
             return
-        # pygame counts columns first.
-        rows = self._renderer.draw(flock._in_core)
-        self._pygame.surfarray.blit_array(self._surface, rows.swapaxes(0, 1))
+        picture = self._renderer.draw(flock._in_core)
+        # The first axis of pygame's arrays is x.
+        self._pygame.surfarray.blit_array(self._surface, picture.swapaxes(0, 1))
         display.flip()
         self._pygame.event.pump()
         self._clock.tick(self._fps)
