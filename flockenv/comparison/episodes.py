@@ -123,7 +123,7 @@ class Episodes:
 
 
 def _decision_function_per_leader(leaders: Leaders, batch: LeaderBatch) -> DecisionFunction:
-    """Return the function that decides if each leader has its own policy and observation."""
+    """Return the decision function of leaders that differ in their policies and observations."""
     core, decisions = batch.core, leaders.decisions(batch.settings["control_hz"])
 
     def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -136,7 +136,7 @@ def _decision_function_per_leader(leaders: Leaders, batch: LeaderBatch) -> Decis
 def _decision_options(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:
     """Return the environment's options that the policies need.
 
-    Refuses options that contradict them.
+    Refuses options that contradict the policies.
     """
     if leaders.is_per_leader:
         if "decision_period_s" in options:

@@ -37,7 +37,7 @@ _TABLES = ("runs", "means", "differences", "lines")
 
 @dataclass(frozen=True)
 class ComparisonReport:
-    """Results of policies in some cases (extra ``plot``)."""
+    """Results of a comparison of policies, in one or more cases (extra ``plot``)."""
 
     cases: Sequence[Case]
     #: Names of policies, the user's first.
@@ -186,16 +186,16 @@ class ComparisonReport:
 
 
 def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str]:
-    """Return a line that says in how many episodes overlaps exceeded the tolerance, if any."""
+    """Return a line that says in how many episodes overlaps exceeded the tolerance.
+
+    The list is empty if there is no such episode; `words` names the episodes.
+    """
     deep = episodes[episodes["unsolved"] > 0]
     return overlap_note(len(episodes), len(deep), deep["worst_overlap_cm"].max(), words)
 
 
 def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str]:
-    """Return the line that says in how many episodes overlaps exceeded the tolerance, if any.
-
-    `deep` of `total` episodes had such overlaps; the deepest was `worst_cm`.
-    """
+    """Return what `overlap_notes` does if `deep` of `total` episodes had such overlaps."""
     if deep == 0:
         return []
     return [
@@ -218,8 +218,9 @@ def _plus_minus(row: Mapping[str, float]) -> str:
 
 
 def _table(
-    rows: list[dict[str, object]], keys: list[str], kind: type[Difference] | type[Line]
+    rows: list[dict[str, object]], keys: list[str], result: type[Difference] | type[Line]
 ) -> "pd.DataFrame":
-    columns = [*keys, *(column.name for column in fields(kind))]
+    """Return rows as a table, which has its columns even without rows."""
+    columns = [*keys, *(column.name for column in fields(result))]
     table: pd.DataFrame = require("pandas", "plot").DataFrame(rows, columns=columns)
     return table

@@ -82,9 +82,9 @@ class SuiteEntry:
         Raises
         ------
         ParameterError
-            For a file that is not an entry or belongs to another suite or results version, for
-            policies that cannot be read or hold numbers that are not finite, and for trainings that
-            used seeds for evaluation.
+            For a file that is not an entry or belongs to another suite, for policies that cannot be
+            read or hold numbers that are not finite, and for trainings that used seeds for
+            evaluation.
         """
         values = read_toml_file(path, os.fspath(path))
         try:
@@ -102,11 +102,13 @@ class SuiteEntry:
         _check_training_seeds(values["training_seeds"])
         searched = values.get("searched_hours")
         return cls(
-            name=_text(values["name"], "name"),
-            kind=_text(values["class"], "class"),
-            link=_text(values["link"], "link"),
-            flock_hours=_hours(values["flock_hours"], "flock_hours"),
-            searched_hours=math.nan if searched is None else _hours(searched, "searched_hours"),
+            name=_checked_text(values["name"], "name"),
+            kind=_checked_text(values["class"], "class"),
+            link=_checked_text(values["link"], "link"),
+            flock_hours=_checked_hours(values["flock_hours"], "flock_hours"),
+            searched_hours=math.nan
+            if searched is None
+            else _checked_hours(searched, "searched_hours"),
             trainings={
                 name: _trainings(policies, LEVELS[name], folder, trust)
                 for name, policies in _levels(values["levels"]).items()
@@ -191,8 +193,8 @@ def scored(
     Yields after each entry. An entry that fails has no row; the others are still scored.
     """
     pandas = require("pandas", "plot")
-    named = [name for name in levels if any(name in entry.trainings for entry in entries)]
-    references = {name: LEVELS[name].references(flocks, progress) for name in named}
+    scored_levels = [name for name in levels if any(name in entry.trainings for entry in entries)]
+    references = {name: LEVELS[name].references(flocks, progress) for name in scored_levels}
     tables = [
         orders_table(name, "0", "reference", (NO_STEERING, REFERENCE), columns)
         for name, columns in references.items()
@@ -200,13 +202,13 @@ def scored(
     rows: list[dict[str, object]] = []
     broken: list[str] = []
     for entry in entries:
-        entry_levels = [name for name in named if name in entry.trainings]
+        entry_levels = [name for name in scored_levels if name in entry.trainings]
         try:
-            led = {name: entry.run(name, flocks, progress) for name in entry_levels}
+            columns_by_level = {name: entry.run(name, flocks, progress) for name in entry_levels}
         except ParameterError as error:
-            led = {}
+            columns_by_level = {}
             broken.append(str(error))
-        for name, columns in led.items():
+        for name, columns in columns_by_level.items():
             reference_orders = references[name]["signed_order"]
             rows.append(entry.row(name, columns["signed_order"], *reference_orders))
             policies = [training.given for training in entry.trainings[name]]
@@ -271,7 +273,7 @@ def _levels(levels: object) -> Mapping[str, object]:
     return levels
 
 
-def _text(value: object, name: str) -> str:
+def _checked_text(value: object, name: str) -> str:
     if not isinstance(value, str) or not value.isprintable() or not 0 < len(value) <= _LONGEST_TEXT:
         raise ParameterError(
             f"{name} = {short_repr(value)} is not accepted: a text of at most {_LONGEST_TEXT} "
@@ -280,7 +282,7 @@ def _text(value: object, name: str) -> str:
     return value
 
 
-def _hours(value: object, name: str) -> float:
+def _checked_hours(value: object, name: str) -> float:
     hours = float(number(value, name))
     if not 0.0 <= hours < math.inf:
         raise ParameterError(f"{name} = {short_repr(value)} is not accepted: hours, at least 0")
@@ -289,7 +291,11 @@ def _hours(value: object, name: str) -> float:
 
 def _check_seeds(first: int, last: int, name: str) -> None:
     """Refuse training seeds that overlap the seeds for evaluation."""
-    if not FIRST_TRAINING_SEED <= first <= last:
+    if first > last:
+        raise ParameterError(
+            f"{name} = [{first}, {last}] is not accepted: the first seed is above the last"
+        )
+    if first < FIRST_TRAINING_SEED:
         raise ParameterError(
             f"{name} = [{first}, {last}] is not accepted: seeds below 2^32 are for evaluation, and "
             "no training may use them"

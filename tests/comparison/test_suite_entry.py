@@ -82,7 +82,7 @@ class Wrong:
         ({"levels": {LEVEL: ["module:Class"]}}, "--trust"),
         ({"training_seeds": [5, 2**32]}, "seeds below 2^32 are for evaluation"),
         ({"training_seeds": [2**32]}, "training_seeds = [4294967296] is not accepted"),
-        ({"training_seeds": [2**33, 2**32]}, "training_seeds"),
+        ({"training_seeds": [2**33, 2**32]}, "the first seed is above the last"),
         ({"flock_hours": -1.0}, "flock_hours = -1.0 is not accepted"),
         ({"flock_hours": float("nan")}, "flock_hours = nan is not accepted"),
         ({"flock_hours": None}, "flock_hours is missing"),
