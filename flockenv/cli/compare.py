@@ -51,7 +51,7 @@ def compare(options: CompareOptions) -> None:
         return
     plan = Plan.parse(options)
     prepare(options.out / "runs.csv")
-    if options.suite and not options.shows_nothing:
+    if options.suite and not options.hides_progress:
         minutes = math.ceil(_estimated_seconds(plan) / 60)
         hours = f"{plan.flock_hours:.0f} flock-hours"
         echo(f"{len(plan.cases)} tasks, {hours}: about {minutes} min here", errors)
@@ -114,7 +114,7 @@ def _run_cases(options: CompareOptions, plan: Plan) -> ComparisonReport:
         report.write(options.out)
         return report
 
-    with progress("simulating", 3600 * plan.flock_hours, options.shows_nothing) as advance:
+    with progress("simulating", 3600 * plan.flock_hours, options.hides_progress) as advance:
         try:
             for case in cases:
                 case.run(policies[case.name], advance, finished.append)

@@ -41,7 +41,7 @@ def compare_entries(
     prepare(table)
     if flocks < FLOCKS:
         echo(f"A trial: rows of the table are of {FLOCKS} flocks, not {flocks}", errors)
-    results = _score_and_write(entries, levels, flocks, table, printing.shows_nothing)
+    results = _score_and_write(entries, levels, flocks, table, printing.hides_progress)
     _show(results, out, printing)
     for reason in results.broken:
         echo(f"Not scored: {reason}", errors)

@@ -162,9 +162,12 @@ def _case_policies(
     Prints which references are left out because they are not made for the pool.
     """
     policies = {name: _load(text, pool, options.trust) for name, text in typed.items()}
-    references: tuple[str, ...] = (REFERENCE,) if options.suite else REFERENCES
-    for name in () if options.only and not options.suite else references:
-        if name in typed.values() and not options.suite:  # The user compares it already.
+    references: tuple[str, ...] = () if options.only else REFERENCES
+    if options.suite:
+        references = (REFERENCE,)
+    for name in references:
+        # One of the user's policies may be the same. A suite needs the reference by its name.
+        if name in typed.values() and not options.suite:
             continue
         try:
             policies.setdefault(name, policy(name, pool))

@@ -52,7 +52,7 @@ def demo(options: DemoOptions) -> None:
     else:
         minutes = DEMO_MINUTES if options.minutes is None else options.minutes
         total = len(DEMO_POLICIES) * minutes * 60
-        with progress("simulating", total, options.shows_nothing) as advance:
+        with progress("simulating", total, options.hides_progress) as advance:
             runs = demo_runs(seed, minutes, advance)
         write_replay(out, runs)
         if options.as_json:

@@ -104,6 +104,6 @@ class Printing:
     quiet: bool = option(False, "Print no progress and no remarks.", "--quiet", "-q")
 
     @property
-    def shows_nothing(self) -> bool:
+    def hides_progress(self) -> bool:
         """Whether progress is hidden."""
         return self.as_json or self.quiet

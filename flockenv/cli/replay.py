@@ -98,7 +98,7 @@ def _write_page(options: ReplayOptions) -> None:
     page = options.html or options.first.with_suffix(".html")
     prepare(page)
     recordings = {
-        name: load_recording(path, quiet=options.shows_nothing) for name, path in named.items()
+        name: load_recording(path, quiet=options.hides_progress) for name, path in named.items()
     }
     written = write_replay(page, recordings)
     if options.as_json:
@@ -116,7 +116,7 @@ def _write_pictures(options: ReplayOptions, paths: list[Path]) -> None:
 
     named = options.named()
     prepare(*paths)
-    runs = [load_recording(path, quiet=options.shows_nothing) for path in named.values()]
+    runs = [load_recording(path, quiet=options.hides_progress) for path in named.values()]
     # A lone recording gets no caption, unless the user names it.
     captions = list(named) if options.name or len(runs) > 1 else [""]
     for path in paths:
@@ -125,7 +125,7 @@ def _write_pictures(options: ReplayOptions, paths: list[Path]) -> None:
         picture_s = min(options.seconds, recorded_s / options.speed)
         count = max(1, round(picture_s * fps))
         offsets_s = options.start + np.arange(count) * options.speed / fps
-        with progress("drawing", len(offsets_s), options.shows_nothing) as advance:
+        with progress("drawing", len(offsets_s), options.hides_progress) as advance:
 
             def draw(offset_s: float) -> NDArray[np.uint8]:
                 """Draw all recordings, side by side, at a time after their first samples."""

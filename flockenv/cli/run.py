@@ -71,7 +71,7 @@ def run(options: RunOptions) -> None:
     _check_no_other_file(parameter_file)
     prepare(out, parameter_file, overwrites=options.force)
     duration_s = 60 * options.minutes
-    with progress("simulating", duration_s, options.shows_nothing) as advance:
+    with progress("simulating", duration_s, options.hides_progress) as advance:
         recording = simulate(
             parameters,
             options.seed,

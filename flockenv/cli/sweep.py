@@ -79,7 +79,7 @@ def sweep(options: SweepOptions) -> None:
     write_text(copy, options.spec.read_text("utf-8"))
     kept = f"The runs that were finished are stored in {folder}: the same command resumes."
     total = sum(run.cost for run in runs)
-    bar = progress(f"{len(runs)} runs", total, options.shows_nothing, ends=False, kept=kept)
+    bar = progress(f"{len(runs)} runs", total, options.hides_progress, ends=False, kept=kept)
     with bar as advance:
 
         def finished(run: RunSpec) -> None:
@@ -99,28 +99,28 @@ def sweep(options: SweepOptions) -> None:
 
 
 def _show_shard(
-    options: SweepOptions, shard: Shard, runs: int, failures: Mapping[RunSpec, Exception]
+    options: SweepOptions, shard: Shard, run_count: int, failures: Mapping[RunSpec, Exception]
 ) -> int:
     """Print the result of a shard, and return the number of failed runs."""
     for run, error in failures.items():
         warn(f"the run of seed {run.seed} failed: {error}")
     failed = len(failures)
     if options.as_json:
-        print_json({"shard": str(shard), "runs": runs, "failed": failed})
+        print_json({"shard": str(shard), "runs": run_count, "failed": failed})
     else:
         echo(
-            f"Shard {shard}: {runs - failed} of {runs} runs are stored. When all shards have "
-            "ended, the same command without --shard writes the table."
+            f"Shard {shard}: {run_count - failed} of {run_count} runs are stored. When all shards "
+            "have ended, the same command without --shard writes the table."
         )
     return failed
 
 
-def _show_table(options: SweepOptions, folder: Path, runs: int, table: "pd.DataFrame") -> int:
+def _show_table(options: SweepOptions, folder: Path, run_count: int, table: "pd.DataFrame") -> int:
     """Print the table or its path, and return the number of failed runs."""
     if options.as_json:
         print_json(json.loads(table.to_json(orient="records")))
     else:
-        echo(f"{runs} runs, written to {folder}")
+        echo(f"{run_count} runs, written to {folder}")
         _show_critical_noises(table)
     return int((table["failure"] != "").sum())
 

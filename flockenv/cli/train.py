@@ -106,7 +106,7 @@ def _train(
     from flockenv.training import ppo
 
     out = options.out
-    quiet, kept = options.shows_nothing, checkpoint_note(out)
+    quiet, kept = options.hides_progress, checkpoint_note(out)
     with progress("training", 1.0, quiet, ends=False, kept=kept) as advance:
         reported_share = 0.0
 

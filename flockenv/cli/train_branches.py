@@ -49,7 +49,7 @@ def train_branches(
         if (out / CHECKPOINT).exists():
             raise ParameterError(f"{out} holds a run already: resume it, or name another folder")
     try:
-        policy = train(training, out, command, _lines(printing.shows_nothing))
+        policy = train(training, out, command, _lines(printing.hides_progress))
     except KeyboardInterrupt:
         raise KeyboardInterrupt(checkpoint_note(out)) from None
     measurements = compare_with_laws(policy, training.parameters, flocks)
