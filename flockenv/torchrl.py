@@ -126,6 +126,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         self._make_specs()
 
     def _make_specs(self) -> None:
+        """Set the specs by which TorchRL knows shapes, types and bounds of all entries."""
         flocks, device = self.batch_size, self.device
         per_leader = torch.Size([*flocks, self.num_leaders])
 
@@ -223,6 +224,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         return TensorDict(entries, self.batch_size, device=self.device)
 
     def _state_space(self) -> gymnasium.spaces.Box:
+        """Return the space of one flock's entry ``state``."""
         if self._state == "features":
             return self._batch.flock_feature_space
         space = self._batch.state_space
@@ -233,6 +235,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         return gymnasium.spaces.Box(low, high, dtype=np.float32)
 
     def _present_state(self) -> NDArray[np.float32]:
+        """Return the entry ``state`` of all flocks."""
         if self._state == "features":
             return self._batch.core.flock_features(each_leader=False)
         states = self._batch.core.states()

@@ -21,11 +21,13 @@ if TYPE_CHECKING:
 
 
 def _picture_endings() -> list[str]:
+    """Return the endings of files that Matplotlib writes."""
     kinds = require("matplotlib.backend_bases", "plot").FigureCanvasBase.filetypes
     return [f".{kind}" for kind in kinds]
 
 
 def _output_endings() -> tuple[str, ...]:
+    """Return the endings of the files that `--out` writes."""
     from flockenv.tracks import EXPORTS
 
     return (".npz", *EXPORTS)

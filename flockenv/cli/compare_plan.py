@@ -179,6 +179,7 @@ def _case_policies(
 
 
 def _load(typed: TypedPolicy, pool: Pool, trust: bool) -> Steering:
+    """Read a policy, or those of a dictionary by leader."""
     if isinstance(typed, Mapping):
         return {leader: policy(text, pool, trust=trust) for leader, text in typed.items()}
     return policy(typed, pool, trust=trust)

@@ -101,8 +101,8 @@ def _value(text: str) -> object:
         table = read_toml(f"value = {text}", text)
     except ParameterError:
         is_list = text.startswith("[") and text.endswith("]")
-        words = [word.strip() for word in (text[1:-1] if is_list else text).split(",")]
-        is_words = all(map(str.isidentifier, words)) and (is_list or len(words) > 1)
-        return words if is_words else text
+        items = [word.strip() for word in (text[1:-1] if is_list else text).split(",")]
+        is_word_list = all(map(str.isidentifier, items)) and (is_list or len(items) > 1)
+        return items if is_word_list else text
     # A text of several lines could hold further keys.
     return table["value"] if table.keys() == {"value"} else text

@@ -19,32 +19,32 @@ def checkpoint_note(folder: Path) -> str:
 
 @contextmanager
 def progress(
-    what: str,
+    description: str,
     total: float,
     quiet: bool,
-    ends: bool = True,
-    kept: str = "Nothing of it is stored.",
+    interruptible: bool = True,
+    stored_note: str = "Nothing of it is stored.",
 ) -> Iterator[Callable[..., None]]:
     """Show a progress bar with the time left: on a terminal, and unless `quiet`.
 
-    Yields a function that advances the bar by an amount of work, and may change its text `what`.
-    `total` is the whole amount. If `ends`, that function raises KeyboardInterrupt after Ctrl-C. A
-    KeyboardInterrupt without a message gets the sentence `kept`, which tells the user how much of
-    the work is stored.
+    Yields a function that advances the bar by an amount of work, and may change its description.
+    `total` is the whole amount. If `interruptible`, that function raises KeyboardInterrupt after
+    Ctrl-C. A KeyboardInterrupt without a message gets the sentence `stored_note`, which tells the
+    user how much of the work is stored.
     """
     disable = quiet or not errors.is_terminal
     with Progress(console=errors, transient=True, disable=disable) as bar:
-        task = bar.add_task(what, total=total)
+        task = bar.add_task(description, total=total)
 
-        def advance(done: float = 1.0, what: str | None = None) -> None:
-            bar.update(task, advance=done, description=what)
-            if ends:
+        def advance(amount: float = 1.0, new_description: str | None = None) -> None:
+            bar.update(task, advance=amount, description=new_description)
+            if interruptible:
                 end_if_interrupted()
 
         try:
             yield advance
         except KeyboardInterrupt as interrupt:
-            raise KeyboardInterrupt(*(interrupt.args or (kept,))) from None
+            raise KeyboardInterrupt(*(interrupt.args or (stored_note,))) from None
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:

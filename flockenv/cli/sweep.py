@@ -77,10 +77,15 @@ def sweep(options: SweepOptions) -> None:
         _check_same(copy, spec)
     prepare(copy)
     write_text(copy, options.spec.read_text("utf-8"))
-    kept = f"The runs that were finished are stored in {folder}: the same command resumes."
+    stored_note = f"The runs that were finished are stored in {folder}: the same command resumes."
     total = sum(run.cost for run in runs)
-    bar = progress(f"{len(runs)} runs", total, options.hides_progress, ends=False, kept=kept)
-    with bar as advance:
+    with progress(
+        f"{len(runs)} runs",
+        total,
+        options.hides_progress,
+        interruptible=False,
+        stored_note=stored_note,
+    ) as advance:
 
         def finished(run: RunSpec) -> None:
             advance(run.cost)

@@ -106,8 +106,8 @@ def _train(
     from flockenv.training import ppo
 
     out = options.out
-    quiet, kept = options.hides_progress, checkpoint_note(out)
-    with progress("training", 1.0, quiet, ends=False, kept=kept) as advance:
+    quiet, note = options.hides_progress, checkpoint_note(out)
+    with progress("training", 1.0, quiet, interruptible=False, stored_note=note) as advance:
         reported_share = 0.0
 
         def report(state: "Progress") -> None:

@@ -134,11 +134,11 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
 
 def _command(user_settings: Mapping[str, Any]) -> str:
     """Return the command line that repeats this training."""
-    words = ["flockenv", "train", "--algorithm", "branches"]
+    arguments = ["flockenv", "train", "--algorithm", "branches"]
     for name, value in user_settings.items():
         if isinstance(value, dict):
             for option, option_value in value.items():
-                words += ["--set", f"{option}={option_value}"]
+                arguments += ["--set", f"{option}={option_value}"]
         else:
-            words += [option_of(name), str(value)]
-    return shlex.join(words)
+            arguments += [option_of(name), str(value)]
+    return shlex.join(arguments)

@@ -115,6 +115,7 @@ def _environment(options: Mapping[str, object]) -> dict[str, object]:
 
 
 def _evaluation_seeds(seeds: Iterable[int]) -> Sequence[int]:
+    """Return the seeds; refuse training seeds and repeated ones."""
     checked = seeds_of_episodes(seeds)
     check_evaluation_seeds(checked)
     if len(set(checked)) < len(checked):
@@ -125,6 +126,7 @@ def _evaluation_seeds(seeds: Iterable[int]) -> Sequence[int]:
 def _policies(
     policies: Mapping[str, PolicyLike | Mapping[str, PolicyLike]],
 ) -> dict[str, PolicyLike | Mapping[str, PolicyLike]]:
+    """Return a copy of the policies; refuse one that has the name of flocks without leaders."""
     checked = by_name(policies, "policies")
     if NO_LEADERS in checked:
         raise ParameterError(

@@ -84,6 +84,7 @@ class Episodes:
         return episodes
 
     def _batch(self, flocks: int) -> LeaderBatch:
+        """Return a batch of this many flocks, all with the number of leaders."""
         return LeaderBatch(self.flock, [self.n_leaders] * flocks, "disabled")
 
     def measure(self, progress: Progress = no_progress) -> dict[str, NDArray[Any]]:
@@ -167,8 +168,11 @@ def _decision_options(leaders: Leaders, options: Mapping[str, object]) -> dict[s
 
 
 def _check_action_mode(leaders: Leaders, options: Mapping[str, object]) -> None:
+    """Refuse an action mode for which one of the policies is not made."""
     mode = options.get("action_mode")
-    for assignment in leaders.assignments if mode is not None else ():
+    if mode is None:
+        return
+    for assignment in leaders.assignments:
         assignment.policy.check_action_mode(str(mode), "in this environment")
 
 

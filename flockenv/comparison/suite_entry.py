@@ -256,6 +256,7 @@ def _check_suite(values: Mapping[str, Any]) -> None:
 
 
 def _check_training_seeds(seeds: object) -> None:
+    """Refuse anything but the first and the last seed of a range of training seeds."""
     if not isinstance(seeds, list) or len(seeds) != 2:
         raise ParameterError(
             f"training_seeds = {short_repr(seeds)} is not accepted: the first and the last seed of "
@@ -274,6 +275,7 @@ def _levels(levels: object) -> Mapping[str, object]:
 
 
 def _checked_text(value: object, name: str) -> str:
+    """Return a printable text of limited length; refuse anything else."""
     if not isinstance(value, str) or not value.isprintable() or not 0 < len(value) <= _LONGEST_TEXT:
         raise ParameterError(
             f"{name} = {short_repr(value)} is not accepted: a text of at most {_LONGEST_TEXT} "
@@ -283,6 +285,7 @@ def _checked_text(value: object, name: str) -> str:
 
 
 def _checked_hours(value: object, name: str) -> float:
+    """Return finite hours of at least 0; refuse anything else."""
     hours = float(number(value, name))
     if not 0.0 <= hours < math.inf:
         raise ParameterError(f"{name} = {short_repr(value)} is not accepted: hours, at least 0")

@@ -60,6 +60,7 @@ def save_animation(
 
 
 def _gif(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
+    """Return the content of a GIF file."""
     image = require("PIL.Image", "render")
 
     def timed_pictures() -> Iterator[Any]:
@@ -78,6 +79,7 @@ def _gif(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
 
 
 def _video(frames: Iterator[NDArray[np.uint8]], fps: float) -> bytes:
+    """Return the content of an MP4 file."""
     ffmpeg = require("imageio_ffmpeg", "video")
     first = next(frames)
     with TemporaryDirectory() as folder:  # The encoder opens paths, not open files.

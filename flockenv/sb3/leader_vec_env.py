@@ -110,14 +110,15 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         settings = self._batch.settings
         self.num_flocks = num_flocks
         self.render_mode = render_mode
-        fps = self._batch.decisions_hz
+        fps = self._batch.decisions_hz  # There is a frame for each decision.
         self._render_mode = RenderMode(render_mode, render_size, fps, ("rgb_array",))
         self.observation_space: ObservationSpace = ObservationSpace(settings)
         self.action_space = leader_action_space(settings["rudder_levels"])
         self.state_space = self._batch.state_space
         self.flock_feature_space = self._batch.flock_feature_space
-        #: Meaning of actions, and decisions per second.
+        #: Meaning of actions.
         self.action_mode: str = settings["action_mode"]
+        #: Decisions per second.
         self.decisions_hz = fps
         self.slots = self._make_slots(leader_counts)
         #: Flock of each slot.
@@ -140,7 +141,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         """The registered environment that has the same options; None if there is none."""
         own_options = (self._batch.parameters(0), self._batch.settings, self._own_reward)
 
-        def are_own(options: Mapping[str, Any]) -> bool:
+        def has_same_options(options: Mapping[str, Any]) -> bool:
             parsed = EnvOptions.parse(options, takes_function=True)
             n_leaders = parsed.parameters.n_leaders
             if {*self._batch.leaders} != {n_leaders}:
@@ -148,7 +149,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             batch = LeaderBatch(parsed, [n_leaders], "disabled")
             return _equal((batch.parameters(0), batch.settings, parsed.own_reward), own_options)
 
-        return registered(are_own)
+        return registered(has_same_options)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
         """Seed the flocks at the next reset: flock i with ``seed + i``; None draws one."""

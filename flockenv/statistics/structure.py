@@ -46,6 +46,7 @@ def jam_sizes(parameters: FlockParameters, pose: ArrayLike) -> list[NDArray[np.i
 
 
 def _poses(pose: ArrayLike) -> NDArray[np.float64]:
+    """Return poses as an array, with rows of NaN for missing boats; refuse anything else."""
     poses = with_gaps(pose, "pose")
     if poses.ndim != 3:
         raise ParameterError(f"pose has shape {poses.shape}, expected (t, n, 3)")

@@ -73,8 +73,9 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
     is_event = np.diff(survival.probabilities, prepend=1.0) < 0.0
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)  # The logarithms of a share of 0 or 1.
-        ends = survival.confidence_interval(CONFIDENCE, method="log-log")
-    low, high = ends.low.probabilities[is_event], ends.high.probabilities[is_event]
+        interval = survival.confidence_interval(CONFIDENCE, method="log-log")
+    low = interval.low.probabilities[is_event]
+    high = interval.high.probabilities[is_event]
     times = with_gaps(times_s, "times_s")
     return Survival(
         np.asarray(survival.quantiles[is_event], np.float64),

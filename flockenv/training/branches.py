@@ -205,11 +205,11 @@ def train(
             training.advance()
             report(training.progress)
             if time.monotonic() - last_stored > _BETWEEN_CHECKPOINTS_S:
-                _store(training, folder)
+                _store_checkpoint(training, folder)
                 last_stored = time.monotonic()
             end_if_interrupted()
     finally:
-        _store(training, folder)
+        _store_checkpoint(training, folder)
     policy = training.policy(_provenance(training, command, time.process_time() - start))
     policy.save(folder / POLICY)
     points = zip(*training.curve.values(), strict=True)
@@ -266,12 +266,13 @@ def compare_with_laws(
     }
 
 
-def _store(training: BranchTraining, folder: Path) -> None:
+def _store_checkpoint(training: BranchTraining, folder: Path) -> None:
     with atomic_write(folder / CHECKPOINT) as file:
         file.write(training.to_bytes())
 
 
 def _provenance(training: BranchTraining, command: str, cpu_s: float) -> dict[str, str]:
+    """Return the texts that a policy's file holds about its training."""
     flock_hours = training.progress.flock_hours
     return {
         "command": command,

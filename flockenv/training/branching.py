@@ -101,9 +101,9 @@ class BranchingFlocks:
             observations, rewards, *_ = self.env.step(np.clip(leans(features), -1.0, 1.0))
             orders.append(rewards)
         drawn_members = (self._random.random(self.groups) * self.size).astype(int)
-        ends = self.env.snapshots()
+        snapshots = self.env.snapshots()
         self._snapshots = [
-            ends[group + self.groups * member] for group, member in enumerate(drawn_members)
+            snapshots[group + self.groups * member] for group, member in enumerate(drawn_members)
         ]
         self._branches_done += 1
         return np.array(orders)
@@ -127,4 +127,5 @@ class BranchingFlocks:
         self.env.reset(seed=self.size * seeds, options=options)
 
     def _target_of_flocks(self) -> list[str]:
+        """Return the target of each flock, from those of the groups."""
         return self.size * self._targets.tolist()

@@ -249,6 +249,7 @@ class _Checkpoints(BaseCallback):
 
 
 def _check_finite(model: BaseAlgorithm, folder: Path) -> None:
+    """Raise TrainingError for weights that are not finite."""
     if not all(bool(torch.isfinite(weights).all()) for weights in model.policy.parameters()):
         raise TrainingError(
             f"weights are not finite after {model.num_timesteps} samples: try a lower "
@@ -257,5 +258,6 @@ def _check_finite(model: BaseAlgorithm, folder: Path) -> None:
 
 
 def _checkpoint_note(folder: Path) -> str:
+    """Return the end of an error's message, which names the last checkpoint."""
     path = folder / CHECKPOINT
     return f"the last good checkpoint is {path}" if path.exists() else "there is no checkpoint yet"
