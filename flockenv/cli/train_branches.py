@@ -133,12 +133,15 @@ def _write(out: Path, training: BranchTraining, orders: dict[str, Any]) -> None:
 
 
 def _command(user_settings: Mapping[str, Any]) -> str:
-    """Return the command line that repeats this training."""
+    """Return the command line that starts a training with these settings."""
     arguments = ["flockenv", "train", "--algorithm", "branches"]
     for name, value in user_settings.items():
         if isinstance(value, dict):
             for option, option_value in value.items():
-                arguments += ["--set", f"{option}={option_value}"]
+                # TOML writes booleans in lower case.
+                is_bool = isinstance(option_value, bool)
+                text = str(option_value).lower() if is_bool else str(option_value)
+                arguments += ["--set", f"{option}={text}"]
         else:
             arguments += [option_of(name), str(value)]
     return shlex.join(arguments)

@@ -1,6 +1,7 @@
 """`flockenv train --algorithm branches` needs nothing but the package, and goes on where it was."""
 
 import json
+import shlex
 import signal
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from flockenv.cli import train_branches
+from flockenv.cli.parameters import changed_fields
 
 TINY = [
     *("--algorithm", "branches", "--pool", "narrow", "--n-boats", "6", "--n-leaders", "2"),
@@ -56,6 +58,15 @@ def test_it_needs_no_other_package_and_resumes_to_the_same_policy(cli, tmp_path:
         "flockenv train --algorithm branches --pool narrow --n-leaders 2 --flock-hours 0.07 "
         "--seed 3 --set pairs=2 --set branch_s=32 --set hold_s=8 --set trial_s=16 --set n_boats=6"
     )
+
+
+def test_the_stored_command_has_the_same_settings() -> None:
+    changes = ["leaders_reverse=false", "bw_s=0.3", "target=cw,ccw", "action_mode=rudder"]
+    settings = {"seed": 3, "environment": changed_fields(changes)}
+    words = shlex.split(train_branches._command(settings))
+    assert words[:6] == ["flockenv", "train", "--algorithm", "branches", "--seed", "3"]
+    assert words[6::2] == ["--set"] * 4
+    assert changed_fields(words[7::2]) == settings["environment"]
 
 
 def test_an_interrupt_says_that_resume_goes_on(
