@@ -55,19 +55,19 @@ Report = Callable[[Progress], object]
 
 
 def train(settings: TrainingSettings, folder: Path, report: Report = lambda progress: None) -> PPO:
-    """Train into an empty folder, and return the model.
+    """Train, write the files of the run into a folder, and return the model.
 
     The folder gets ``model.zip``, ``checkpoint.zip``, ``settings.toml``, ``0.monitor.csv`` with the
     order and overlaps of each flock's episodes, and stable-baselines3's log in ``log-0``. A resumed
-    training writes a further monitor file and log, whose names have its first sample's number
-    instead of 0.
+    training adds a monitor file and a log, whose names have the number of samples before it instead
+    of 0.
 
     Parameters
     ----------
     settings
         Settings of the training.
     folder
-        Where to write.
+        The folder; it must hold no run.
     report
         Called before each rollout and at the end.
 
