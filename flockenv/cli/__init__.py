@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _app(imported: Collection[str]) -> typer.Typer:
-    """Return the command line. It imports these commands; of the others it has a line of help."""
+    """Return the command line with these commands imported; the others only have help lines."""
     app = typer.Typer(
         no_args_is_help=True,
         rich_markup_mode="markdown",

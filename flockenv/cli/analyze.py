@@ -105,7 +105,7 @@ def _figure(recording: Recording) -> "Figure":
 
 
 def _draw_frame(recording: Recording, axes: "Axes") -> None:
-    """Draw the boats of the first frame with their names, for a comparison with the video."""
+    """Draw the first frame that has a boat, with names, for a comparison with the video."""
     parameters, present = recording.parameters, ~np.isnan(recording.pose[..., 0])
     first_frame = int(present.any(axis=1).argmax())
     boats = np.flatnonzero(present[first_frame])

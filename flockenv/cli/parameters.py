@@ -14,7 +14,7 @@ from flockenv.parameters import FlockParameters
 
 @dataclass(frozen=True, kw_only=True)
 class Flocks:
-    """Options for the parameters of a flock."""
+    """Options for the parameters of flocks."""
 
     #: The fields that have options of their own.
     named: ClassVar[tuple[str, ...]] = ("n_boats",)
@@ -58,7 +58,7 @@ class Flocks:
 
 @dataclass(frozen=True, kw_only=True)
 class OneFlock(Flocks):
-    """The parameters of one flock."""
+    """Options for the parameters of a single flock."""
 
     named: ClassVar[tuple[str, ...]] = ("n_boats", "pool", "n_leaders", "bw_s")
 

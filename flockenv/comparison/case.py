@@ -74,7 +74,7 @@ class Case:
         return runs
 
     def described(self) -> dict[str, object]:
-        """Return the fields that `run.toml` holds: all but the name and the parameters."""
+        """Return the entries of `run.toml`: leaders, seeds, length, options of the environment."""
         return {
             "leaders": list(self.leaders),
             "seeds": {"first": self.seeds[0], "number": len(self.seeds)},

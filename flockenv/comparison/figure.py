@@ -19,7 +19,7 @@ COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 """The color that a policy has in every figure."""
 
 _OKABE_ITO = [OKABE_ITO[name] for name in ("vermilion", "purple", "sky blue", "blue")]
-# The last two are neither Okabe and Ito's nor those of laws.
+# The last two are not of Okabe and Ito's palette, and no law has them.
 OWN_COLORS = (*_OKABE_ITO, "#999933", "#ddcc77")
 """Colors of other policies, in turn."""
 

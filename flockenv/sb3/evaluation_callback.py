@@ -73,7 +73,7 @@ class FlockEvalCallback(EvalCallback):
 
     def _init_callback(self) -> None:
         with warnings.catch_warnings():
-            # The types differ by `PerFlock` on purpose.
+            # `PerFlock` makes the types differ, on purpose.
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
         as_trained(self.model, self.eval_env)  # It raises errors before the training.

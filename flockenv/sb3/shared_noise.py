@@ -145,7 +145,7 @@ class SharedWeightNoiseDistribution(StateDependentNoiseDistribution):
 
 
 class SharedNoisePolicy(ActorCriticPolicy):
-    """An actor-critic policy that explores with one noise, held, for all leaders of a flock.
+    """An actor-critic policy that explores with one held noise for all leaders of a flock.
 
     ``PPO(SharedNoisePolicy, venv, policy_kwargs=shared_noise(venv, hold_s=24.0))``
 

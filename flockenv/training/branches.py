@@ -143,7 +143,7 @@ class BranchTraining:
     def from_bytes(cls, state: bytes, *, flock_hours: float | None = None) -> Self:
         """Return a stored training, which continues bit for bit.
 
-        `flock_hours` changes when it ends.
+        It ends after its own flock-hours, or after `flock_hours` if they are given.
 
         Raises FlockError for a state that is damaged, has another format, or is not finite.
         """

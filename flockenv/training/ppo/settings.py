@@ -116,7 +116,7 @@ class TrainingSettings:
         return EnvOptions.parse({**self.flocks(), **_PHYSICS, **options}).parameters
 
     def venv(self) -> LeaderVecEnv:
-        """Return the environment.
+        """Return the environment of the training.
 
         Raises
         ------
