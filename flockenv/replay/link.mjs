@@ -3,8 +3,8 @@
 import { ignoredPart } from "./shared/link.mjs";
 
 /**
- * The request in a fragment: `time` in s and `speed`, each null if it is missing, and `ignored`, a sentence
- * for each part that cannot be followed.
+ * Reads a fragment. Returns `time` in s and `speed`, each null if it is missing, and `ignored`, a sentence for
+ * each part that cannot be followed.
  */
 export function readLink(fragment, { start, end, speeds }) {
   const requested = { time: null, speed: null, ignored: [] };

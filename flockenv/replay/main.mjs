@@ -5,8 +5,8 @@ import { Player } from "./player.mjs";
 import { Run } from "./shared/run.mjs";
 
 async function start() {
-  const { runs: described, quantities, moment } = JSON.parse(document.getElementById("data").textContent);
-  const runs = await Promise.all(described.map(async (run) => new Run(run, await unpack(run.data))));
+  const { runs: descriptions, quantities, moment } = JSON.parse(document.getElementById("data").textContent);
+  const runs = await Promise.all(descriptions.map(async (description) => new Run(description, await unpack(description.data))));
   window.player = new Player(runs, quantities, moment.time_s);
   const thinned = Math.max(...runs.map((run) => run.every));
   document.getElementById("note").textContent =

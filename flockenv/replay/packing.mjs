@@ -1,6 +1,6 @@
-// Reverses packing.py: base64, gzip, planes of bytes, folded signs, differences along time.
+// Reverses packing.py: base64, gzip, planes of bytes, zigzag encoding, differences along time.
 
-/** One series: `values[channel * length + sample] * quantum`. */
+/** One series: its number is `values[channel * length + sample] * quantum`. */
 export class Column {
   constructor(header, values) {
     this.length = header.length;
@@ -25,7 +25,7 @@ export async function unpack(text) {
     const count = header.length * header.channels;
     const planes = bytes.subarray(offset, offset + count * header.planes);
     offset += planes.length;
-    columns.set(header.name, new Column(header, unfolded(planes, count, header)));
+    columns.set(header.name, new Column(header, decoded(planes, count, header)));
   }
   return columns;
 }
@@ -35,14 +35,15 @@ async function gunzip(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-function unfolded(planes, count, header) {
+/** Decodes planes of bytes to `count` numbers in quanta, channel after channel. */
+function decoded(planes, count, header) {
   const values = new Int32Array(count);
   for (let k = 0; k < count; k += 1) {
-    let folded = 0;
+    let zigzag = 0;
     for (let plane = 0; plane < header.planes; plane += 1) {
-      folded |= planes[plane * count + k] << (8 * plane);
+      zigzag |= planes[plane * count + k] << (8 * plane);
     }
-    values[k] = (folded >>> 1) ^ -(folded & 1);
+    values[k] = (zigzag >>> 1) ^ -(zigzag & 1);
   }
   for (let round = 0; round < header.differences; round += 1) {
     for (let start = 0; start < count; start += header.length) {

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 _DIFFERENCES = 2
-_LARGEST = 2**28
+# Largest number in quanta: with both differences and the sign it fits 32 bits.
+_MOST_QUANTA = 2**28
 
 
 class Packer:
@@ -37,42 +38,42 @@ class Packer:
             Step to which values are rounded; numbers too large for it get a coarser one.
         """
         largest = float(np.abs(values).max(initial=0.0))
-        quantum = max(quantum, largest / _LARGEST)
-        steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        quantum = max(quantum, largest / _MOST_QUANTA)
+        quanta = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
         for _ in range(_DIFFERENCES):
-            steps = np.diff(steps, axis=0, prepend=np.zeros_like(steps[:1]))
-        self._append(name, steps, quantum, _DIFFERENCES)
+            quanta = np.diff(quanta, axis=0, prepend=np.zeros_like(quanta[:1]))
+        self._append(name, quanta, quantum, _DIFFERENCES)
 
     def add_plain(self, name: str, values: NDArray[Any], quantum: float = 1.0) -> None:
-        """Add numbers, up to 2^28 quanta, that are independent of the previous ones."""
-        steps = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
-        self._append(name, steps, quantum, 0)
+        """Add a series that does not change smoothly; its numbers must be at most 2^28 quanta."""
+        quanta = np.rint(np.asarray(values, np.float64) / quantum).astype(np.int64)
+        self._append(name, quanta, quantum, 0)
 
     def text(self) -> str:
-        """Return all of it as base64."""
+        """Return all series as base64."""
         header = json.dumps(self._columns, separators=(",", ":")).encode("ascii")
         content = len(header).to_bytes(4, "little") + header + b"".join(self._bytes)
-        # There is no time in the header, so pages of the same recording have the same bytes.
+        # The header of gzip holds no time, so pages of the same recording have the same bytes.
         packed = zlib.compressobj(level=6, wbits=31)
         return base64.b64encode(packed.compress(content) + packed.flush()).decode("ascii")
 
     def _append(
-        self, name: str, steps: NDArray[np.int64], quantum: float, differences: int
+        self, name: str, quanta: NDArray[np.int64], quantum: float, differences: int
     ) -> None:
-        channels = math.prod(steps.shape[1:])
-        by_channel = np.ascontiguousarray(steps.reshape(len(steps), channels).T).reshape(-1)
-        # Small numbers of either sign become small nonnegative numbers.
-        folded = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
-        planes = np.ascontiguousarray(folded.view(np.uint8).reshape(-1, 4).T)
-        used = max((plane + 1 for plane in range(4) if planes[plane].any()), default=0)
-        self._bytes.append(planes[:used].tobytes())
+        channels = math.prod(quanta.shape[1:])
+        by_channel = np.ascontiguousarray(quanta.reshape(len(quanta), channels).T).reshape(-1)
+        # Zigzag encoding: small numbers of either sign become small nonnegative numbers.
+        zigzag = ((by_channel << 1) ^ (by_channel >> 63)).astype("<u4")
+        planes = np.ascontiguousarray(zigzag.view(np.uint8).reshape(-1, 4).T)
+        n_planes = max((plane + 1 for plane in range(4) if planes[plane].any()), default=0)
+        self._bytes.append(planes[:n_planes].tobytes())
         self._columns.append(
             {
                 "name": name,
-                "length": len(steps),
+                "length": len(quanta),
                 "channels": channels,
                 "quantum": quantum,
                 "differences": differences,
-                "planes": used,
+                "planes": n_planes,
             }
         )

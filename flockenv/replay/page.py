@@ -28,9 +28,9 @@ from flockenv.replay.quantities import decisive_minute, series_of, shown_quantit
 from flockenv.replay.template import as_script_content, digest, filled, joined
 
 MOST_BYTES = 10_000_000
-"""Largest size of a page. Of longer runs a page shows fewer samples per second."""
+"""Largest size of a page in bytes. A page of a longer run shows fewer samples per second."""
 
-# In the order of their imports; on the page they are one script.
+# In the order of their imports, since the page joins them into one script.
 _SCRIPTS = (
     "packing.mjs",
     "shared/words.mjs",
@@ -45,12 +45,15 @@ _SCRIPTS = (
     "player.mjs",
     "main.mjs",
 )
-# Largest size of a page without its runs.
+# Largest size of a page without its runs, in bytes.
 _SCRIPT_BYTES = 100_000
+# The page shows every n-th sample, for the first of these n with which it is small enough.
 _THINNING = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _MOST_RUNS = 2
+# More samples than this per run never fit.
 _MOST_SAMPLES = 400_000
-# Steps of rounding, finer than a page shows: in cm, rad, cm/s, rad/s, cm/s².
+# Steps of rounding, finer than a page shows, in cm, rad, cm/s, rad/s and cm/s².
+# Rudder commands have no unit.
 _POSITION, _ANGLE, _SPEED, _TURNING, _FORCE = 0.01, 0.001, 0.05, 0.005, 0.1
 _RUDDER = 0.002
 
@@ -107,15 +110,17 @@ def write_replay(
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in .html or .htm")
     if isinstance(recordings, Recording):
         recordings = {Path(path).stem: recordings}
-    given: object = recordings
-    if not isinstance(given, Mapping):
-        kind = type(given).__name__
+    argument: object = recordings
+    if not isinstance(argument, Mapping):
+        kind = type(argument).__name__
         raise ParameterError(f"a {kind} is not accepted: a recording, or recordings by their names")
     if not 1 <= len(recordings) <= _MOST_RUNS:
         raise ParameterError(f"{len(recordings)} recordings are not accepted: 1 or {_MOST_RUNS}")
-    for name, recording in given.items():
+    for name, recording in argument.items():
         if not isinstance(name, str) or not isinstance(recording, Recording):
-            raise ParameterError(f"{short_repr(given)} is not accepted: recordings by their names")
+            raise ParameterError(
+                f"{short_repr(argument)} is not accepted: recordings by their names"
+            )
         if len(recording) == 0 or not recording.has_poses:
             raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     page, every = _fitting_page(recordings)
@@ -125,9 +130,9 @@ def write_replay(
 
 
 def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
-    """Return a page of at most `MOST_BYTES`, and which of the samples it shows."""
+    """Return a page of at most `MOST_BYTES`, and the n of the n-th samples that it shows."""
     longest = max(len(recording) for recording in recordings.values())
-    # Sparser samples compress no better, so pages that cannot fit are not packed.
+    # Fewer samples take no fewer bytes each, so thinnings that cannot fit are skipped.
     least_every = max(1.0, longest / _MOST_SAMPLES)
     for every in _THINNING:
         if every < least_every:
@@ -143,14 +148,14 @@ def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
 
 
 def _page(recordings: Mapping[str, Recording], every: int) -> str:
-    time_s, words = decisive_minute(list(recordings.values()))
+    time_s, description = decisive_minute(list(recordings.values()))
     quantities = shown_quantities(list(recordings.values()))
     data = {
         "runs": [
             _run(name, recording, every, quantities) for name, recording in recordings.items()
         ],
         "quantities": quantities,
-        "moment": {"time_s": time_s, "words": words},
+        "moment": {"time_s": time_s, "words": description},
     }
     style, script = _core.STYLE_SHEET + _read("shared/page.css"), joined(map(_read, _SCRIPTS))
     security = (
@@ -179,10 +184,11 @@ def _read(name: str) -> str:
 def _run(
     name: str, recording: Recording, every: int, quantities: list[dict[str, Any]]
 ) -> dict[str, Any]:
+    """Return a run's settings and packed series, as `Run` of run.mjs takes them."""
     parameters = recording.parameters
     outer_cm, inner_cm = _core.pool_radii_cm(parameters.pool)
     target = parameters.common_target
-    described = {
+    description = {
         "name": name,
         "seed": str(recording.seed),
         "law": _law(recording),
@@ -206,13 +212,13 @@ def _run(
         "every": every,
         "data": _series(recording, every, quantities),
     }
-    if parameters.n_leaders > 0 and target is None:  # The leaders head against each other.
-        described["targets"] = list(parameters.target)
-    return described
+    if parameters.n_leaders > 0 and target is None:  # Leaders have different targets.
+        description["targets"] = list(parameters.target)
+    return description
 
 
 def _law(recording: Recording) -> str | None:
-    """Return the name of the law that led, if it has a color; None for other policies."""
+    """Return the name of the leaders' law, which gives the run its color; None for no law."""
     pool = recording.parameters.pool
     for name in LAWS:
         with suppress(ParameterError):  # Some laws exist only in some pools.
@@ -222,6 +228,7 @@ def _law(recording: Recording) -> str | None:
 
 
 def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) -> str:
+    """Return the packed series of a run, of every `every`-th sample."""
     shown = slice(None, None, every)
     packer = Packer()
     packer.add("time_s", recording.time_s[shown], 0.0005)
@@ -247,7 +254,7 @@ def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) 
     for quantity in quantities:
         values = series_of(recording, quantity["key"])[shown]
         if np.isfinite(values).all():
-            # A twentieth of the last shown digit.
+            # Rounded to a twentieth of the last digit that is shown.
             packer.add(quantity["key"], values, 10.0 ** -quantity["decimals"] / 20)
     if recording.contacts is not None:
         _add_contacts(packer, recording, recording.contacts, every)
@@ -259,27 +266,29 @@ def _has_phases(recording: Recording) -> bool:
 
 
 def _without_gaps(pose: NDArray[Any]) -> NDArray[Any]:
-    """Return poses in which a missing boat keeps its last position, or has its first one."""
+    """Return poses in which a missing boat has its last known pose, or else its first one.
+
+    A boat that is never present has zeros.
+    """
     last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
     last = np.maximum.accumulate(last, axis=0)
     first = np.isfinite(pose[..., 0]).argmax(axis=0)
-    held: NDArray[Any] = np.take_along_axis(
-        pose, np.where(last < 0, first, last)[..., None], axis=0
-    )
-    held[np.isnan(held)] = 0.0
-    return held
+    known = np.where(last < 0, first, last)
+    filled_pose: NDArray[Any] = np.take_along_axis(pose, known[..., None], axis=0)
+    filled_pose[np.isnan(filled_pose)] = 0.0
+    return filled_pose
 
 
 def _add_contacts(
     packer: Packer, recording: Recording, contacts: ContactSeries, every: int
 ) -> None:
     sample = np.repeat(np.arange(len(recording)), contacts.count)
-    chosen = sample % every == 0
-    normal = contacts.normal[chosen]
-    # With the normal, one number, the coordinate along the core, gives the point on the hull.
+    is_shown = sample % every == 0
+    normal = contacts.normal[is_shown]
+    # The normal and the coordinate along the core give the point on the hull.
     packer.add_plain("contact_count", contacts.count[::every])
-    packer.add_plain("contact_i", contacts.i[chosen])
-    packer.add_plain("contact_j", contacts.j[chosen])
-    packer.add_plain("contact_along_cm", contacts.along_cm[chosen], 0.1)
+    packer.add_plain("contact_i", contacts.i[is_shown])
+    packer.add_plain("contact_j", contacts.j[is_shown])
+    packer.add_plain("contact_along_cm", contacts.along_cm[is_shown], 0.1)
     packer.add_plain("contact_angle", np.arctan2(normal[:, 1], normal[:, 0]), 0.02)
-    packer.add_plain("contact_force", np.minimum(contacts.force[chosen], 1e6), _FORCE)
+    packer.add_plain("contact_force", np.minimum(contacts.force[is_shown], 1e6), _FORCE)

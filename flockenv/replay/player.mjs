@@ -1,4 +1,4 @@
-// The clock of the page: playing, scrubbing, keys, the link, and what is shown.
+// The page: playing, scrubbing, keys, the link, and drawing.
 
 import { Chart, legendOf } from "./shared/chart.mjs";
 import { forceScale } from "./shared/forces.mjs";
@@ -12,17 +12,17 @@ import { caption, fixed } from "./shared/words.mjs";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32, 64];
 const FIRST_SPEED = 8;
-const FAR = 10;
-const MINUTE = 60;
+/** Longer steps of the keys, in s. */
+const [LONG_STEP, MINUTE] = [10, 60];
 
-/** Says which chart to watch. */
+/** A sentence on the quantity to watch in these runs, and what its values mean. */
 function watchWords(runs) {
-  const towards = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
+  const rotation = "rotation is 1 if all circle clockwise, and −1 if all circle counter-clockwise";
   if (runs.some(({ target }) => target !== null)) {
     return "Watch whether the boats come to circle with the leaders, which have a ring: the signed order is 1 if all do, and " +
       "−1 if all circle the other way.";
   }
-  return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the boats follow" : "whether the boats come to circle together"}: ${towards}.`;
+  return `Watch ${runs.some(({ leaders }) => leaders > 0) ? "which leaders the boats follow" : "whether the boats come to circle together"}: ${rotation}.`;
 }
 
 export class Player {
@@ -30,7 +30,8 @@ export class Player {
   pinned = null;
   hovered = null;
   palette = colors();
-  requested = undefined;
+  /** The animation frame that will draw the page; undefined if none is requested. */
+  frame = undefined;
   #transport = new Transport(document.getElementById("play"), (passed) => this.#tick(passed));
   #link = new LinkWriter(() => linkTo(this.time, this.speed));
 
@@ -72,10 +73,12 @@ export class Player {
     return Number(this.controls.speed.value);
   }
 
+  /** The boat whose numbers are shown: the one under the pointer, or else the pinned one. */
   get boat() {
     return this.hovered ?? this.pinned;
   }
 
+  /** Fills the choices, the key of colors and the table of parameters. */
   #fill() {
     const { speed, quantity, scrub, forces, boat } = this.controls;
     speed.append(...SPEEDS.map((factor) => new Option(`${factor} ×`, factor)));
@@ -133,17 +136,17 @@ export class Player {
     if (event.key === " " && event.target.closest("button, input[type=checkbox]")) {
       return;
     }
-    const named = {
+    const namedKeys = {
       " ": () => this.toggle(),
-      ArrowLeft: () => (event.shiftKey ? this.seek(this.time - FAR) : this.step(-1)),
-      ArrowRight: () => (event.shiftKey ? this.seek(this.time + FAR) : this.step(1)),
+      ArrowLeft: () => (event.shiftKey ? this.seek(this.time - LONG_STEP) : this.step(-1)),
+      ArrowRight: () => (event.shiftKey ? this.seek(this.time + LONG_STEP) : this.step(1)),
       PageUp: () => this.seek(this.time + MINUTE),
       PageDown: () => this.seek(this.time - MINUTE),
       Home: () => this.seek(this.start),
       End: () => this.seek(this.end),
       Escape: () => this.pin(null),
     };
-    const characters = {
+    const letterKeys = {
       "+": () => this.#choose("speed", 1),
       "-": () => this.#choose("speed", -1),
       t: () => this.#choose("trails", 1, true),
@@ -153,18 +156,19 @@ export class Player {
       "[": () => this.#pinNext(-1),
       "?": () => keys.showModal(),
     };
-    const action = named[event.key] ?? (letters.checked ? characters[event.key.toLowerCase()] : undefined);
+    const action = namedKeys[event.key] ?? (letters.checked ? letterKeys[event.key.toLowerCase()] : undefined);
     if (action) {
       event.preventDefault();
       action();
     }
   }
 
-  #choose(name, by, around = false) {
+  /** Moves a select by some options; `wraps`: whether the first option follows the last. */
+  #choose(name, by, wraps = false) {
     const select = this.controls[name];
     const count = select.options.length;
     const next = select.selectedIndex + by;
-    select.selectedIndex = around ? next % count : Math.min(Math.max(next, 0), count - 1);
+    select.selectedIndex = wraps ? next % count : Math.min(Math.max(next, 0), count - 1);
     select.dispatchEvent(new Event("change"));
   }
 
@@ -191,7 +195,7 @@ export class Player {
   toggle() {
     if (this.playing) {
       this.#transport.pause();
-      this.time = this.#sampled(this.time);
+      this.time = this.#sampleTime(this.time);
       this.#link.write();
     } else {
       if (this.time >= this.end) {
@@ -202,30 +206,31 @@ export class Player {
     this.show();
   }
 
-  /** The last time, up to this one, at which a run has a sample. */
-  #sampled(time) {
-    return Math.max(this.start, ...this.runs.map((run) => run.time[run.sampleAt(time)]).filter((sampled) => sampled <= time + 1e-9));
+  /** The time of the last sample of any run up to this time. */
+  #sampleTime(time) {
+    const times = this.runs.map((run) => run.time[run.sampleAt(time)]);
+    return Math.max(this.start, ...times.filter((sampled) => sampled <= time + 1e-9));
   }
 
   /** Steps to the next or the previous sample of any run. */
   step(by) {
     this.#transport.pause();
-    const next = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
-    const later = this.runs.map(next).filter((time) => time > this.time + 1e-9);
+    const nextTime = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
+    const later = this.runs.map(nextTime).filter((time) => time > this.time + 1e-9);
     this.seek(by < 0 ? this.time - 1e-6 : Math.min(this.end, ...later));
   }
 
-  /** Goes to the last sample up to a time, so that picture and numbers belong together. */
+  /** Goes to the last sample up to a time, so that the numbers belong to the poses that are drawn. */
   seek(time) {
-    this.time = this.#sampled(Math.min(Math.max(time, this.start), this.end));
-    this.#transport.rest();
+    this.time = this.#sampleTime(Math.min(Math.max(time, this.start), this.end));
+    this.#transport.restartClock();
     this.#link.write();
     this.request();
   }
 
-  /** Shows the page once before the next frame, however often it is requested. */
+  /** Draws the page at the next animation frame; further requests before it add nothing. */
   request() {
-    this.requested ??= requestAnimationFrame(() => this.show());
+    this.frame ??= requestAnimationFrame(() => this.show());
   }
 
   #tick(passed) {
@@ -250,8 +255,8 @@ export class Player {
   }
 
   show() {
-    cancelAnimationFrame(this.requested);
-    this.requested = undefined;
+    cancelAnimationFrame(this.frame);
+    this.frame = undefined;
     const { scrub, clock, trails, forces, quantity } = this.controls;
     document.body.dataset.colors = this.controls.colors.value;
     const options = {
@@ -270,7 +275,7 @@ export class Player {
     }
     scrub.value = this.time;
     scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
-    clock.textContent = `${fixed(this.#sampled(this.time), 1)} s of ${fixed(this.end, 1)} s`;
+    clock.textContent = `${fixed(this.#sampleTime(this.time), 1)} s of ${fixed(this.end, 1)} s`;
     scrub.setAttribute("aria-valuetext", clock.textContent);
     this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time, true));
   }

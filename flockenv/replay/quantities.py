@@ -11,12 +11,13 @@ from flockenv.order import ORDER, QUANTITIES
 from flockenv.recording import Recording
 
 _MINUTE_S = 60.0
+# Runs are compared at times this far apart.
 _STEP_S = 0.5
-_SMALL = str.maketrans({"o": "ₒ", "v": "ᵥ", "n": "ₙ"})
+_SUBSCRIPTS = str.maketrans({"o": "ₒ", "v": "ᵥ", "n": "ₙ"})
 
 
 def series_of(recording: Recording, key: str) -> NDArray[np.float64]:
-    """Return a quantity of a recording, shape (t,); a signed one is towards its target."""
+    """Return a quantity of a recording, shape (t,); signed order is towards its target."""
     return recording.order.series(key, recording.parameters.target)
 
 
@@ -31,19 +32,27 @@ def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
     has_target = any(recording.parameters.common_target is not None for recording in recordings)
     keys = [*(["signed_order"] if has_target else []), "rotation", *ORDER]
     table = {quantity.name: quantity for quantity in QUANTITIES}
-    found = []
+    charted = []
     for key in keys:
         quantity = table[key]
-        values = [series_of(recording, key) for recording in recordings]
-        limits = quantity.range or [np.abs(own).max() for own in values if np.isfinite(own).all()]
+        series = [series_of(recording, key) for recording in recordings]
+        finite = [values for values in series if np.isfinite(values).all()]
+        limits = quantity.range or [np.abs(values).max() for values in finite]
         largest = max(map(abs, limits), default=1.0)
         # Two or three significant digits of the largest number, at most 6 decimals.
         decimals = 2 - math.floor(math.log10(largest) + 0.3) if largest > 0 else 2
         name, _, index = quantity.symbol.partition("_")
-        symbol = f" {name}{index.translate(_SMALL)}" if index else ""
-        shown = {"key": key, "words": f"{quantity.label}{symbol}", "unit": quantity.unit}
-        found.append({**shown, "range": quantity.range, "decimals": min(max(decimals, 0), 6)})
-    return found
+        symbol = f" {name}{index.translate(_SUBSCRIPTS)}" if index else ""
+        charted.append(
+            {
+                "key": key,
+                "words": f"{quantity.label}{symbol}",
+                "unit": quantity.unit,
+                "range": quantity.range,
+                "decimals": min(max(decimals, 0), 6),
+            }
+        )
+    return charted
 
 
 def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
@@ -55,25 +64,28 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     in common, or a sample has no signed order, the result is the time of the first sample and an
     empty text.
     """
-    first = max(float(recording.time_s[0]) for recording in recordings)
-    end = min(float(recording.time_s[-1]) for recording in recordings)
+    common_start = max(float(recording.time_s[0]) for recording in recordings)
+    common_end = min(float(recording.time_s[-1]) for recording in recordings)
     signed = [series_of(recording, "signed_order") for recording in recordings]
-    if end - first < _MINUTE_S or not all(np.isfinite(series).all() for series in signed):
+    if common_end - common_start < _MINUTE_S or not all(
+        np.isfinite(series).all() for series in signed
+    ):
         return min(float(recording.time_s[0]) for recording in recordings), ""
-    steps = np.arange(first, end - _STEP_S / 2, _STEP_S)
+    times_s = np.arange(common_start, common_end - _STEP_S / 2, _STEP_S)
     series = [
-        np.interp(steps, recording.time_s, s)
-        for recording, s in zip(recordings, signed, strict=True)
+        np.interp(times_s, recording.time_s, values)
+        for recording, values in zip(recordings, signed, strict=True)
     ]
     minute = round(_MINUTE_S / _STEP_S)
     half = np.full(minute // 2, 1.0)
     if len(series) == 1:
-        weights, change = np.concatenate([half, -half]), series[0]  # Convolved backwards.
+        # np.convolve reverses the weights.
+        weights, compared = np.concatenate([half, -half]), series[0]
         meaning = "in which order changes most"
     else:
-        weights, change = np.concatenate([half, half]), series[0] - series[1]
+        weights, compared = np.concatenate([half, half]), series[0] - series[1]
         meaning = "in which the runs differ most"
-    # Rounded, so that the first of equal minutes is found.
-    found = np.abs(np.convolve(change, weights, "valid").round(9)).argmax()
-    start = float(steps[found])
+    # Rounded, so that of minutes that differ only by rounding the first is found.
+    index = np.abs(np.convolve(compared, weights, "valid").round(9)).argmax()
+    start = float(times_s[index])
     return start, f"The page opens at {start:g} s, the start of the minute {meaning}."

@@ -9,23 +9,23 @@ const EDGE = { left: 40, right: 10, top: 8, bottom: 20 };
 export class Chart {
   /** `reach` in s shows that much before and after the cursor; null shows the whole run. */
   constructor(canvas, runs, reach, seek) {
-    Object.assign(this, { canvas, runs, reach, cached: null });
+    Object.assign(this, { canvas, runs, reach, cached: null, draggedRange: null });
     const go = (event) => seek(this.timeAt(event.clientX - canvas.getBoundingClientRect().left));
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
-      this.held = [this.from, this.to];
+      this.draggedRange = [this.from, this.to];
       go(event);
     });
     canvas.addEventListener("pointermove", (event) => canvas.hasPointerCapture(event.pointerId) && go(event));
-    canvas.addEventListener("lostpointercapture", () => { this.held = null; });
+    canvas.addEventListener("lostpointercapture", () => { this.draggedRange = null; });
   }
 
-  /** Start and end of the charted times: around the cursor, or all. */
-  #choose(time) {
+  /** Sets the charted times, `from` and `to`: as at the start of a drag, around the cursor, or the whole run. */
+  #setTimes(time) {
     const [start, end] = span(this.runs);
     [this.from, this.to] = [start, Math.max(end, start + 1e-3)];
-    if (this.held) {
-      [this.from, this.to] = this.held;
+    if (this.draggedRange) {
+      [this.from, this.to] = this.draggedRange;
     } else if (this.reach !== null && end - start > 2 * this.reach) {
       this.from = Math.min(Math.max(time - this.reach, start), end - 2 * this.reach);
       this.to = this.from + 2 * this.reach;
@@ -33,13 +33,13 @@ export class Chart {
   }
 
   timeAt(x) {
-    const share = (x - EDGE.left) / (this.width - EDGE.left - EDGE.right);
-    return this.from + share * (this.to - this.from);
+    const fraction = (x - EDGE.left) / (this.width - EDGE.left - EDGE.right);
+    return this.from + fraction * (this.to - this.from);
   }
 
   xOf(time) {
-    const share = (time - this.from) / (this.to - this.from);
-    return EDGE.left + share * (this.width - EDGE.left - EDGE.right);
+    const fraction = (time - this.from) / (this.to - this.from);
+    return EDGE.left + fraction * (this.width - EDGE.left - EDGE.right);
   }
 
   yOf(value) {
@@ -53,11 +53,11 @@ export class Chart {
     if (this.width === 0) {
       return;
     }
-    this.#choose(time);
+    this.#setTimes(time);
     this.range = quantity.range ?? valueRange(this.runs, quantity.key);
     const context = fitted(this.canvas);
     if (this.reach === null) {
-      this.#drawKept(context, quantity, palette);
+      this.#drawCached(context, quantity, palette);
     } else {
       this.#drawAll(context, quantity, palette);
     }
@@ -71,14 +71,14 @@ export class Chart {
   }
 
   /** Draws the whole run from a cached picture, which is drawn again only if the size, the series or the colors change. */
-  #drawKept(context, quantity, palette) {
+  #drawCached(context, quantity, palette) {
     const key = JSON.stringify([this.canvas.width, this.canvas.height, quantity.key, palette]);
     if (this.cached?.key !== key) {
       const picture = document.createElement("canvas");
       [picture.width, picture.height] = [this.canvas.width, this.canvas.height];
-      const other = picture.getContext("2d");
-      other.setTransform(context.getTransform());
-      this.#drawAll(other, quantity, palette);
+      const pictureContext = picture.getContext("2d");
+      pictureContext.setTransform(context.getTransform());
+      this.#drawAll(pictureContext, quantity, palette);
       this.cached = { key, picture };
     }
     context.clearRect(0, 0, this.width, this.height);
@@ -101,6 +101,7 @@ export class Chart {
     }
   }
 
+  /** Shades the analysis windows of the first run. */
   #windows(context, palette) {
     const run = this.runs[0];
     context.fillStyle = palette.window;
@@ -181,7 +182,7 @@ function valueRange(runs, key) {
   return ranges.get(key);
 }
 
-/** Round numbers between two numbers, about `count` of them. */
+/** About `count` round numbers from `low` to `high`. */
 export function ticks(low, high, count, roundStep = roundNumber) {
   const step = roundStep((high - low) / count);
   const first = Math.ceil(low / step - 1e-9);
@@ -189,7 +190,7 @@ export function ticks(low, high, count, roundStep = roundNumber) {
   return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
 }
 
-/** The next round number of seconds, minutes or hours. */
+/** The least round number of seconds, minutes or hours that is at least `least` seconds. */
 export function timeStep(least) {
   const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
   return least < 1 ? roundNumber(least) : steps.find((step) => step >= least) ?? 3600 * roundNumber(least / 3600);
@@ -212,7 +213,7 @@ function drawLine(chart, context, run, column, color) {
   context.restore();
 }
 
-/** Draws, for each pixel, the range of its samples in a pale color, and their mean. */
+/** Draws, for each column of pixels, the range of its samples in a pale color, and their mean. */
 function drawBand(chart, context, run, column, color) {
   const right = Math.min(chart.xOf(run.time.at(-1)), chart.width - EDGE.right);
   const means = [];
@@ -220,9 +221,9 @@ function drawBand(chart, context, run, column, color) {
   context.globalAlpha = 0.25;
   let k = run.sampleAt(chart.from);
   for (let x = EDGE.left; x < right; x += 1) {
-    const until = chart.timeAt(x + 1);
+    const pixelEnd = chart.timeAt(x + 1);
     let [low, high, sum, count] = [Infinity, -Infinity, 0, 0];
-    for (; k < run.length && run.time[k] < until; k += 1) {
+    for (; k < run.length && run.time[k] < pixelEnd; k += 1) {
       const value = column.at(k);
       low = Math.min(low, value);
       high = Math.max(high, value);

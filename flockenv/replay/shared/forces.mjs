@@ -2,13 +2,13 @@
 
 import { roundNumber } from "./words.mjs";
 
-/** Length of the bar of the scale's force, and width of all bars below the greatest length, in hull widths. */
+/** In hull widths: length of the bar of a force equal to the scale, and width of bars that are not at their greatest length. */
 const [LENGTH, NARROWEST] = [0.5, 0.2];
-/** The longest bar, in lengths of a boat: bars at both ends of a boat leave a gap, so that those of a jam do not join into one line. */
+/** Length of the longest bar, in lengths of a boat. Bars at both ends of a boat leave a gap, so that the bars of a jam do not join into one line. */
 const LONGEST = 0.45;
 /** Bars shorter than this fraction of a hull's width are left out. */
 const SHORTEST = 0.025;
-/** Largest number of forces that the scale is chosen from. */
+/** Largest number of forces from which the scale is chosen. */
 const MOST_SAMPLES = 20_000;
 
 /**
@@ -29,11 +29,11 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** The bar of a force on a boat of this length, in hull widths. A bar is at most as wide as a boat; length 0 means no bar. */
-export function barOf(force, scale, boat) {
-  const [widths, longest] = [(LENGTH * force) / scale, LONGEST * boat];
-  const length = widths < SHORTEST ? 0 : Math.min(widths, longest);
-  return { length, width: Math.min(NARROWEST * Math.max(widths / longest, 1), 1) };
+/** The bar of a force: length and width in hull widths, as `boatLength` is. A bar is at most as wide as a boat; length 0 means no bar. */
+export function barOf(force, scale, boatLength) {
+  const [proportional, longest] = [(LENGTH * force) / scale, LONGEST * boatLength];
+  const length = proportional < SHORTEST ? 0 : Math.min(proportional, longest);
+  return { length, width: Math.min(NARROWEST * Math.max(proportional / longest, 1), 1) };
 }
 
 /**
@@ -66,9 +66,9 @@ function drawBar({ context, palette, scale, run, pixel }, point, angle, bar) {
   context.save();
   context.translate(...pixel(...point));
   context.rotate(-angle);
-  for (const [color, extra] of [[palette.mark, 1], [palette.force, 0]]) {
+  for (const [color, border] of [[palette.mark, 1], [palette.force, 0]]) {
     context.fillStyle = color;
-    context.fillRect(0, -width / 2 - extra, length + extra, width + 2 * extra);
+    context.fillRect(0, -width / 2 - border, length + border, width + 2 * border);
   }
   context.restore();
 }

@@ -1,4 +1,4 @@
-// Words of a run's panel: its legend around the picture, and a card with a boat's numbers.
+// A run's panel: its picture, the legend around it, and a card with a boat's numbers.
 
 import { barOf } from "./forces.mjs";
 import { Scene } from "./scene.mjs";
@@ -17,7 +17,7 @@ function targetWords(run, boat) {
   return run.targets ? ` ${run.targets[boat] === "cw" ? "↻ cw" : "↺ ccw"}` : "";
 }
 
-/** A key of the leaders' colors: their role, number and target. */
+/** The legend's entries for leaders, one for each target: role, number of leaders, target in words. */
 function leaderKey(run) {
   if (!run.targets) {
     return [["leader", run.leaders, ""]];
@@ -37,7 +37,7 @@ export function colorKey() {
   });
 }
 
-/** Chooses which of two runs a narrow window shows; `show` draws it. */
+/** Buttons that choose which of two runs a narrow window shows; `show` draws it. */
 export function runSwitch(runs, show) {
   const group = element("div", "switch");
   group.setAttribute("role", "group");
@@ -60,8 +60,8 @@ export function runSwitch(runs, show) {
 
 /** A run's canvas with everything around it. */
 export class Panel {
-  /** The boat and the size of the hole for which the card's position was chosen. */
-  #placed = "";
+  /** The boat and the radius of the hole for which the card's position was chosen. */
+  #placement = "";
 
   constructor(run, index, several) {
     this.run = run;
@@ -77,12 +77,12 @@ export class Panel {
     this.canvas.setAttribute("aria-label", `Boats of ${run.name}; keys [ and ] choose a boat`);
     this.card = element("div", "card");
     this.card.hidden = true;
-    this.picture.append(this.#clock(), this.#scene(), this.canvas, this.#order(), this.#sense(), this.card);
+    this.picture.append(this.#clockCorner(), this.#settingsCorner(), this.canvas, this.#orderCorner(), this.#rotationCorner(), this.card);
     this.root.append(title, this.picture);
     this.scene = new Scene(this.canvas, run);
   }
 
-  /** Calls `hover` with the boat under the pointer, or null, and `choose` with one that is clicked. */
+  /** Calls `hover` with the boat under the pointer, and `choose` with the boat that is clicked; null for none. */
   onBoat(hover, choose) {
     const boatAt = (event) => {
       const box = this.canvas.getBoundingClientRect();
@@ -93,7 +93,7 @@ export class Panel {
     this.canvas.addEventListener("click", (event) => choose(boatAt(event)));
   }
 
-  #clock() {
+  #clockCorner() {
     const corner = element("div", "corner top left");
     this.time = element("div", "time");
     const phases = element("div", "phases");
@@ -111,7 +111,7 @@ export class Panel {
     return corner;
   }
 
-  #scene() {
+  #settingsCorner() {
     const { run } = this;
     const corner = element("div", "corner top right");
     if (run.target !== null) {
@@ -138,7 +138,7 @@ export class Panel {
     return corner;
   }
 
-  #order() {
+  #orderCorner() {
     const corner = element("div", "corner bottom left");
     this.phi = element("span", "phi");
     this.psi = element("span", "psi");
@@ -152,7 +152,7 @@ export class Panel {
   }
 
   /** The signed order, or the rotation of a run without leaders. */
-  #sense() {
+  #rotationCorner() {
     const hasTarget = this.run.target !== null;
     this.signedKey = hasTarget ? "signed_order" : "rotation";
     const corner = element("div", "corner bottom right");
@@ -209,11 +209,11 @@ export class Panel {
     head.append(element("span", "faint", boat < this.run.leaders ? ` leader${targetWords(this.run, boat)}` : ""));
     const list = element("dl");
     for (const [name, value, unit, meaning] of boatNumbers(this.run, boat, sample)) {
-      const answer = element("dd", "", value);
-      answer.dataset.number = name;
+      const definition = element("dd", "", value);
+      definition.dataset.number = name;
       const term = element("dt", "", name);
       term.title = meaning ?? "";
-      list.append(term, answer, element("dd", "faint", unit));
+      list.append(term, definition, element("dd", "faint", unit));
     }
     this.card.replaceChildren(head, list);
     this.#placeCard(boat);
@@ -223,14 +223,14 @@ export class Panel {
   #placeCard(boat) {
     const { card, canvas, scene } = this;
     const hole = (this.run.lengths.inner_radius_cm ?? 0) * scene.scale;
-    const asked = `${boat} ${hole}`;
-    if (asked !== this.#placed) {
-      this.#placed = asked;
+    const placement = `${boat} ${hole}`;
+    if (placement !== this.#placement) {
+      this.#placement = placement;
       // A copy is measured: if the card itself left the page for an instant, the page would be shorter, and scroll back.
       const copy = card.cloneNode(true);
       copy.className = "card inside";
       this.picture.append(copy);
-      // With some margin for longer numbers that may follow.
+      // Longer numbers may follow, so some margin is left.
       card.classList.toggle("inside", Math.hypot(copy.offsetWidth, copy.offsetHeight) / 2 < 0.96 * hole);
       copy.remove();
     }
@@ -275,7 +275,7 @@ export function parameterTable(runs) {
   for (const [name, value] of rows) {
     const values = runs.map(value);
     const row = element("tr", new Set(values).size > 1 ? "differs" : "");
-    row.append(element("th", "", name), ...values.map((each) => element("td", "", each)));
+    row.append(element("th", "", name), ...values.map((text) => element("td", "", text)));
     table.append(row);
   }
   return table;

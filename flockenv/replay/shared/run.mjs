@@ -1,9 +1,9 @@
 // A run: the recording's numbers at each sample, and interpolated poses for the picture.
 
 export class Run {
-  /** `time` has the time of each sample in s, unless it is a series in quanta. */
-  constructor(described, columns, time = timesOf(columns.get("time_s"))) {
-    Object.assign(this, described);
+  /** `description`: the fields that the run gets; `time`: the time of each sample in s, by default from the column `time_s`. */
+  constructor(description, columns, time = timesOf(columns.get("time_s"))) {
+    Object.assign(this, description);
     this.columns = columns;
     this.time = time;
     this.length = time.length;
@@ -14,6 +14,7 @@ export class Run {
     return this.columns.has("contact_count");
   }
 
+  /** The index of each sample's first contact in the columns of contacts, and the number of contacts. */
   #firstContacts() {
     const first = new Int32Array(this.length + 1);
     if (this.columns.has("contact_count")) {
@@ -45,19 +46,19 @@ export class Run {
     const sample = this.sampleAt(time);
     const next = Math.min(sample + 1, this.length - 1);
     const gap = this.time[next] - this.time[sample];
-    const share = gap > 0 ? Math.min(Math.max((time - this.time[sample]) / gap, 0), 1) : 0;
+    const fraction = gap > 0 ? Math.min(Math.max((time - this.time[sample]) / gap, 0), 1) : 0;
     const position = this.columns.get("position_cm");
     const heading = this.columns.get("heading");
     const between = (column, channel) => {
       const now = column.at(sample, channel);
-      return now + share * (column.at(next, channel) - now);
+      return now + fraction * (column.at(next, channel) - now);
     };
-    const nowhere = [NaN, NaN, NaN];
+    const missing = [NaN, NaN, NaN];
     return Array.from({ length: this.boats }, (_, boat) => this.isPresent(boat, sample) ? [
       between(position, 2 * boat),
       between(position, 2 * boat + 1),
       between(heading, boat),
-    ] : nowhere);
+    ] : missing);
   }
 
   /** Whether a boat is present at a sample; tracked ones come and go. */
@@ -65,7 +66,7 @@ export class Run {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }
 
-  /** The kind of a boat in pictures. An opponent leads counter-clockwise while other leaders lead clockwise. */
+  /** The role of a boat in pictures. An opponent is a leader that leads counter-clockwise while others lead clockwise. */
   roleOf(boat) {
     if (boat >= this.leaders) {
       return "normal";
@@ -120,12 +121,12 @@ export class Run {
     return boat < this.leaders ? this.columns.get("leader_phi")?.at(sample, boat) : undefined;
   }
 
-  /** Contacts that carried a force at a sample: boats, foot along the core, direction, force. */
+  /** Contacts that carried a force at a sample: boats `i` and `j` (negative for a wall), position along the core of `i` in cm, direction of the push on `i` in rad, force in cm/s². */
   contacts(sample) {
-    const found = [];
+    const contacts = [];
     const column = (name) => this.columns.get(`contact_${name}`);
     for (let k = this.firstContact[sample]; k < this.firstContact[sample + 1]; k += 1) {
-      found.push({
+      contacts.push({
         i: column("i").at(k),
         j: column("j").at(k),
         along: column("along_cm").at(k),
@@ -133,7 +134,7 @@ export class Run {
         force: column("force").at(k),
       });
     }
-    return found;
+    return contacts;
   }
 }
 

@@ -5,19 +5,20 @@ import { drawForces } from "./forces.mjs";
 const MARGIN = 0.022;
 const TRAIL_PIECES = 6;
 
-/** Colors of runs: those of the laws that lead them, as in plots, and others. */
-const LAWS = ["paper-law", "damped-law", "tuned-law", "learned"];
-const OTHERS = ["run-1", "run-2"];
+/** Names of the colors of runs: of laws, as in plots, and of other runs. */
+const LAW_COLORS = ["paper-law", "damped-law", "tuned-law", "learned"];
+const OTHER_COLORS = ["run-1", "run-2"];
 
 /** Gives each run the color of the law that leads it, unless a run with another name has that color already. */
 export function giveColors(runs) {
-  const taken = new Map();
+  const nameByColor = new Map();
   for (const run of runs) {
-    // It is the same law whether it acts at every substep or at every decision.
-    const name = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
-    const own = LAWS.filter((law) => law === name.replace("'s", "").replaceAll(" ", "-"));
-    run.color = [...own, ...OTHERS].find((color) => (taken.get(color) ?? run.name) === run.name);
-    taken.set(run.color, run.name);
+    // A law has one color, whether it acts at every substep or at every decision.
+    const law = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
+    const colorName = law.replace("'s", "").replaceAll(" ", "-");
+    const candidates = [...LAW_COLORS.filter((color) => color === colorName), ...OTHER_COLORS];
+    run.color = candidates.find((color) => (nameByColor.get(color) ?? run.name) === run.name);
+    nameByColor.set(run.color, run.name);
   }
 }
 
@@ -25,7 +26,7 @@ export function giveColors(runs) {
 export function colors() {
   const style = getComputedStyle(document.documentElement);
   const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "clockwise", "counter-clockwise", "radial", "normal",
-    "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", ...LAWS, ...OTHERS, "track", "circles-from"];
+    "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", ...LAW_COLORS, ...OTHER_COLORS, "track", "circles-from"];
   const palette = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
   return { ...palette, window: `${palette.ink}12` };
 }
@@ -43,14 +44,14 @@ export function fitted(canvas) {
   return context;
 }
 
-/** The name of a boat's color by the direction in which it heads around the center. */
+/** The name of a boat's color, by the direction in which it heads around the center; `circlesFrom`: least sine of its angle to the radius at which it counts as circling. */
 export function tintOf([x, y, heading], circlesFrom) {
-  // The sine of its angle in the local frame, clockwise from the outward direction.
-  const along = Math.sin(Math.atan2(y, x) - heading);
-  if (Math.abs(along) < circlesFrom) {
+  // The sine of the angle clockwise from the outward direction.
+  const clockwise = Math.sin(Math.atan2(y, x) - heading);
+  if (Math.abs(clockwise) < circlesFrom) {
     return "radial";
   }
-  return along > 0 ? "clockwise" : "counter-clockwise";
+  return clockwise > 0 ? "clockwise" : "counter-clockwise";
 }
 
 export class Scene {
@@ -81,14 +82,14 @@ export class Scene {
     const { outer_radius_cm: outer, inner_radius_cm: inner } = this.run.lengths;
     // In open water there is no center to circle around.
     this.isTinted = coloring === "direction" && (outer !== null || inner > 0);
-    this.#look();
+    this.#setView();
     this.#water();
     if (trailSeconds > 0) {
       this.#trails(time, trailSeconds, boat);
     }
     const isPresent = (k) => !Number.isNaN(this.poses[k][0]);
     for (let k = this.run.boats - 1; k >= 0; k -= 1) {
-      // A canvas ignores a position that is not a number, and would draw the boat in its corner.
+      // A canvas ignores a translation by NaN, and would draw a missing boat in its corner.
       if (isPresent(k)) {
         this.#boat(k);
       }
@@ -97,16 +98,15 @@ export class Scene {
       drawForces(this, this.run.sampleAt(time), forceScale);
     }
     if (boat !== null && isPresent(boat)) {
-      this.#ring(boat);
+      this.#markChosen(boat);
     }
   }
 
   /** The boat under a point of the canvas, or null. */
   boatAt(x, y) {
     const { hull_radius_cm: radius, hull_half_length_cm: half } = this.run.lengths;
-    const reach = Math.max(radius * this.scale, 6);
-    let found = null;
-    let nearest = reach;
+    let closestBoat = null;
+    let closest = Math.max(radius * this.scale, 6);
     this.poses.forEach(([, , heading], boat) => {
       const [cx, cy] = this.pixelOf(boat);
       const [dx, dy] = [x - cx, y - cy];
@@ -114,11 +114,11 @@ export class Scene {
       const length = half * this.scale;
       const along = Math.min(Math.max(dx * ux + dy * uy, -length), length);
       const distance = Math.hypot(dx - along * ux, dy - along * uy);
-      if (distance <= nearest) {
-        [found, nearest] = [boat, distance];
+      if (distance <= closest) {
+        [closestBoat, closest] = [boat, distance];
       }
     });
-    return found;
+    return closestBoat;
   }
 
   /** A boat's position on the canvas. */
@@ -134,8 +134,8 @@ export class Scene {
     ];
   };
 
-  /** Center and scale: the whole pool, or all boats in open water. */
-  #look() {
+  /** Sets center and scale so that the whole pool is in view, or all boats in open water. */
+  #setView() {
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
     this.middle = [width / 2, height / 2];
     const side = Math.min(width, height);
@@ -181,7 +181,7 @@ export class Scene {
     }
   }
 
-  /** Draws discs and walls, without lines where they overlap, and nothing beyond the pool's outer wall. */
+  /** Draws discs and walls as one shape, and nothing beyond the pool's outer wall. */
   #obstacles(outer, wall) {
     const { context, palette, run } = this;
     context.save();
@@ -252,11 +252,11 @@ export class Scene {
     context.beginPath();
     context.arc(x, y, radius, start, end, turn < 0);
     context.stroke();
-    const at = (angle, r) => [x + r * Math.cos(angle), y + r * Math.sin(angle)];
+    const pointAt = (angle, r) => [x + r * Math.cos(angle), y + r * Math.sin(angle)];
     context.beginPath();
-    context.moveTo(...at(end + (turn * head) / radius, radius));
-    context.lineTo(...at(end - turn * 0.02, radius + 0.6 * head));
-    context.lineTo(...at(end - turn * 0.02, radius - 0.6 * head));
+    context.moveTo(...pointAt(end + (turn * head) / radius, radius));
+    context.lineTo(...pointAt(end - turn * 0.02, radius + 0.6 * head));
+    context.lineTo(...pointAt(end - turn * 0.02, radius - 0.6 * head));
     context.fill();
   }
 
@@ -286,7 +286,7 @@ export class Scene {
     context.globalAlpha = 1;
   }
 
-  /** Draws a boat's ring, if it has one, its body and its mark. */
+  /** Colors of a boat's ring (null for no ring), body and mark. */
   #colorsOf(boat) {
     const { palette, run } = this;
     const role = run.roleOf(boat);
@@ -296,6 +296,7 @@ export class Scene {
     return [role === "normal" ? null : palette[role], palette[tintOf(this.poses[boat], Number(palette["circles-from"]))], palette.mark];
   }
 
+  /** Draws a boat: outline, ring, body, and a mark that points to its bow. */
   #boat(boat) {
     const { context, palette, run } = this;
     const radius = Math.max(run.lengths.hull_radius_cm * this.scale, 1);
@@ -332,7 +333,8 @@ export class Scene {
     context.restore();
   }
 
-  #ring(boat) {
+  /** Draws a circle around the chosen boat. */
+  #markChosen(boat) {
     const { context, run } = this;
     const reach = (run.lengths.hull_radius_cm + run.lengths.hull_half_length_cm) * this.scale;
     context.strokeStyle = this.palette.pin;

@@ -1,15 +1,16 @@
 // Playing and pausing: the time that passes between pictures, and the button that shows whether the page plays.
 
-/** A page in the background gets no frames. Longer pauses than this, in ms, count as this long, so that it continues where it was. */
+/** A page in the background gets no frames. A longer time than this between frames, in ms, counts as this long, so that playing goes on where it was. */
 const LONGEST_FRAME = 250;
 
 export class Transport {
   playing = false;
   #button;
   #tick;
-  #before = 0;
+  /** Time of the last frame in ms. */
+  #lastFrame = 0;
 
-  /** `tick` gets the seconds that passed, and the time of the frame in ms. */
+  /** `tick` gets the seconds since the last frame, and the time of this one in ms. */
   constructor(button, tick) {
     this.#button = button;
     this.#tick = tick;
@@ -18,7 +19,7 @@ export class Transport {
   play() {
     if (!this.playing) {
       this.#set(true);
-      this.rest();
+      this.restartClock();
       requestAnimationFrame((now) => this.#frame(now));
     }
   }
@@ -28,8 +29,8 @@ export class Transport {
   }
 
   /** Restarts the clock, so that the time until now does not count. */
-  rest() {
-    this.#before = performance.now();
+  restartClock() {
+    this.#lastFrame = performance.now();
   }
 
   #set(playing) {
@@ -42,8 +43,8 @@ export class Transport {
     if (!this.playing) {
       return;
     }
-    const passed = Math.min(Math.max(now - this.#before, 0), LONGEST_FRAME) / 1000;
-    this.#before = now;
+    const passed = Math.min(Math.max(now - this.#lastFrame, 0), LONGEST_FRAME) / 1000;
+    this.#lastFrame = now;
     this.#tick(passed, now);
     requestAnimationFrame((next) => this.#frame(next));
   }

@@ -1,4 +1,4 @@
-// Numbers, angles and times as the page writes them, and elements that hold them.
+// Numbers, angles and times as text, and elements that hold text.
 
 export const byId = (id) => document.getElementById(id);
 
@@ -27,7 +27,7 @@ export function plain(value) {
   return String(Number(value.toPrecision(6))).replace("-", "−");
 }
 
-/** An angle within half a turn. */
+/** An angle wrapped to ±π. */
 export function wrapped(angle) {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }
@@ -43,7 +43,7 @@ export function caption({ words, unit }) {
   return unit ? `${words} (${unit})` : words;
 }
 
-/** The next of 1, 2, 5, 10, 20 … */
+/** The least of …, 1, 2, 5, 10, 20, … that is at least `least`. */
 export function roundNumber(least) {
   const decade = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].find((step) => step * decade >= least * (1 - 1e-9)) * decade;
