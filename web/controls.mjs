@@ -4,7 +4,7 @@ import { element, plain } from "../flockenv/replay/shared/words.mjs";
 import { YOU } from "./laws.mjs";
 import { MOST_NOISE } from "./order_map.mjs";
 
-/** Sliders: parameter, words, least, most, step, and a unit to read aloud. The first is the one that everybody needs. */
+/** Sliders, by the element that holds them: parameter, words, least, most, step, and a unit for screen readers. */
 const SLIDERS = {
   noise: [["bw_s", "backward duration (s)", 0, MOST_NOISE, 0.05, "seconds"]],
   sliders: [
@@ -15,7 +15,7 @@ const SLIDERS = {
   ],
 };
 
-/** Choices: parameter, words, and accepted values with their words. */
+/** Choices, by the element that holds them: parameter, words, and accepted values with their words. */
 const CHOICES = {
   choices: [
     ["pool", "pool", [["wide"], ["narrow"], ["180,0", "dish"], ["inf,0", "open water"]]],
@@ -28,30 +28,30 @@ const CHOICES = {
   ],
 };
 
-/** Numbers of leaders that may run beside a flock, in words. */
+/** Choices of a flock beside the first that differs in its number of leaders. */
 const NUMBERS_BESIDE = [["n_leaders=0", "no leaders"], ["n_leaders=1", "one leader"], ["n_leaders=4", "four leaders"]];
 
-/** The targets of this number of leaders, half of them against the other half. */
+/** The targets of opposed leaders: the first half clockwise, the others counter-clockwise. */
 export function opposedTargets(leaders) {
   return Array.from({ length: leaders }, (_, k) => (k < leaders / 2 ? "cw" : "ccw")).join(",");
 }
 
-/** The nearest value on a slider with this step. */
+/** The multiple of a slider's step that is nearest to a value. */
 const onGrid = (value, step) => step * Math.round(value / step);
 
 export class Controls {
   inputs = new Map();
 
-  /** `meanings`: what the simulator says of each parameter; `change` gets a name and a value. */
+  /** `meanings`: the meaning of each parameter, shown as its title; `change` gets a name and a value. */
   constructor(meanings, laws, change) {
     Object.assign(this, { meanings, laws, change });
     const byId = (id) => document.getElementById(id);
     for (const [id, sliders] of Object.entries(SLIDERS)) {
       byId(id).append(...sliders.map(([name, words, low, high, step, unit]) => this.#slider(name, words, { low, high, step, unit })));
     }
-    const known = laws.ofAll.map((name) => [name, laws.words(name)]);
-    const beside = known.filter(([name]) => name !== YOU).map(([name, words]) => [`leaders=${name}`, words]);
-    byId("choices").append(this.#choice("leaders", "leaders steer by", [...known, ["each", "each its own"]]),
+    const policies = laws.sharedChoices.map((name) => [name, laws.words(name)]);
+    const beside = policies.filter(([name]) => name !== YOU).map(([name, words]) => [`leaders=${name}`, words]);
+    byId("choices").append(this.#choice("leaders", "leaders steer by", [...policies, ["each", "each its own"]]),
       this.#choice("beside", "beside it", [["", "nothing"], ...beside, ...NUMBERS_BESIDE]));
     for (const [id, choices] of Object.entries(CHOICES)) {
       byId(id).append(...choices.map(([name, words, options]) => this.#choice(name, words, options)));
@@ -61,7 +61,7 @@ export class Controls {
   #slider(name, words, { low, high, step, unit }) {
     const label = element("label");
     const [text, value, input] = [element("span", "", words), element("output"), element("input")];
-    // The slider itself says its value.
+    // A screen reader reads the value from the slider, so it need not read the output.
     value.ariaLive = "off";
     Object.assign(input, { type: "range", min: low, max: high, step, id: name, title: this.meanings[name] ?? "" });
     input.setAttribute("aria-label", words.replace(/ \(.*/, ""));
@@ -99,22 +99,22 @@ export class Controls {
 
   /** Shows these values, and a separate choice for each leader if their policies differ. */
   show(values) {
-    const own = values.leaders.includes(",") ? values.leaders.split(",") : [];
-    for (const [name, set] of this.inputs) {
-      set(name === "leaders" && own.length > 0 ? "each" : values[name] ?? "");
+    const policies = values.leaders.includes(",") ? values.leaders.split(",") : [];
+    for (const [name, showValue] of this.inputs) {
+      showValue(name === "leaders" && policies.length > 0 ? "each" : values[name] ?? "");
     }
-    const each = document.getElementById("each");
-    if (each.childElementCount !== own.length) {
-      each.replaceChildren(...own.map((_, leader) => this.#ownChoice(each, leader)));
+    const container = document.getElementById("each");
+    if (container.childElementCount !== policies.length) {
+      container.replaceChildren(...policies.map((_, leader) => this.#leaderChoice(container, leader)));
     }
-    own.forEach((policy, leader) => { each.children[leader].querySelector("select").value = policy; });
+    policies.forEach((policy, leader) => { container.children[leader].querySelector("select").value = policy; });
   }
 
-  #ownChoice(each, leader) {
+  #leaderChoice(container, leader) {
     const label = element("label", "", `leader ${leader} `);
     const select = element("select");
-    select.append(...this.laws.ofEach.map((name) => new Option(this.laws.words(name), name)));
-    const chosen = () => Array.from(each.querySelectorAll("select"), ({ value }) => value).join(",");
+    select.append(...this.laws.leaderChoices.map((name) => new Option(this.laws.words(name), name)));
+    const chosen = () => Array.from(container.querySelectorAll("select"), ({ value }) => value).join(",");
     select.addEventListener("change", () => this.change("leaders", chosen()));
     label.append(select);
     return label;

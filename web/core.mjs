@@ -1,15 +1,15 @@
-// The compiled simulator behind functions: JSON to flocks, JSON and numbers back.
+// Calls of the compiled simulator: requests as JSON, answers as JSON or as columns of numbers.
 
 /** Names of the columns that a flock fills, in their order. */
 export const COLUMNS = ["time_s", "phase", "in_analysis_window", "pose", "velocity", "rudder", "series",
   "statistics", "contacts", "observation"];
-/** Numbers of a contact: two boats (−1 for a wall), position along the core, direction as a vector, force. */
-export const CONTACT = 6;
+/** How many numbers a contact has: two boats (−1 for a wall), position along the core, direction as a vector, force. */
+export const CONTACT_NUMBERS = 6;
 
-/** The longest sentence, in letters: values may have hundreds of digits. */
+/** The longest sentence of an error, in letters. Values in it may have hundreds of digits. */
 const LONGEST_SENTENCE = 250;
 
-/** An error for a request that the simulator refuses, with the parameter at fault, if there is one, and a sentence. */
+/** A request that the simulator refuses: `field` is the parameter at fault, if there is one. */
 export class Refusal extends Error {
   constructor({ field, words }) {
     super(words.length > LONGEST_SENTENCE ? `${words.slice(0, LONGEST_SENTENCE)}…` : words);
@@ -38,12 +38,12 @@ export class Core {
     return this.#answer();
   }
 
-  /** All parameters of a request; no flock starts. */
+  /** Checks a request, and returns all its parameters; no flock starts. */
   check(request) {
     return this.#ask(request, () => this.exports.check());
   }
 
-  /** The recorded quantities, null if undefined, of the flock that was checked last, in a given state (`pose`, `velocity`). */
+  /** The recorded quantities in a state (`pose`, `velocity`) of the flock that was checked last; null for an undefined quantity. */
   recorded(state) {
     return this.#ask(state, () => this.exports.recorded());
   }
@@ -53,7 +53,7 @@ export class Core {
     return this.#ask(request, () => this.exports.open(flock));
   }
 
-  /** Changes a flock; returns how it continued, and its parameters. */
+  /** Changes a flock; returns whether it `continued` from its state, and its parameters. */
   change(flock, request) {
     return this.#ask(request, () => this.exports.change(flock));
   }
@@ -64,38 +64,38 @@ export class Core {
 
   /** Sets the heading that the visitor chose. */
   steer(flock, heading) {
-    this.#done(this.exports.steer(flock, heading));
+    this.#checkDone(this.exports.steer(flock, heading));
   }
 
   /** Takes up to `samples` samples within `work`, in substeps times boats; returns their number. */
   advance(flock, samples, work) {
     const taken = this.exports.advance(flock, samples, work);
-    this.#done(taken >= 0);
+    this.#checkDone(taken >= 0);
     return taken;
   }
 
   /** Fills the columns of contacts and of a boat's observation, as they are now. */
   look(flock, boat) {
-    this.#done(this.exports.look(flock, boat));
+    this.#checkDone(this.exports.look(flock, boat));
   }
 
   /** Starts a training; returns its progress and its policy. */
-  train(asked) {
-    return this.#ask(asked, () => this.exports.train());
+  train(request) {
+    return this.#ask(request, () => this.exports.train());
   }
 
-  /** Takes a number of branches of the training; returns what `train` does. */
+  /** Simulates a number of branches of the training; returns its progress and its policy. */
   learn(branches) {
-    this.#done(this.exports.learn(branches));
+    this.#checkDone(this.exports.learn(branches));
     return this.#answer();
   }
 
-  /** The derived quantity at this index of the table, for a given order, its angle and the target's sign. */
+  /** The quantity at this index of the table from the order, its angle in rad and the target's sign; NaN if it depends on more. */
   derived(index, order, angle, sign) {
     return this.exports.derived(index, order, angle, sign);
   }
 
-  /** The columns since the last call, by name. */
+  /** The columns that were filled since the last call, by name. */
   take(flock) {
     const taken = COLUMNS.map((name, index) => {
       const [start, length] = [this.exports.column(flock, index), this.exports.column_length(flock, index)];
@@ -105,15 +105,17 @@ export class Core {
     return Object.fromEntries(taken);
   }
 
+  /** Passes a request, makes a call, and returns its answer. */
   #ask(request, call) {
     const bytes = new TextEncoder().encode(JSON.stringify(request));
     const start = this.exports.input(bytes.length);
     new Uint8Array(this.exports.memory.buffer, start, bytes.length).set(bytes);
-    this.#done(call());
+    this.#checkDone(call());
     return this.#answer();
   }
 
-  #done(isDone) {
+  /** Throws the simulator's refusal if a call has failed. */
+  #checkDone(isDone) {
     if (!isDone) {
       throw new Refusal(this.#answer());
     }

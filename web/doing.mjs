@@ -1,8 +1,8 @@
-// Sentences about what a flock does, for visitors who cannot see it.
+// Sentences that describe flocks to visitors who cannot see them.
 
 import { tintOf } from "../flockenv/replay/shared/scene.mjs";
 
-/** Least fractions of the boats, with the words for them. */
+/** Words for a fraction of the boats, each with the least fraction to which it applies. */
 const SHARES = [[1, "all"], [0.9, "nearly all"], [0.6, "most"]];
 const DIRECTIONS = { clockwise: "clockwise", "counter-clockwise": "counter-clockwise", radial: "against a wall" };
 
@@ -15,31 +15,34 @@ function countsOf(run, sample, palette) {
   return counts;
 }
 
-/** Says, for each of several flocks, how many boats head clockwise. */
-export function clockwise(runs, time, palette) {
+/** A sentence: how many boats of each flock head clockwise. */
+export function clockwiseWords(runs, time, palette) {
   const counts = runs.map((run) => countsOf(run, run.sampleAt(time), palette).clockwise);
   return `Clockwise: ${counts.join(", ")} of ${runs[0].boats} boats.`;
 }
 
-/** Says which boat is chosen, whether it leads, and where it heads. */
-export function chosenBoat(run, time, boat, palette) {
+/** A sentence: which boat is chosen, whether it leads, and where it heads. */
+export function boatWords(run, time, boat, palette) {
   const direction = DIRECTIONS[tintOf(run.posesAt(time)[boat], Number(palette["circles-from"]))];
   return `Boat ${boat}${boat < run.leaders ? ", a leader" : ""}: ${direction}.`;
 }
 
-/** Says how many boats of a run head in each direction, at a sample. */
-export function doing(run, sample, palette) {
+/** A sentence: how many boats of a run head in each direction at a sample. */
+export function flockWords(run, sample, palette) {
   const { outer_radius_cm: outer, inner_radius_cm: inner } = run.lengths;
   const boats = `${run.boats} boat${run.boats > 1 ? "s" : ""}${run.leaders > 0 ? `, ${run.leaders} of them lead` : ""}`;
   if (outer === null && inner === 0) {
     return `${boats}, in open water.`;
   }
   const counts = countsOf(run, sample, palette);
-  const [direction, most] = Object.entries(counts).sort(([, one], [, other]) => other - one)[0];
+  const [direction, most] = Object.entries(counts).sort(([, a], [, b]) => b - a)[0];
   const word = SHARES.find(([least]) => most >= least * run.boats)?.[1];
   const mixed = `${counts.clockwise} clockwise, ${counts["counter-clockwise"]} counter-clockwise`;
   return `${boats}; ${word ? `${word} ${DIRECTIONS[direction]}` : mixed}.`;
 }
 
-/** The scores of one round, without those of earlier rounds. */
-export const scoreWords = (score, rounds) => `${Array.from(score.children, ({ textContent }) => textContent.replace(`. ${rounds}`, "")).filter(Boolean).join(", ")}.`;
+/** A sentence: the scores of this round, from the element that shows them; `rounds`: its words about earlier rounds, which are left out. */
+export function scoreWords(score, rounds) {
+  const parts = Array.from(score.children, ({ textContent }) => textContent.replace(`. ${rounds}`, ""));
+  return `${parts.filter(Boolean).join(", ")}.`;
+}

@@ -1,4 +1,4 @@
-// The shown flocks and those beside them: requests to the simulator, and its answers.
+// The flocks of the page and those beside them: requests to the simulator, and its answers.
 
 import { opposedTargets } from "./controls.mjs";
 import { GrowingRun } from "./growing_run.mjs";
@@ -7,16 +7,16 @@ import { differences, LATEST, requestsOf, textOf, withChange } from "./request.m
 
 /** Samples per second. */
 export const SAMPLING = 10;
-/** Seconds after the start that a map leaves out: boats start at random and at rest. */
+/** The map of order leaves out this time after the start, in s: boats start at random and at rest. */
 const SETTLING = 30;
 /** Most changes of a schedule in a link. */
 const MOST_CHANGES = 200;
-/** Number that stands for no boat. */
+/** Stands for no boat in questions to the simulator. */
 export const NO_BOAT = 1e6;
-/** Fields whose change makes a flock another one on the map of order. */
+/** Fields that may change without emptying the map of order. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
-/** The requested flocks after a change of one field. `values`: the present parameters; `laws`: the known laws. */
+/** The request after a change of one control. `base`: the request before; `values`: the present parameters. */
 export function changed(base, values, laws, name, value) {
   const wanted = { ...base, flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
@@ -27,7 +27,7 @@ export function changed(base, values, laws, name, value) {
     const { n_boats, n_leaders, seed, leaders: policy } = { ...values, ...wanted.flock };
     wanted.flock = { preset: value, n_boats, n_leaders, ...(seed && { seed }), ...(policy && { leaders: policy }) };
   } else if (name === "leaders" && value === "each") {
-    wanted.flock.leaders = laws.forEach(base.flock.leaders ?? "", leaders);
+    wanted.flock.leaders = laws.policiesFor(base.flock.leaders ?? "", leaders);
   } else if (name === "target") {
     wanted.flock.target = value === "opposed" ? opposedTargets(leaders) : value;
   } else {
@@ -37,7 +37,7 @@ export function changed(base, values, laws, name, value) {
     wanted.flock.target = Number(value) > 1 ? opposedTargets(Number(value)) : "cw";
   }
   if (name === "n_leaders" && wanted.flock.leaders?.includes(",")) {
-    wanted.flock.leaders = laws.forEach(wanted.flock.leaders, Number(value));
+    wanted.flock.leaders = laws.policiesFor(wanted.flock.leaders, Number(value));
   }
   if (wanted.flock.leaders === YOU) {
     if (name === "leaders" && leaders === 0) {
@@ -51,94 +51,97 @@ export function changed(base, values, laws, name, value) {
   return wanted;
 }
 
-/** Names flocks that stand beside each other by what distinguishes them. */
-function distinguished(described, copies) {
-  const parts = described.map(({ name }) => name.split(", "));
+/** Shortens the names of a pair of flocks to the part in which they differ. */
+function distinguished(descriptions, copies) {
+  const parts = descriptions.map(({ name }) => name.split(", "));
   const isPair = parts.length > copies;
   const index = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
-  return described.map((flock, k) => ({ ...flock, name: isPair ? parts[k][index] ?? flock.name : flock.name }));
+  return descriptions.map((flock, k) => ({ ...flock, name: isPair ? parts[k][index] ?? flock.name : flock.name }));
 }
 
 export class Flocks {
   runs = [];
-  /** The latest request, and the request that the shown runs belong to. */
-  asked = null;
+  /** The latest request, and the request of the runs that are shown. */
+  requested = null;
   shown = null;
-  /** The flocks' start, the time from which their means count, and their changes since. */
+  /** The request with which the flocks started, the time in s from which their means count, and the changes since the start. */
   past = { first: null, start: 0, changes: [] };
-  /** The first flock's parameters, as links have them. */
+  /** The first flock's parameters as text, as links have them. */
   values = {};
-  /** The flocks that a map of order shows together. */
+  /** Identifies the flocks that the map of order shows together. */
   signature = "";
   isRecorded = false;
-  /** The flocks that wait behind a recording; null for none. */
-  #behind = null;
-  /** The policy that the visitor trained, as a file's text; null for none. */
+  /** The runs and values that wait while a recording is shown; null without a recording. */
+  #waiting = null;
+  /** The text of the file of the policy that the visitor trained; null before a training. */
   trained = null;
 
-  /** `kinds`: those of the parameters; `laws`: the simulator's table; `series`: the names of the quantities; `statistics`: what is counted of substeps; `version`: that of the package. */
+  /** `kinds`: kinds of the parameters; `laws`: the simulator's table; `series`: names of the quantities; `statistics`: names and kinds of the statistics of substeps; `version`: version of the package. */
   constructor(simulator, { kinds, laws, series, statistics, phases, version }) {
     Object.assign(this, { simulator, kinds, laws: new Laws(laws), series, statistics, phases, version });
   }
 
+  /** Whether the visitor steers the leaders. */
   get areYours() {
     return !this.isRecorded && this.shown?.flock.leaders === YOU;
   }
 
+  /** Whether the leaders follow the policy that the visitor trains. */
   get areTrained() {
     return !this.isRecorded && this.shown?.flock.leaders === TRAINED;
   }
 
-  /** The runs with a picture: all but the flocks that the law leads beside those of a visitor. */
-  get seen() {
+  /** The runs that are drawn: in the game, only those of the visitor. */
+  get drawnRuns() {
     return this.areYours ? this.runs.slice(0, this.shown.copies) : this.runs;
   }
 
-  /** Index of the first flock of the second kind. */
-  get besides() {
+  /** Index of the first flock of the second kind, beside the others. */
+  get firstBeside() {
     return this.isRecorded ? 1 : this.shown.copies;
   }
 
-  /** The part of a link for the flocks at a time; changes beyond its limit are left out. */
-  linked(time = 0) {
+  /** The fields of a link to the flocks at a time in s. If there are too many changes, it has only the present request; `isComplete` says so. */
+  linkFields(time = 0) {
     const { first, start, changes } = this.past;
-    const isWhole = changes.length <= MOST_CHANGES && changes.every((change) => change.time <= LATEST);
-    const flocks = isWhole ? { ...first, changes } : this.shown;
-    const latest = isWhole ? changes.at(-1)?.time ?? 0 : 0;
+    const isComplete = changes.length <= MOST_CHANGES && changes.every((change) => change.time <= LATEST);
+    const flocks = isComplete ? { ...first, changes } : this.shown;
+    const latest = isComplete ? changes.at(-1)?.time ?? 0 : 0;
     const other = {
       ...(start > latest && { start: String(start) }),
       ...(time > Math.max(start, latest) && time <= LATEST && { now: String(time) }),
       ...(first.copies > 1 && { flocks: String(first.copies) }),
     };
-    return { ...flocks, other, isWhole };
+    return { ...flocks, other, isComplete };
   }
 
+  /** The policy of the leaders, by name. */
   get policy() {
     return this.shown.flock.leaders ?? this.laws.atEverySubstep;
   }
 
   /** Lets the simulator open or change the flocks; returns whether they continue from their state. */
-  async become(wanted, kind) {
+  async update(wanted, kind) {
     // Changes that are made before the answer are applied to this request.
-    this.asked = wanted;
+    this.requested = wanted;
     const requests = requestsOf(wanted, this.kinds).map((request) =>
       (request.leaders === TRAINED && this.trained ? { ...request, trained: this.trained } : request));
     const { continues, values, taken } = await this.simulator.ask(kind, { requests }).catch((error) => {
-      this.asked = this.shown;
+      this.requested = this.shown;
       throw error;
     });
-    const described = distinguished(values.map((answer, index) => this.#describe(answer, wanted, index, requests[index].seed)), wanted.copies);
-    const isSame = continues && described.every(({ boats }, index) => this.runs[index]?.boats === boats);
+    const descriptions = distinguished(values.map((answer, index) => this.#flockDescription(answer, wanted, index, requests[index].seed)), wanted.copies);
+    const isSame = continues && descriptions.every(({ boats }, index) => this.runs[index]?.boats === boats);
     const before = this.shown;
     this.shown = wanted;
-    this.values = described[0].parameters;
+    this.values = descriptions[0].parameters;
     this.signature = JSON.stringify(Object.entries(this.values).filter(([name]) => !NOT_ON_MAP.has(name)));
     this.isRecorded = false;
-    this.#behind = null;
+    this.#waiting = null;
     if (isSame) {
-      this.runs.forEach((run, index) => { run.describe(described[index]); });
+      this.runs.forEach((run, index) => { run.describe(descriptions[index]); });
     } else {
-      this.runs = described.map((flock) => new GrowingRun(flock, this.series));
+      this.runs = descriptions.map((flock) => new GrowingRun(flock, this.series));
     }
     this.append(taken);
     const end = Number(this.runs[0].end.toFixed(1));
@@ -147,24 +150,25 @@ export class Flocks {
     return isSame;
   }
 
-  /** Advances the flocks by a number of samples at most, within some time; returns the simulator's answer. */
+  /** Lets the simulator advance the flocks, and appends its samples; returns its answer. */
   async advance(question, onCycle) {
     const { runs } = this;
-    const said = await this.simulator.ask("advance", question);
+    const answer = await this.simulator.ask("advance", question);
     // In the meantime, other flocks may have replaced these, or a recording may be shown.
-    if (runs === this.runs || runs === this.#behind?.runs) {
-      this.append(said.taken, onCycle, runs);
+    if (runs === this.runs || runs === this.#waiting?.runs) {
+      this.append(answer.taken, onCycle, runs);
     }
-    return said;
+    return answer;
   }
 
+  /** Appends samples to the runs. `onCycle` gets the first flock's noise and the mean order of each analysis window. */
   append(taken, onCycle = () => {}, runs = this.runs) {
     taken.forEach((samples, index) => {
       runs[index].append(samples, index === 0 && runs[0].end > SETTLING ? (order) => onCycle(runs[0].bw_s, order) : undefined);
     });
   }
 
-  /** Advances the flocks to a time in s, unless this is canceled or other flocks replace them. */
+  /** Advances the flocks to a time in s; stops if `isWanted` says no, or other flocks replace them. */
   async runTo(time, isWanted) {
     const { runs } = this;
     for (;;) {
@@ -192,28 +196,28 @@ export class Flocks {
   show(run) {
     if (!this.isRecorded) {
       const { runs, values } = this;
-      this.#behind = { runs, values };
+      this.#waiting = { runs, values };
     }
     Object.assign(this, { runs: [run], values: run.parameters, isRecorded: true });
   }
 
   /** Shows the waiting flocks again instead of the recording. */
-  comeBack() {
-    Object.assign(this, this.#behind, { isRecorded: false });
-    this.#behind = null;
+  returnToFlocks() {
+    Object.assign(this, this.#waiting, { isRecorded: false });
+    this.#waiting = null;
   }
 
-  #describe(answer, wanted, index, seed = "0") {
+  #flockDescription(answer, wanted, index, seed = "0") {
     const fields = index < wanted.copies ? wanted.flock : { ...wanted.flock, ...wanted.beside };
     const leaders = answer.parameters.n_leaders;
     const policy = fields.leaders ?? this.laws.atEverySubstep;
     const steering = policy.includes(",") ? "each its own" : this.laws.words(policy);
     const name = leaders === 0 ? "no leaders" : `${leaders} leader${leaders > 1 ? "s" : ""}, ${steering}`;
-    return this.described(answer, { name, seed, law: policy, version: this.version });
+    return this.runDescription(answer, { name, seed, law: policy, version: this.version });
   }
 
-  /** A flock for runs and panels, from the simulator's answer. */
-  described({ parameters, lengths }, named) {
+  /** The description of a flock as runs and panels have it, from the simulator's answer. `named`: fields that are copied to it. */
+  runDescription({ parameters, lengths }, named) {
     const { n_leaders: leaders, target } = parameters;
     const targets = [target].flat();
     const isCommon = leaders > 0 && new Set(targets).size === 1;
@@ -225,8 +229,8 @@ export class Flocks {
     };
   }
 
-  /** Values of the controls. */
-  get controlled() {
+  /** The value that each control shows. */
+  get controlValues() {
     const { flock, beside } = this.shown;
     const target = this.values.target.includes(",") ? "opposed" : this.values.target;
     const differs = Object.entries(beside ?? {}).map(([name, value]) => `${name}=${value}`).join(" ");

@@ -1,40 +1,40 @@
-// Follows a link: starts its flocks, applies its changes, and runs to its moment.
+// Follows a link: starts its flocks, makes its changes, and runs to its time.
 
 import { changedFlock, linkTo } from "./request.mjs";
 
 /** The link to the flocks at a time, in s. */
 export function linkOf(flocks, other, time) {
-  const { other: moment, isWhole: _, ...shown } = flocks.linked(Number(time.toFixed(1)));
-  return linkTo({ ...shown, other: { ...moment, ...other } });
+  const { other: times, isComplete: _, ...fields } = flocks.linkFields(Number(time.toFixed(1)));
+  return linkTo({ ...fields, other: { ...times, ...other } });
 }
 
 /**
- * Replaces the flocks by those of a link, with its changes, and lets them run to its moment. Leaves out each
- * parameter that the simulator refuses, and names it in `linked.ignored`. `isWanted` says whether to
- * continue.
+ * Replaces the flocks by those of a link, makes its changes, and runs to its time. Leaves out each parameter that
+ * the simulator refuses, and adds a sentence about it to `linked.ignored`. `isWanted` says whether to continue.
  */
 export async function follow(flocks, linked, isWanted) {
   const { start = "0", now = start, flocks: copies = "1" } = linked.other;
-  await opened(flocks, { flock: linked.flock, beside: linked.beside, copies: Number(copies) }, linked);
-  const steps = [{ time: Number(start) }, ...linked.changes, { time: Number(now) }].sort((one, other) => one.time - other.time);
+  await openFlocks(flocks, { flock: linked.flock, beside: linked.beside, copies: Number(copies) }, linked);
+  const steps = [{ time: Number(start) }, ...linked.changes, { time: Number(now) }].sort((a, b) => a.time - b.time);
   for (const { time, fields } of steps) {
     await flocks.runTo(time, isWanted);
     if (!isWanted()) {
       return;
     }
     if (fields) {
-      await changedTo(flocks, fields, linked);
+      await makeChange(flocks, fields, linked);
     } else if (time === Number(start) && time > 0) {
       flocks.restartMeans();
     }
   }
 }
 
-async function opened(flocks, wanted, linked) {
+/** Opens flocks without the fields that the simulator refuses. */
+async function openFlocks(flocks, wanted, linked) {
   const refused = new Set();
   for (let tries = 0; tries < 40; tries += 1) {
     try {
-      await flocks.become(wanted, "open");
+      await flocks.update(wanted, "open");
       linked.ignored.push(...Array.from(refused, (name) => `${name} = ${flocks.values[name] ?? "its usual value"} takes its place.`));
       return;
     } catch (error) {
@@ -42,11 +42,11 @@ async function opened(flocks, wanted, linked) {
         throw error;
       }
       linked.ignored.push(`The link asks for what cannot be: ${error.message}.`);
-      const held = [wanted.flock, wanted.beside ?? {}].filter((fields) => Object.hasOwn(fields, error.field));
-      if (held.length === 0) {
+      const groups = [wanted.flock, wanted.beside ?? {}].filter((fields) => Object.hasOwn(fields, error.field));
+      if (groups.length === 0) {
         Object.assign(wanted, { flock: {}, beside: null });
       }
-      for (const fields of held) {
+      for (const fields of groups) {
         delete fields[error.field];
         refused.add(error.field);
       }
@@ -54,9 +54,9 @@ async function opened(flocks, wanted, linked) {
   }
 }
 
-async function changedTo(flocks, fields, linked) {
+async function makeChange(flocks, fields, linked) {
   try {
-    await flocks.become({ ...flocks.shown, flock: changedFlock(flocks.shown.flock, fields) }, "change");
+    await flocks.update({ ...flocks.shown, flock: changedFlock(flocks.shown.flock, fields) }, "change");
   } catch (error) {
     if (!error.refused) {
       throw error;

@@ -8,7 +8,7 @@ export const ROUND_SECONDS = 300;
 const signed = (value) => fixed(value, 2, true);
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
-/** Mean over flocks of the mean signed order until now. */
+/** Mean over flocks of each flock's mean signed order so far. */
 export function scoreOf(runs) {
   return mean(runs.map((run) => run.mean("signed_order")));
 }
@@ -23,21 +23,21 @@ export class Game {
     return seconds >= ROUND_SECONDS;
   }
 
-  /** Starts another game if the flock, as described in links, has changed. */
-  play({ seed: _, ...flock }) {
-    const kind = JSON.stringify(Object.entries(flock).sort());
-    if (kind !== this.#flock) {
-      Object.assign(this, { rounds: [] });
-      this.#flock = kind;
+  /** Starts another game if the flock has changed; `flock`: its fields in links, of which the seed does not count. */
+  play({ seed: _, ...fields }) {
+    const flock = JSON.stringify(Object.entries(fields).sort());
+    if (flock !== this.#flock) {
+      this.rounds = [];
+      this.#flock = flock;
     }
   }
 
-  /** Counts a round; returns a sentence about it. */
+  /** Adds the scores of a round; returns a sentence about them. */
   end(yours, law) {
     this.rounds.push([yours, law]);
-    const [you, it] = [signed(yours), signed(law)];
-    const won = { true: "you lead better", false: "the law leads better" }[yours > law];
-    return `Round ${this.rounds.length}: ${you === it ? "a draw" : won}, you ${you}, the law ${it}. “Again” starts round ${this.rounds.length + 1}.`;
+    const [yourScore, lawScore] = [signed(yours), signed(law)];
+    const winner = yours > law ? "you lead better" : "the law leads better";
+    return `Round ${this.rounds.length}: ${yourScore === lawScore ? "a draw" : winner}, you ${yourScore}, the law ${lawScore}. “Again” starts round ${this.rounds.length + 1}.`;
   }
 
   /** The score over all rounds as a sentence; empty before the first round is over. */
@@ -47,7 +47,7 @@ export class Game {
       return "";
     }
     const won = this.rounds.filter(([yours, law]) => signed(yours) !== signed(law) && yours > law).length;
-    const [yours, law] = [0, 1].map((who) => signed(mean(this.rounds.map((round) => round[who]))));
+    const [yours, law] = [0, 1].map((index) => signed(mean(this.rounds.map((scores) => scores[index]))));
     return `${length === 1 ? "1 round" : `mean of ${length} rounds`}: you ${yours}, the law ${law}; ${won} won`;
   }
 }

@@ -1,18 +1,18 @@
 // A run that grows while it is shown, and drops its oldest samples, so that its memory is bounded.
 
 import { Run } from "../flockenv/replay/shared/run.mjs";
-import { CONTACT } from "./core.mjs";
+import { CONTACT_NUMBERS } from "./core.mjs";
 
 /** Most leaders of a flock on the page. */
 export const MOST_LEADERS = 8;
-/** Ten minutes, at ten samples per second. */
+/** Samples that are kept: ten minutes, at ten samples per second. */
 const KEPT_SAMPLES = 6000;
 /** Most numbers in the poses and velocities of a run. */
 const KEPT_NUMBERS = 4_000_000;
-/** Samples whose contacts are kept. */
+/** Number of calls of `append` whose contacts are kept. */
 const CONTACT_SAMPLES = 40;
 
-/** A series with some numbers per sample, read like the columns of recordings. */
+/** A series of `stride` numbers per sample, read like the columns of recordings. */
 class GrowingColumn {
   constructor(stride, capacity) {
     Object.assign(this, { stride, length: 0, values: new Float64Array(stride * capacity) });
@@ -35,6 +35,7 @@ class GrowingColumn {
     this.length += count;
   }
 
+  /** Removes the first samples. */
   forget(samples) {
     this.values.copyWithin(0, samples * this.stride, this.length * this.stride);
     this.length -= samples;
@@ -52,20 +53,20 @@ class GrowingColumn {
   }
 }
 
-/** Some channels of another column. */
+/** A column that reads another one; `channelOf` maps its channels to those of the other. */
 function view(column, channelOf) {
   return { at: (sample, channel = 0) => column.at(sample, channelOf(channel)) };
 }
 
 export class GrowingRun extends Run {
-  /** `described`: the description of the run, as in a recording; `series`: the names of the quantities of each sample. */
-  constructor(described, series, capacity = Math.min(KEPT_SAMPLES, Math.floor(KEPT_NUMBERS / (6 * described.boats)))) {
+  /** `description`: the description of the run, as in a recording; `series`: the names of the quantities of each sample. */
+  constructor(description, series, capacity = Math.min(KEPT_SAMPLES, Math.floor(KEPT_NUMBERS / (6 * description.boats)))) {
     const raw = Object.fromEntries(["time_s", "phase", "in_analysis_window"].map((name) => [name, new GrowingColumn(1, capacity)]));
-    raw.pose = new GrowingColumn(3 * described.boats, capacity);
-    raw.velocity = new GrowingColumn(3 * described.boats, capacity);
-    raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, described.leaders), capacity);
+    raw.pose = new GrowingColumn(3 * description.boats, capacity);
+    raw.velocity = new GrowingColumn(3 * description.boats, capacity);
+    raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, description.leaders), capacity);
     raw.series = new GrowingColumn(series.length, capacity);
-    super(described, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
+    super(description, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
     Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0 });
     this.restartMeans();
   }
@@ -83,9 +84,9 @@ export class GrowingRun extends Run {
     return this.sums[key] / this.counted;
   }
 
-  /** Replaces the parameters. */
-  describe(described) {
-    Object.assign(this, described, { changedAt: this.end });
+  /** Replaces the description after a change. */
+  describe(description) {
+    Object.assign(this, description, { changedAt: this.end });
     this.restartMeans();
   }
 
@@ -94,17 +95,17 @@ export class GrowingRun extends Run {
     Object.assign(this, { sums: { psi_o: 0, rotation: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
   }
 
-  /** Appends samples of the simulator; `onCycle` gets the mean order of each analysis window that ends. */
-  append(taken, onCycle = () => {}) {
-    const count = taken.time_s.length;
+  /** Appends the simulator's samples; `onCycle` gets the mean order of each analysis window that ends. */
+  append(samples, onCycle = () => {}) {
+    const count = samples.time_s.length;
     if (this.length + count > this.capacity) {
       this.#forget(Math.max(this.length + count - this.capacity, this.capacity >> 1));
     }
     const first = this.length;
     for (const name of ["time_s", "phase", "in_analysis_window", "pose", "velocity", "series"]) {
-      this.raw[name].append(taken[name]);
+      this.raw[name].append(samples[name]);
     }
-    this.raw.rudder.append(taken.rudder, this.leaders);
+    this.raw.rudder.append(samples.rudder, this.leaders);
     this.raw.rudder.length = this.raw.time_s.length;
     this.length = this.raw.time_s.length;
     this.time = this.raw.time_s.values.subarray(0, this.length);
@@ -112,9 +113,9 @@ export class GrowingRun extends Run {
       this.#score(k, onCycle);
     }
     if (count > 0) {
-      this.statistics = taken.statistics;
+      this.statistics = samples.statistics;
       this.latestContacts = this.latestContacts.slice(1 - CONTACT_SAMPLES);
-      this.latestContacts.push({ time: this.end, numbers: taken.contacts });
+      this.latestContacts.push({ time: this.end, numbers: samples.contacts });
     }
   }
 
@@ -126,6 +127,7 @@ export class GrowingRun extends Run {
     this.length -= forgotten;
   }
 
+  /** Adds a sample to the means if it is in the analysis window; reports the mean order of a window that has ended. */
   #score(sample, onCycle) {
     if (this.inWindow(sample)) {
       for (const key of Object.keys(this.sums)) {
@@ -140,12 +142,12 @@ export class GrowingRun extends Run {
     }
   }
 
-  /** Contacts of the last sample that has them, if it is less than 0.5 s before this one; otherwise none. */
+  /** The latest contacts up to a sample, if they are less than 0.5 s older. */
   contacts(sample) {
-    const known = this.latestContacts.findLast(({ time }) => time <= this.time[sample] + 1e-9);
-    const numbers = known && this.time[sample] - known.time < 0.5 ? known.numbers : [];
-    return Array.from({ length: numbers.length / CONTACT }, (_, k) => {
-      const [i, j, along, x, y, force] = numbers.subarray(k * CONTACT, (k + 1) * CONTACT);
+    const latest = this.latestContacts.findLast(({ time }) => time <= this.time[sample] + 1e-9);
+    const numbers = latest && this.time[sample] - latest.time < 0.5 ? latest.numbers : [];
+    return Array.from({ length: numbers.length / CONTACT_NUMBERS }, (_, k) => {
+      const [i, j, along, x, y, force] = numbers.subarray(k * CONTACT_NUMBERS, (k + 1) * CONTACT_NUMBERS);
       return { i, j, along, angle: Math.atan2(y, x), force };
     });
   }
@@ -160,7 +162,7 @@ function columnsOf(raw, series) {
     at: (sample, boat) => Math.hypot(raw.velocity.at(sample, 3 * boat), raw.velocity.at(sample, 3 * boat + 1)),
   });
   columns.set("leader_phi", {
-    // Clockwise from the outward direction, as the simulator's local frame has it.
+    // Clockwise from the outward direction, as in the simulator's local frame.
     at: (sample, boat) => Math.atan2(raw.pose.at(sample, 3 * boat + 1), raw.pose.at(sample, 3 * boat)) - raw.pose.at(sample, 3 * boat + 2),
   });
   series.forEach((name, index) => {

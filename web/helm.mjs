@@ -1,9 +1,9 @@
 // The heading that a visitor chooses for the leaders, by a slider's thumb or by the arrow keys,
 // wherever the focus is.
 
-/** Elements that need arrow keys themselves: text, and the open list of keys. */
+/** Elements in which arrow keys keep their meaning: text, and the open list of keys. */
 const KEEPS_ARROWS = "textarea, input[type='text'], input[type='number'], [contenteditable], dialog[open]";
-/** Direction of each key: degrees, clockwise. */
+/** The turn of each key, in degrees clockwise. */
 const TURNS = { ArrowLeft: -15, ArrowRight: 15 };
 
 export class Helm {
@@ -24,18 +24,18 @@ export class Helm {
     this.center();
   }
 
-  /** From −1 to 1: clockwise from outward, over half a turn. */
+  /** The heading from −1 to 1: the angle clockwise from outward, divided by half a turn. */
   get value() {
     return Number(this.#thumb.value) / 180;
   }
 
-  /** Straight at the wall, as a round starts. */
+  /** Sets the heading straight at the wall, as at the start of a round. */
   center() {
     this.#show(0);
   }
 
   #key(event) {
-    if (!Object.hasOwn(TURNS, event.key) || !this.#isYours() || isKept(event)) {
+    if (!Object.hasOwn(TURNS, event.key) || !this.#isYours() || keepsArrow(event)) {
       return;
     }
     event.preventDefault();
@@ -62,16 +62,17 @@ export function turned(degrees, by) {
   return next > 180 || next < -180 ? next - 360 * Math.sign(next) : next;
 }
 
-function isKept(event) {
+/** Whether a key is not for the helm. */
+function keepsArrow(event) {
   return event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.(KEEPS_ARROWS) || document.querySelector("dialog[open]");
 }
 
 /** A heading in words, by its degrees clockwise from outward. */
 export function headingWords(degrees) {
-  const [along, way] = [Math.abs(degrees), degrees > 0 ? "clockwise" : "counter-clockwise"];
-  if (along === 0 || along === 180) {
-    return along === 0 ? "straight at the wall" : "straight inward";
+  const [angle, direction] = [Math.abs(degrees), degrees > 0 ? "clockwise" : "counter-clockwise"];
+  if (angle === 0 || angle === 180) {
+    return angle === 0 ? "straight at the wall" : "straight inward";
   }
-  const lean = 90 - along;
-  return lean === 0 ? way : `${way}, ${Math.abs(lean)}° ${lean > 0 ? "outward" : "inward"}`;
+  const lean = 90 - angle;
+  return lean === 0 ? direction : `${direction}, ${Math.abs(lean)}° ${lean > 0 ? "outward" : "inward"}`;
 }

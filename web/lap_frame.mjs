@@ -6,6 +6,7 @@ export function drawLapFrame(scene, boat) {
   const [x, y, heading] = scene.poses[boat];
   const [outward, length] = [Math.atan2(y, x), 5 * run.lengths.hull_radius_cm * scene.scale];
   const [left, top] = scene.pixelOf(boat);
+  // Keeps words on the canvas.
   const inside = (position, origin, size, margin) => Math.min(Math.max(position, margin - origin), size - margin - origin);
   const write = (words, x, y) => {
     const position = [inside(x, left, scene.canvas.clientWidth, 32), inside(y, top, scene.canvas.clientHeight, 9)];

@@ -1,8 +1,8 @@
 // Steering of leaders: by the laws that the simulator lists, or by the visitor's hand.
 
-/** Stands for the visitor in links and requests, in place of a law's name. */
+/** The name of steering by the visitor, in links and requests. */
 export const YOU = "you";
-/** The leaders that the visitor trained. */
+/** The name of the policy that the visitor trained. */
 export const TRAINED = "trained";
 
 export class Laws {
@@ -10,31 +10,34 @@ export class Laws {
   constructor(listed) {
     const names = listed.map(({ name }) => name);
     [this.atEverySubstep] = names;
-    this.ofEach = names.slice(1);
+    this.leaderChoices = names.slice(1);
   }
 
-  /** Choices for all leaders together: the laws (the first one of those with the same words), the trained leaders, and the visitor. */
-  get ofAll() {
-    const alike = [this.atEverySubstep, ...this.ofEach].filter((name, index, names) =>
-      names.findIndex((other) => this.words(other) === this.words(name)) === index);
-    return [...alike, TRAINED, YOU];
+  /** Names of the policies that all leaders may share: the laws (of laws with the same words only the first), the trained policy, and the visitor. */
+  get sharedChoices() {
+    const names = [this.atEverySubstep, ...this.leaderChoices].filter((name, index, all) =>
+      all.findIndex((other) => this.words(other) === this.words(name)) === index);
+    return [...names, TRAINED, YOU];
   }
 
   /** A law in words, which do not say how often it acts. */
   words(name) {
-    const kind = name.replace(/ at every .*/, "");
-    if (kind === YOU) {
-      return kind;
+    const law = name.replace(/ at every .*/, "");
+    if (law === YOU) {
+      return law;
     }
-    if (kind === TRAINED) {
+    if (law === TRAINED) {
       return "what you trained";
     }
-    return kind.endsWith(" law") ? `the ${kind}` : `${kind} steering`;
+    return law.endsWith(" law") ? `the ${law}` : `${law} steering`;
   }
 
-  /** A law for each of several leaders: those of a list, or the one law. One law if there are not several leaders. */
-  forEach(policy, leaders) {
-    const given = policy.split(",").map((name) => (this.ofEach.includes(name) ? name : this.ofEach[0]));
-    return leaders > 1 ? Array.from({ length: leaders }, (_, k) => given[k] ?? given.at(-1)).join(",") : given[0];
+  /**
+   * A law for each leader, separated by commas, from a list that may be shorter: further leaders have its last law, and a name
+   * that is no law stands for the first law. A single law if there is at most one leader.
+   */
+  policiesFor(policy, leaders) {
+    const laws = policy.split(",").map((name) => (this.leaderChoices.includes(name) ? name : this.leaderChoices[0]));
+    return leaders > 1 ? Array.from({ length: leaders }, (_, k) => laws[k] ?? laws.at(-1)).join(",") : laws[0];
   }
 }

@@ -18,7 +18,7 @@ export class LearningCurve {
     this.canvas = canvas;
   }
 
-  /** Starts with a training that ends after `end` flock-hours. */
+  /** Removes the points, for a training that ends after `end` flock-hours. */
   clear(end, law) {
     Object.assign(this, { points: [], end, law });
   }
@@ -62,11 +62,11 @@ export class LearningCurve {
       context.fillStyle = palette.learned;
       context.fill();
     }
-    this.#name(context, palette, EDGE_OF_CURVE.left + 4, y(law) - 6);
+    this.#labelLaw(context, palette, EDGE_OF_CURVE.left + 4, y(law) - 6);
   }
 
-  /** Labels the law's line at its start, where no leaders lead better yet; drawn on top of everything else. */
-  #name(context, palette, x, y) {
+  /** Labels the law's line at its start, where the curve of untrained leaders is below it. */
+  #labelLaw(context, palette, x, y) {
     if (Number.isNaN(this.law)) {
       return;
     }

@@ -1,5 +1,5 @@
-// The page's start and its lessons: each has a link, sentences above and below the picture, which may have links, and the quantity
-// that its point is seen in, if that is not the order.
+// The page's opening and its lessons. A lesson has a link, sentences above and below the picture, in which there may be links, and
+// `headline`, the quantity in large type if it is not the order.
 
 import { element } from "../flockenv/replay/shared/words.mjs";
 
@@ -10,7 +10,7 @@ const OPENING_WORDS = {
   after: "Blue boats head clockwise, orange ones counter-clockwise, gray ones neither.",
 };
 
-/** Not the name of a lesson: stands for the words of a recording. */
+/** Stands in place of a lesson's name while a recording is shown. */
 export const RECORDING = "a recording";
 const RECORDING_WORDS = {
   before: "This is a recording, from a file. The slider goes to any of its times, and “again” returns to the flock where it was.",
@@ -73,7 +73,7 @@ export const LESSONS = [
   },
 ];
 
-/** A link to each lesson. */
+/** Elements with a link to each lesson. */
 export function lessonLinks() {
   return LESSONS.map(({ name, title, link }) => {
     const anchor = element("a", "", title);
@@ -88,16 +88,19 @@ export function wordsOf(name) {
   return name === RECORDING ? RECORDING_WORDS : LESSONS.find((lesson) => lesson.name === name) ?? OPENING_WORDS;
 }
 
-/** Words with `[words](#link)` as links, and `[or words]` where there is more than fingers; those between braces stay on one line, so that no finger meets two of them. */
+/**
+ * The elements of a story. `[words](#link)` is a link, and `[or words]` is hidden on touch screens. Words between braces stay on one
+ * line, so that a finger does not touch two links.
+ */
 export function storyOf(words) {
   return words.split(/\{([^}]*)\}/).map((part, index) => {
     const line = element("span", index % 2 === 0 ? "" : "line");
-    line.append(...part.split(/(\[[^\]]*\](?:\(#[^)]*\))?)/).map(linked));
+    line.append(...part.split(/(\[[^\]]*\](?:\(#[^)]*\))?)/).map(linkOrText));
     return line;
   });
 }
 
-function linked(part) {
+function linkOrText(part) {
   if (part.startsWith("[or ")) {
     return element("span", "desk", part.slice(1, -1));
   }

@@ -9,18 +9,18 @@ import { SPEEDS } from "./request.mjs";
 import { derivedOf, download, recordingOf, runOfFile } from "./share.mjs";
 import { Training } from "./training.mjs";
 
-/** For how long, in ms, a button says that it copied. */
+/** Time in ms for which a button says that it copied. */
 const COPIED = 2000;
 
 /** Connects a page to the visitor's buttons, keys, files and links. */
 export function listen(page) {
-  byId("speed").append(...SPEEDS.map((each) => new Option(each === "max" ? "as fast as it goes" : `${each} ×`, each)));
+  byId("speed").append(...SPEEDS.map((speed) => new Option(speed === "max" ? "as fast as it goes" : `${speed} ×`, speed)));
   byId("color-key").append(...colorKey());
   byId("lessons").append(element("span", "faint", "Lessons:"), ...lessonLinks());
   buttons(page);
   keys(page);
   files(page);
-  page.training = trainings(page);
+  page.training = trainingOf(page);
   document.addEventListener("click", (event) => {
     // A link to the flock that is already shown restarts it.
     const link = event.target.closest?.("a[href^='#']");
@@ -48,19 +48,20 @@ function buttons(page) {
   byId("colors").addEventListener("change", () => page.remember("colors", byId("colors").value));
   byId("boat").addEventListener("change", () => page.pin(byId("boat").value === "" ? null : Number(byId("boat").value)));
   byId("scrub").addEventListener("input", () => page.seek(Number(byId("scrub").value)));
-  // Plots had no size while they were folded.
+  // Plots that were folded had no size, and are drawn when they open.
   for (const name of ["more", "about-flock"]) {
     byId(name).addEventListener("toggle", () => page.show());
   }
   for (const button of document.querySelectorAll("[data-copies]")) {
-    const said = element("span", "unseen");
-    said.setAttribute("role", "status");
-    button.after(said);
-    button.addEventListener("click", () => copy(page, button, said));
+    const report = element("span", "unseen");
+    report.setAttribute("role", "status");
+    button.after(report);
+    button.addEventListener("click", () => copy(page, button, report));
   }
 }
 
-function trainings(page) {
+/** The page's training, connected to its buttons. */
+function trainingOf(page) {
   const training = new Training(page);
   byId("train").addEventListener("click", () => training.toggle());
   byId("save-policy").addEventListener("click", () => training.save());
@@ -69,20 +70,20 @@ function trainings(page) {
 }
 
 function keys(page) {
-  const next = (by) => {
+  const pinNext = (by) => {
     const { boats } = page.runs[0];
     const { pinned } = page.view;
     page.pin(pinned === null ? (by > 0 ? 0 : boats - 1) : (pinned + by + boats) % boats);
   };
-  const switched = (id, value) => {
+  const choose = (id, value) => {
     byId(id).value = value;
     byId(id).dispatchEvent(new Event("change"));
   };
   const actions = {
-    c: () => switched("colors", byId("colors").value === "role" ? "direction" : "role"),
+    c: () => choose("colors", byId("colors").value === "role" ? "direction" : "role"),
     f: () => byId("forces").click(),
-    "]": () => next(1),
-    "[": () => next(-1),
+    "]": () => pinNext(1),
+    "[": () => pinNext(-1),
     "?": () => byId("keys").showModal(),
     Escape: () => page.pin(null),
   };
@@ -111,20 +112,20 @@ function files(page) {
   });
 }
 
-/** Copies, and says so in the button, whose position and width stay the same; `said` tells those who cannot see it. */
-async function copy(page, button, said) {
+/** Copies, and says so in the button, whose position and width stay the same, and in `report` for screen readers. */
+async function copy(page, button, report) {
   const { copies } = button.dataset;
   const text = copies === "address" ? new URL(linkOf(page.flocks, page.other, page.time), location.href).href : byId(copies).value;
-  said.textContent = "";
+  report.textContent = "";
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    said.className = "";
-    said.textContent = ` The browser does not let this page copy; here it is: ${text}`;
+    report.className = "";
+    report.textContent = ` The browser does not let this page copy; here it is: ${text}`;
     return;
   }
-  said.className = "unseen";
-  said.textContent = "Copied.";
+  report.className = "unseen";
+  report.textContent = "Copied.";
   if (!button.style.minWidth) {
     const words = button.textContent;
     button.style.minWidth = `${button.getBoundingClientRect().width}px`;
@@ -154,10 +155,10 @@ async function open(page, file) {
   try {
     const run = await runOfFile(file, about, {
       check: async (request) => (await simulator.ask("check", { request })).values,
-      describe: (answer, named) => flocks.described(answer, named),
-      derive: async (arrays, described) => (await simulator.ask("derive", derivedOf(arrays, described, flocks.series))).series,
+      describe: (answer, named) => flocks.runDescription(answer, named),
+      derive: async (arrays, description) => (await simulator.ask("derive", derivedOf(arrays, description, flocks.series))).series,
     });
-    // If a flock is still running ahead, or changing, wait for it.
+    // Wait for a flock that is changing, or running to the time of a link.
     while (page.changing && !page.broken) {
       await new Promise((resolve) => { setTimeout(resolve, 50); });
     }

@@ -14,33 +14,33 @@ import { showTexts } from "./share.mjs";
 import { View } from "./view.mjs";
 
 /** Time in ms after which the page says that a flock runs ahead. */
-const LONG = 500;
+const RUNS_LONG = 500;
 
 export class LivePage {
   /** The parts of the link besides the flocks. */
   other = { speed: "8" };
-  /** Changes, by name, that wait until the current one is finished. */
-  wanted = [];
+  /** Changes, [name, value], that wait until the present one is finished. */
+  waitingChanges = [];
   changing = false;
   broken = false;
-  /** Number of the link that is being followed; a later link replaces it. */
-  followed = 0;
-  /** Whether the page itself paused (for a link that asks for a still picture or a round of the game), not the visitor. */
+  /** Number of the latest link; earlier links are no longer followed. */
+  latestLink = 0;
+  /** Whether the page paused by itself, for a link that asks for a still picture or for a round of the game. */
   isHeld = false;
   link = new LinkWriter(() => (this.recorded || this.changing ? null : linkOf(this.flocks, this.other, this.playing ? 0 : this.time)));
 
-  constructor(simulator, about, described) {
+  constructor(simulator, about, description) {
     this.simulator = simulator;
     this.about = about;
-    this.entries = described.entries;
-    this.kinds = Object.fromEntries(described.fields.map(({ name, kind }) => [name, kind]));
-    this.quantities = quantitiesOf(described);
+    this.entries = description.entries;
+    this.kinds = Object.fromEntries(description.fields.map(({ name, kind }) => [name, kind]));
+    this.quantities = quantitiesOf(description);
     const series = this.quantities.map(({ key }) => key);
-    this.flocks = new Flocks(simulator, { ...described, kinds: this.kinds, series, version: about.version });
+    this.flocks = new Flocks(simulator, { ...description, kinds: this.kinds, series, version: about.version });
     this.view = new View(this.flocks, this, about.orders, (time) => this.seek(time));
     this.playback = new Playback(this);
-    this.hand = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());
-    const meanings = Object.fromEntries(described.fields.map(({ name, meaning }) => [name, meaning]));
+    this.helm = new Helm(byId("thumb"), byId("heading"), () => this.flocks.areYours, () => this.playback.start());
+    const meanings = Object.fromEntries(description.fields.map(({ name, meaning }) => [name, meaning]));
     this.controls = new Controls(meanings, this.flocks.laws, (name, value) => this.set(name, value));
   }
 
@@ -64,15 +64,15 @@ export class LivePage {
     return this.flocks.isRecorded;
   }
 
-  /** Shows what a link asks for. */
+  /** Shows the flocks of a link. */
   async follow(fragment) {
-    const [turn, asked] = [this.followed + 1, performance.now()];
-    this.followed = turn;
+    const [link, start] = [this.latestLink + 1, performance.now()];
+    this.latestLink = link;
     const isWanted = () => {
-      if (performance.now() - asked > LONG) {
+      if (performance.now() - start > RUNS_LONG) {
         this.say("The flock runs ahead to the moment of the link.");
       }
-      return turn === this.followed;
+      return link === this.latestLink;
     };
     this.changing = true;
     const linked = readLink(fragment, Object.keys(this.kinds));
@@ -81,12 +81,12 @@ export class LivePage {
     if (isWanted() && !this.broken) {
       this.changing = false;
       this.playback.hold(linked.other.paused === "1");
-      this.#shows("open", false, linked.ignored.join(" "));
+      this.#showAnswer("open", false, linked.ignored.join(" "));
       await this.#change();
     }
   }
 
-  /** The parts of a link besides the flocks. */
+  /** Applies the parts of a link besides the flocks. */
   #showOther({ start: _, now: __, flocks: ___, paused: ____, ...other }) {
     this.other = { speed: "8", ...other };
     this.view.choose(this.other);
@@ -94,22 +94,22 @@ export class LivePage {
 
   /** Changes one parameter; the flock continues from its present state if that is possible. */
   set(name, value) {
-    this.wanted = [...this.wanted.filter(([other]) => other !== name), [name, value]];
+    this.waitingChanges = [...this.waitingChanges.filter(([other]) => other !== name), [name, value]];
     this.#change();
   }
 
   /** Starts again, with this seed. */
-  async restart(seed = this.flocks.asked.flock.seed) {
-    this.followed += 1;
+  async restart(seed = this.flocks.requested.flock.seed) {
+    this.latestLink += 1;
     this.changing = false;
-    const flock = { ...this.flocks.asked.flock, ...(seed !== undefined && { seed }) };
-    await this.attempt(() => this.#become({ ...this.flocks.asked, flock }, "open"));
+    const flock = { ...this.flocks.requested.flock, ...(seed !== undefined && { seed }) };
+    await this.attempt(() => this.#update({ ...this.flocks.requested, flock }, "open"));
   }
 
   /** Returns from a recording, or restarts: with a new thread if the old one stopped, and after a round with the next round's flocks. */
   async again() {
     if (this.recorded && !this.broken) {
-      this.playback.comeBack();
+      this.playback.returnToFlocks();
       return;
     }
     if (this.broken) {
@@ -117,35 +117,35 @@ export class LivePage {
       await this.attempt(() => this.simulator.start());
     }
     if (!this.broken) {
-      const { seed = "0" } = this.flocks.asked.flock;
-      await this.restart(this.playback.isOver ? String(BigInt(seed) + BigInt(this.flocks.besides)) : undefined);
+      const { seed = "0" } = this.flocks.requested.flock;
+      await this.restart(this.playback.isOver ? String(BigInt(seed) + BigInt(this.flocks.firstBeside)) : undefined);
     }
   }
 
-  /** Makes one change at a time. Of the changes that arrive meanwhile, only the last one of each name counts. */
+  /** Makes the waiting changes, one request at a time. Of changes with the same name only the last one counts. */
   async #change() {
     if (this.changing) {
       return;
     }
     this.changing = true;
-    while (this.wanted.length > 0) {
-      const { asked, isRecorded, laws, values } = this.flocks;
-      const wanted = this.wanted.reduce((base, [name, value]) => changed(base, values, laws, name, value), asked);
-      this.wanted = [];
-      const isAlike = !isRecorded && JSON.stringify(wanted.beside) === JSON.stringify(asked.beside);
-      await this.attempt(() => this.#become(wanted, isAlike ? "change" : "open"));
+    while (this.waitingChanges.length > 0) {
+      const { requested, isRecorded, laws, values } = this.flocks;
+      const wanted = this.waitingChanges.reduce((base, [name, value]) => changed(base, values, laws, name, value), requested);
+      this.waitingChanges = [];
+      const isSameKind = !isRecorded && JSON.stringify(wanted.beside) === JSON.stringify(requested.beside);
+      await this.attempt(() => this.#update(wanted, isSameKind ? "change" : "open"));
     }
     this.changing = false;
   }
 
-  /** Asks the simulator, and says why if it refuses or stops. */
-  async attempt(question) {
+  /** Makes a call of the simulator, and says why if it refuses or stops. */
+  async attempt(call) {
     try {
-      await question();
+      await call();
     } catch (error) {
       if (error.refused) {
         this.say(`${error.message}.`);
-        this.controls.show(this.flocks.controlled);
+        this.controls.show(this.flocks.controlValues);
       } else {
         this.#stop(error);
       }
@@ -153,12 +153,12 @@ export class LivePage {
   }
 
   /** Lets the simulator open or change the flocks, and shows them. */
-  async #become(wanted, kind) {
-    this.#shows(kind, await this.flocks.become(wanted, kind));
+  async #update(wanted, kind) {
+    this.#showAnswer(kind, await this.flocks.update(wanted, kind));
   }
 
   /** Shows the flocks after an answer of this kind, and says whether they continue. */
-  #shows(kind, isSame, words = "") {
+  #showAnswer(kind, isSame, words = "") {
     if (!isSame) {
       this.playback.restart();
     }
@@ -168,18 +168,18 @@ export class LivePage {
     this.link.write();
   }
 
-  /** Shows the runs that there are now. */
+  /** Shows the present runs, and everything that depends on them. */
   showRuns() {
-    this.view.tell(this.recorded ? RECORDING : this.other.lesson ?? "");
+    this.view.showLesson(this.recorded ? RECORDING : this.other.lesson ?? "");
     this.view.rebuild((boat) => this.pin(boat), () => this.show());
     const { pinned } = this.view;
     this.pin(pinned !== null && pinned < this.runs[0].boats ? pinned : null);
-    this.controls.show(this.flocks.controlled);
+    this.controls.show(this.flocks.controlValues);
     showTexts(this.flocks, this.time);
     this.training.show();
   }
 
-  /** Shows a sentence; also says if a training in another lesson is waiting. */
+  /** Shows a sentence. A training stops if the shown flock is not trained, and the sentence says so. */
   say(words) {
     byId("status").textContent = `${words} ${this.training.leave()}`.trim();
   }
@@ -206,11 +206,11 @@ export class LivePage {
   pin(boat) {
     this.view.pinned = boat;
     this.view.observed = null;
-    this.view.hurry();
+    this.view.showWordsNow();
     byId("boat").value = boat ?? "";
     this.remember("boat", boat === null ? null : String(boat));
     if (boat !== null && !this.playing && !this.recorded) {
-      this.#look(boat);
+      this.#observe(boat);
     }
   }
 
@@ -225,8 +225,8 @@ export class LivePage {
     this.show();
   }
 
-  /** Asks what a boat observes while the flock stands still. */
-  async #look(boat) {
+  /** Asks the simulator what a boat observes while the flock is paused. */
+  async #observe(boat) {
     await this.attempt(async () => {
       const { taken } = await this.simulator.ask("look", { boat });
       if (boat === this.view.pinned) {

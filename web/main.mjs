@@ -12,11 +12,11 @@ async function start() {
   const thread = new TextDecoder().decode(await globalThis.unpacked("thread"));
   const simulator = new Simulator(thread, await globalThis.unpacked("wasm"));
   const about = JSON.parse(text("about"));
-  const described = await simulator.start();
+  const description = await simulator.start();
   const sheet = new CSSStyleSheet();
-  sheet.replaceSync(described.colors);
+  sheet.replaceSync(description.colors);
   document.adoptedStyleSheets = [sheet];
-  window.page = new LivePage(simulator, about, described);
+  window.page = new LivePage(simulator, about, description);
   listen(window.page);
   await window.page.follow(location.hash.length > 1 ? location.hash : about.opening ?? OPENING);
   document.body.dataset.ready = "true";

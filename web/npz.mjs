@@ -1,9 +1,11 @@
 // Named arrays in an .npz file: a zip of .npy entries. Nothing that is read is executed.
 
+/** Largest sum of the arrays of a file that is read, in bytes. */
 const MOST_BYTES = 1 << 29;
+/** Largest number of letters that are converted at once. */
 const PART = 4096;
 
-/** The bytes of a file of arrays: `{name: {shape, descr, bytes}}`, uncompressed. */
+/** The bytes of an uncompressed file of arrays, given as `{name: {shape, descr, bytes}}`. */
 export function writeNpz(arrays) {
   const [parts, directory] = [[], []];
   let offset = 0;
@@ -11,18 +13,19 @@ export function writeNpz(arrays) {
   for (const name of names) {
     const entry = npyOf(arrays[name]);
     const path = new TextEncoder().encode(`${name}.npy`);
-    const about = new DataView(new ArrayBuffer(26));
-    about.setUint16(0, 20, true);
+    // The fields that a file's own header and its entry in the directory share.
+    const shared = new DataView(new ArrayBuffer(26));
+    shared.setUint16(0, 20, true);
     // 1 January 1980: no clock in the file.
-    about.setUint16(8, 33, true);
-    about.setUint32(10, crc32(entry), true);
-    about.setUint32(14, entry.length, true);
-    about.setUint32(18, entry.length, true);
-    about.setUint16(22, path.length, true);
-    const local = [Uint8Array.of(80, 75, 3, 4), new Uint8Array(about.buffer), path];
-    const rest = new DataView(new ArrayBuffer(14));
-    rest.setUint32(10, offset, true);
-    directory.push(Uint8Array.of(80, 75, 1, 2, 20, 0), new Uint8Array(about.buffer), new Uint8Array(rest.buffer), path);
+    shared.setUint16(8, 33, true);
+    shared.setUint32(10, crc32(entry), true);
+    shared.setUint32(14, entry.length, true);
+    shared.setUint32(18, entry.length, true);
+    shared.setUint16(22, path.length, true);
+    const local = [Uint8Array.of(80, 75, 3, 4), new Uint8Array(shared.buffer), path];
+    const location = new DataView(new ArrayBuffer(14));
+    location.setUint32(10, offset, true);
+    directory.push(Uint8Array.of(80, 75, 1, 2, 20, 0), new Uint8Array(shared.buffer), new Uint8Array(location.buffer), path);
     parts.push(...local, entry);
     offset += 30 + path.length + entry.length;
   }
@@ -54,7 +57,7 @@ function npyOf({ shape, descr, bytes }) {
   return joined([start, new TextEncoder().encode(padded), bytes]);
 }
 
-/** An array of numbers, of booleans or of strings, as `writeNpz` takes it. */
+/** Arrays of numbers, booleans or strings for `writeNpz`. */
 export const array = {
   reals: (values, shape) => ({ shape, descr: "<f8", bytes: new Uint8Array(Float64Array.from(values).buffer) }),
   flags: (values, shape) => ({ shape, descr: "|b1", bytes: Uint8Array.from(values, Number) }),
@@ -72,26 +75,27 @@ export async function readNpz(buffer) {
   const bytes = new Uint8Array(buffer);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
   const arrays = {};
-  let held = 0;
-  for (const { name, start, packed, size, method, sum } of entries(view)) {
-    held += size;
-    if (held > MOST_BYTES) {
+  let total = 0;
+  for (const { name, start, packed, size, method, checksum } of entries(view)) {
+    total += size;
+    if (total > MOST_BYTES) {
       throw new Error("it holds more than this page shows");
     }
     const content = bytes.subarray(start, start + packed);
     const entry = method === 0 ? content : await inflated(content, size);
-    if (entry.length !== size || crc32(entry) !== sum) {
+    if (entry.length !== size || crc32(entry) !== checksum) {
       throw new Error(`Bad CRC-32 for file '${name}'`);
     }
-    const plain = name.replace(/\.npy$/, "");
-    if (Object.hasOwn(arrays, plain)) {
-      throw new Error(`it holds '${plain}' twice`);
+    const arrayName = name.replace(/\.npy$/, "");
+    if (Object.hasOwn(arrays, arrayName)) {
+      throw new Error(`it holds '${arrayName}' twice`);
     }
-    arrays[plain] = readNpy(entry);
+    arrays[arrayName] = readNpy(entry);
   }
   return arrays;
 }
 
+/** The entries of a zip file's directory. */
 function* entries(view) {
   let end = view.byteLength - 22;
   while (end >= 0 && end > view.byteLength - 70_000 && view.getUint32(end, true) !== 0x06054b50) {
@@ -102,7 +106,7 @@ function* entries(view) {
   }
   const [count, size, first] = [view.getUint16(end + 10, true), view.getUint32(end + 12, true), view.getUint32(end + 16, true)];
   let offset = first;
-  for (let left = count; left > 0; left -= 1) {
+  for (let k = 0; k < count; k += 1) {
     const entry = directoryEntry(view, offset);
     yield entry;
     offset = entry.next;
@@ -112,30 +116,30 @@ function* entries(view) {
   }
 }
 
-/** A file's entry in the directory, if it agrees with the file's own header. */
+/** The entry of a file in the directory, which must agree with the file's own header. */
 function directoryEntry(view, offset) {
   if (view.getUint32(offset, true) !== 0x02014b50) {
     throw new Error("Bad magic number for central directory");
   }
   const [version, flags, method] = [6, 8, 10].map((at) => view.getUint16(offset + at, true));
-  const [sum, packed, size, local] = [16, 20, 24, 42].map((at) => view.getUint32(offset + at, true));
+  const [checksum, packed, size, local] = [16, 20, 24, 42].map((at) => view.getUint32(offset + at, true));
   const [length, extra, comment] = [28, 30, 32].map((at) => view.getUint16(offset + at, true));
   const nameAt = (at, long) => new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + at, long));
   const name = nameAt(offset + 46, length);
-  // Only the bits "lengths follow" and "names are UTF-8" are known.
+  // Of the flags only "lengths follow" and "names are UTF-8" may be set.
   const isKnown = [0, 8].includes(method) && version <= 63 && (flags & ~0x808) === 0 && packed !== 0xffffffff;
   if (!isKnown || view.getUint16(offset + 34, true) !== 0) {
     throw new Error(`${name} is packed in an unknown way`);
   }
-  const own = view.getUint16(local + 26, true);
+  const localLength = view.getUint16(local + 26, true);
   if (view.getUint32(local, true) !== 0x04034b50) {
     throw new Error("Bad magic number for file header");
   }
-  if (nameAt(local + 30, own) !== name || view.getUint16(local + 8, true) !== method || (view.getUint16(local + 6, true) & ~0x808) !== 0) {
-    throw new Error(`File name in directory '${name}' and header '${nameAt(local + 30, own)}' differ.`);
+  if (nameAt(local + 30, localLength) !== name || view.getUint16(local + 8, true) !== method || (view.getUint16(local + 6, true) & ~0x808) !== 0) {
+    throw new Error(`File name in directory '${name}' and header '${nameAt(local + 30, localLength)}' differ.`);
   }
-  const start = local + 30 + own + view.getUint16(local + 28, true);
-  return { name, start, packed, size, method, sum, next: offset + 46 + length + extra + comment };
+  const start = local + 30 + localLength + view.getUint16(local + 28, true);
+  return { name, start, packed, size, method, checksum, next: offset + 46 + length + extra + comment };
 }
 
 async function inflated(bytes, most) {
@@ -192,7 +196,7 @@ function readNpy(bytes) {
 function textsOf(content, width) {
   const letters = new Uint32Array(content);
   return Array.from({ length: width === 0 ? 0 : letters.length / width }, (_, k) => {
-    // NumPy drops zeros only at the end.
+    // As in NumPy, only zeros at the end are padding.
     const points = letters.subarray(k * width, (k + 1) * width);
     const end = points.findLastIndex((point) => point > 0) + 1;
     if (points.some((point) => point > 0x10ffff)) {

@@ -5,7 +5,7 @@ import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
 import { NO_BOAT } from "./flocks.mjs";
 import { Game, scoreOf } from "./game.mjs";
 
-/** How long the simulator may compute for one frame, in ms, and after how long it is called slow; its first answer takes longer. */
+/** Times in ms: how long the simulator may compute for one frame, after how long it counts as slow, and the same for its first answer. */
 const [FRAME_WORK, SLOW, SLOW_AT_FIRST] = [12, 1000, 8000];
 
 /** Whether the system asks for reduced motion, and the sentence for that. */
@@ -18,10 +18,11 @@ export class Playback {
   costs = { frames: 0, drawing: 0, simulating: 0, memory: 0 };
   game = new Game();
   #page;
+  /** The speed over about a second: its start in ms, the seconds that passed, and the last speed in words. */
   #rate = { since: 0, passed: 0, words: "" };
   #isOver = false;
-  /** The time of the flocks that wait while a recording is shown; null without a recording. */
-  #left = null;
+  /** The state of playback to which the page returns from a recording; null without a recording. */
+  #before = null;
 
   /** `page` has the flocks to play, and shows sentences. */
   constructor(page) {
@@ -29,37 +30,37 @@ export class Playback {
     this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
   }
 
-  /** Shows other flocks, at their latest sample. */
+  /** Shows new flocks, at their latest sample. */
   restart() {
-    const { flocks, hand, view } = this.#page;
+    const { flocks, helm, view } = this.#page;
     this.time = flocks.runs[0].end;
     this.#isOver = false;
-    this.#left = null;
+    this.#before = null;
     if (flocks.areYours) {
-      hand.center();
+      helm.center();
       this.game.play(flocks.shown.flock);
       view.rounds = this.game.words;
     }
   }
 
-  /** Shows a recording's run at its start; the flocks wait where they are. */
+  /** Shows a recording's run from its start; the flocks wait. */
   begin(run) {
     const { flocks, isHeld, view: { pinned } } = this.#page;
-    this.#left ??= { time: this.time, isHeld, pinned, isOver: this.#isOver, plays: this.transport.playing };
+    this.#before ??= { time: this.time, isHeld, pinned, isOver: this.#isOver, plays: this.transport.playing };
     this.#isOver = false;
     this.transport.pause();
     flocks.show(run);
-    // Its picture must come first, since the pictures of the flocks have no run any more.
+    // The recording's picture must come first: the pictures of the flocks no longer have runs.
     this.#page.showRuns();
     this.seek(run.time[0]);
   }
 
   /** Continues with the flocks that waited. */
-  comeBack() {
-    const { time, isHeld, pinned, isOver, plays } = this.#left;
-    this.#left = null;
+  returnToFlocks() {
+    const { time, isHeld, pinned, isOver, plays } = this.#before;
+    this.#before = null;
     this.transport.pause();
-    this.#page.flocks.comeBack();
+    this.#page.flocks.returnToFlocks();
     Object.assign(this, { time });
     this.#isOver = isOver;
     this.#page.isHeld = isHeld;
@@ -71,12 +72,12 @@ export class Playback {
     }
   }
 
-  /** Whether what is shown is the game. */
+  /** Whether the page shows the game. */
   get #isGame() {
     return this.#page.other.lesson === "steer" && this.#page.flocks.areYours;
   }
 
-  /** Pauses if the link asks for a still picture or starts a round of the game, which wait for the visitor; otherwise plays again. */
+  /** Pauses for a still picture or a round of the game, until the visitor plays or steers. Otherwise goes on if the page had paused by itself. */
   hold(isStill) {
     const wasHeld = this.#page.isHeld;
     this.#page.isHeld = isStill || this.#isGame;
@@ -87,7 +88,7 @@ export class Playback {
     }
   }
 
-  /** The visitor has steered: starts a round of the game that waits for it. */
+  /** Starts a waiting round of the game, after the visitor has steered. */
   start() {
     if (this.#page.flocks.areYours && !this.#isOver && !this.transport.playing) {
       this.toggle();
@@ -137,12 +138,12 @@ export class Playback {
     const { end } = flocks.runs[0];
     const from = this.time;
     this.time = Math.min(this.time + (passed > 0 ? passed * speed : 0), end);
-    this.#note(now, this.time - from);
+    this.#countFrame(now, this.time - from);
     if (flocks.isRecorded) {
       if (this.time >= end) {
         this.transport.pause();
       }
-    } else if (!this.#judge()) {
+    } else if (!this.#endRound()) {
       const ahead = speed === Infinity ? Infinity : this.time + 0.1 + 0.05 * speed - end;
       this.#advance(Math.ceil(Math.min(10 * ahead, 1e6)));
     }
@@ -153,9 +154,9 @@ export class Playback {
     return waiting > (this.costs.simulating > 0 ? SLOW : SLOW_AT_FIRST);
   }
 
-  /** Asks the simulator for some more samples, unless it is at work. */
+  /** Asks the simulator for more samples, unless an answer is due. */
   async #advance(samples) {
-    const { flocks, hand, simulator, view } = this.#page;
+    const { flocks, helm, simulator, view } = this.#page;
     if (this.#isSlow(simulator)) {
       this.#page.say("The simulator is busy with one step: pause stops it.");
     }
@@ -163,7 +164,7 @@ export class Playback {
       return;
     }
     this.advancing = true;
-    const question = { samples, milliseconds: FRAME_WORK, boat: view.pinned ?? NO_BOAT, heading: hand.value };
+    const question = { samples, milliseconds: FRAME_WORK, boat: view.pinned ?? NO_BOAT, heading: helm.value };
     await this.#page.attempt(async () => {
       const { taken, milliseconds, memory } = await flocks.advance(question, (noise, order) => view.map.note(noise, order));
       this.costs.simulating += milliseconds;
@@ -176,23 +177,23 @@ export class Playback {
     this.advancing = false;
   }
 
-  /** Whether a round of the game ends, between two answers of the simulator. */
-  #judge() {
+  /** Ends a round of the game that is over, unless an answer of the simulator is due. Returns whether it ended. */
+  #endRound() {
     const { flocks, view } = this.#page;
     if (!this.#isGame || this.#isOver || this.advancing || !Game.isOver(this.time)) {
       return false;
     }
-    const { runs, besides } = flocks;
+    const { runs, firstBeside } = flocks;
     this.#isOver = true;
     this.#page.isHeld = true;
     this.transport.pause();
-    this.#page.say(this.game.end(scoreOf(runs.slice(0, besides)), scoreOf(runs.slice(besides))));
+    this.#page.say(this.game.end(scoreOf(runs.slice(0, firstBeside)), scoreOf(runs.slice(firstBeside))));
     view.rounds = this.game.words;
     return true;
   }
 
-  /** Counts frames, and the time that passed in them. */
-  #note(now, passed) {
+  /** Counts a frame, and measures the speed in s of the flock per s. */
+  #countFrame(now, passed) {
     this.costs.frames += 1;
     this.#rate.passed += passed;
     if (now - this.#rate.since > 1000) {

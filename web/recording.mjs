@@ -8,23 +8,27 @@ const CONTACTS = ["count", "i", "j", "normal", "force", "point_cm", "along_cm"];
 /** Bounds of a flock's poses and velocities. */
 const WITHIN_REACH = [-1e9, 1e9];
 const [REALS, DOUBLES] = [["<f8", "<f4"], ["<f8"]];
-/** NumPy's names of dtypes, by their codes in files; for texts both are the same. */
-const KINDS = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
+/** NumPy's names of dtypes, by their codes in files. Texts have the code as their name. */
+const NUMPY_NAMES = { "<f8": "float64", "<f4": "float32", "<i8": "int64", "<i4": "int32", "<u8": "uint64", "<u4": "uint32", "|b1": "bool", "|u1": "uint8" };
 
-const kindOf = (descr) => KINDS[descr] ?? descr;
+const dtypeName = (descr) => NUMPY_NAMES[descr] ?? descr;
 const tuple = (shape) => (shape.length === 1 ? `(${shape[0]},)` : `(${shape.join(", ")})`);
 const isSame = (shape, other) => shape.length === other.length && shape.every((size, k) => size === other[k]);
-/** A bound in Python's spelling: 1e+09 or 3.14159. */
-const inShort = (bound) => (Math.abs(bound) < 1e6 ? `${Number(bound.toPrecision(6))}` : bound.toExponential().replace(/\+(\d)$/, "+0$1"));
+/** A bound as Python's format `g` writes it: 1e+09 or 3.14159. */
+const formatBound = (bound) => (Math.abs(bound) < 1e6 ? `${Number(bound.toPrecision(6))}` : bound.toExponential().replace(/\+(\d)$/, "+0$1"));
 const quoted = (text) => `'${text}'`;
 
 function refuse(sentence) {
   throw new Error(sentence);
 }
 
+/**
+ * Checks an array's dtype, shape and values. `isUndefined`: all numbers must be NaN; `hasGaps`: numbers may be NaN, for a missing boat all of
+ * them; otherwise they must be finite.
+ */
 function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps = false, bounds } = {}) {
   if (!descrs.includes(array.descr)) {
-    refuse(`${name} is of ${kindOf(array.descr)}, expected an array of ${kindOf(descrs[0])}`);
+    refuse(`${name} is of ${dtypeName(array.descr)}, expected an array of ${dtypeName(descrs[0])}`);
   }
   if (!isSame(array.shape, shape)) {
     refuse(`${name} has shape ${tuple(array.shape)}, expected ${tuple(shape)}`);
@@ -34,17 +38,17 @@ function checkArray(name, array, shape, descrs, { isUndefined = false, hasGaps =
   }
   if (hasGaps) {
     const width = shape.length === 3 ? shape[2] : 1;
-    const isWhole = array.values.every((value, k) => Number.isNaN(value) === Number.isNaN(array.values[k - (k % width)]));
-    if (!isWhole || array.values.some((value) => Math.abs(value) === Infinity)) {
+    const isConsistent = array.values.every((value, k) => Number.isNaN(value) === Number.isNaN(array.values[k - (k % width)]));
+    if (!isConsistent || array.values.some((value) => Math.abs(value) === Infinity)) {
       refuse(`${name} must be finite, except for missing boats`);
     }
   } else if (!array.values.every(isUndefined ? Number.isNaN : Number.isFinite)) {
     refuse(`${name} must be ${isUndefined ? "undefined (NaN)" : "finite"}`);
   }
   const [low, high] = bounds ?? [-Infinity, Infinity];
-  // Sums are rounded.
+  // Means are sums with rounding errors, so bounds have a margin.
   if (array.values.some((value) => value < low - 1e-6 || value > high + 1e-6)) {
-    refuse(`${name} must be within ${inShort(low)} and ${inShort(high)}`);
+    refuse(`${name} must be within ${formatBound(low)} and ${formatBound(high)}`);
   }
 }
 
@@ -52,7 +56,7 @@ function checkTimes({ time_s: time, duration_s: duration }) {
   const [times, [end]] = [time.values, duration.values];
   const isRising = times.every((value, k) => k === 0 || value > times[k - 1]);
   const [first, last] = [times[0] ?? 0, times.at(-1) ?? 0];
-  // Times are rounded to a nanosecond, and may lie beyond the end by that.
+  // Times are rounded to a nanosecond, so the last one may exceed the duration by that.
   if (!isRising || first < 0 || last > end + 1e-9 || !(end + 1e-9 >= 0 && end <= 1e9)) {
     refuse("time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at least one time if that is not given");
   }
@@ -67,11 +71,12 @@ function checkIds(ids, boats) {
   }
 }
 
-function checkOwn(arrays, samples, quantities) {
-  const taken = new Set([...quantities.map(({ key }) => key), ...TIMES, "boat", "id", "is_leader"]);
+/** Checks the quantities that a user added. */
+function checkUserQuantities(arrays, samples, quantities) {
+  const reservedNames = new Set([...quantities.map(({ key }) => key), ...TIMES, "boat", "id", "is_leader"]);
   for (const [stored, array] of Object.entries(arrays).filter(([name]) => name.startsWith("quantity_"))) {
     const name = stored.slice("quantity_".length);
-    if (!/^[\p{ID_Start}_]\p{ID_Continue}*$/u.test(name) || taken.has(name)) {
+    if (!/^[\p{ID_Start}_]\p{ID_Continue}*$/u.test(name) || reservedNames.has(name)) {
       refuse(`quantity ${quoted(name)} is not accepted: an identifier that no quantity or column of recordings has`);
     }
     if (array.descr !== "<f8") {
@@ -84,24 +89,24 @@ function checkOwn(arrays, samples, quantities) {
 }
 
 function checkContacts(contacts, samples, { n_boats: boats, ...others }) {
-  const c = contacts.i.shape[0] ?? 0;
-  const shapes = { count: [samples], normal: [c, 2], point_cm: [c, 2] };
+  const total = contacts.i.shape[0] ?? 0;
+  const shapes = { count: [samples], normal: [total, 2], point_cm: [total, 2] };
   const descrs = { count: "<i8", i: "<i4", j: "<i4" };
   for (const name of CONTACTS) {
-    const [shape, descr] = [shapes[name] ?? [c], descrs[name] ?? "<f4"];
+    const [shape, descr] = [shapes[name] ?? [total], descrs[name] ?? "<f4"];
     if (contacts[name].descr !== descr || !isSame(contacts[name].shape, shape)) {
-      refuse(`contacts.${name} must be an array of ${kindOf(descr)}, shape ${tuple(shape)}`);
+      refuse(`contacts.${name} must be an array of ${dtypeName(descr)}, shape ${tuple(shape)}`);
     }
     if (!contacts[name].values.every(Number.isFinite)) {
       refuse(`contacts.${name} must be finite`);
     }
   }
   const count = contacts.count.values;
-  if (count.some((number) => number < 0 || number > c) || count.reduce((sum, number) => sum + number, 0) !== c) {
-    refuse(`contacts.count must add up to the ${c} contacts there are`);
+  if (count.some((number) => number < 0 || number > total) || count.reduce((sum, number) => sum + number, 0) !== total) {
+    refuse(`contacts.count must add up to the ${total} contacts there are`);
   }
   const [first, second] = [contacts.i.values, contacts.j.values];
-  // No other parameter is a list of lists.
+  // Only obstacles are parameters that are lists of lists.
   const obstacles = Object.values(others).flat().filter(Array.isArray).length;
   const isBoat = (boat) => boat >= -2 - obstacles && boat < boats;
   if (!first.every((boat) => boat >= 0 && isBoat(boat)) || !second.every(isBoat)) {
@@ -116,16 +121,17 @@ function checkStatistics(arrays, names) {
   if (!names.every((name) => Object.hasOwn(arrays, name))) {
     return;
   }
-  const other = names.find((name) => arrays[name].shape.length > 0 || !/^<[fiu]|^[|]u1/.test(arrays[name].descr));
-  if (other) {
-    refuse(`${other} must be one number`);
+  const invalid = names.find((name) => arrays[name].shape.length > 0 || !/^<[fiu]|^[|]u1/.test(arrays[name].descr));
+  if (invalid) {
+    refuse(`${invalid} must be one number`);
   }
 }
 
+/** Checks the format, and that no array is missing; returns whether the recording has contacts. */
 function checkStored(arrays, format) {
-  const form = arrays.format?.values[0];
-  if (form !== undefined && form !== format) {
-    refuse(`format = ${quoted(form)} is not accepted: ${quoted(format)}`);
+  const storedFormat = arrays.format?.values[0];
+  if (storedFormat !== undefined && storedFormat !== format) {
+    refuse(`format = ${quoted(storedFormat)} is not accepted: ${quoted(format)}`);
   }
   const contacts = CONTACTS.map((name) => `contacts_${name}`);
   const hasContacts = contacts.some((name) => Object.hasOwn(arrays, name));
@@ -150,10 +156,10 @@ function checkRudder(rudder, shape) {
 }
 
 /**
- * Checks that the arrays form a recording of this `format`, and throws an error if not. Returns what `read` makes of the
- * recording's parameters (TOML). `phases`, `quantities` and `statistics` are the known ones.
+ * Throws an error unless the arrays form a recording of this `format`. `read` checks the recording's parameters (TOML); its answer is
+ * returned. `phases`, `quantities` and `statistics` are those of the simulator.
  */
-export async function checkedArrays(arrays, { format, phases, quantities, statistics }, read) {
+export async function checkRecording(arrays, { format, phases, quantities, statistics }, read) {
   const hasContacts = checkStored(arrays, format);
   const answer = await read(arrays.parameters.values[0]);
   checkStatistics(arrays, statistics.map(({ name }) => `statistics_${name}`));
@@ -182,7 +188,7 @@ export async function checkedArrays(arrays, { format, phases, quantities, statis
       checkArray(`order.${key}`, values, times, DOUBLES, { bounds, ...(isTracked ? { hasGaps: true } : { isUndefined }) });
     }
   }
-  checkOwn(arrays, samples, quantities);
+  checkUserQuantities(arrays, samples, quantities);
   if (arrays.rudder) {
     checkRudder(arrays.rudder, [...times, leaders]);
   }

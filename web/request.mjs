@@ -7,7 +7,7 @@ import { LESSONS } from "./lessons.mjs";
 /** Largest time of a link, in s. */
 export const LATEST = 7200;
 const isTime = (text) => /^\d{1,4}(?:\.\d)?$/.test(text) && Number(text) <= LATEST;
-/** Parts of a link besides parameters: their accepted values, in words and as a test. */
+/** Parts of a link besides parameters: the accepted values in words, and a function that accepts a value. */
 export const OTHER = {
   speed: ["one of 1, 2, 4, 8, 16, 32, 64 and max", (text) => SPEEDS.includes(text)],
   boat: ["the number of a boat", (text) => /^\d{1,3}$/.test(text)],
@@ -20,18 +20,18 @@ export const OTHER = {
   lesson: [`one of ${LESSONS.map(({ name }) => name).join(", ")}`, (text) => LESSONS.some(({ name }) => name === text)],
 };
 export const SPEEDS = ["1", "2", "4", "8", "16", "32", "64", "max"];
-/** Largest values of fields on this page, which may be larger elsewhere. */
+/** Ranges of fields on this page; the simulator accepts larger ones. */
 const LIMITS = { n_boats: [2, 300], n_leaders: [0, 8], dt_s: [0.001, 1] };
 /** Fields of a request that are not parameters. */
 const STRINGS = ["preset", "seed", "leaders"];
 /** Prefix of the fields in which the second flock differs from the first. */
 const BESIDE = "beside.";
-/** A change during the run: its time, and the field that changes then. An empty value means the preset's value. */
+/** The name of a change during the run: its time in s, and the field that changes. An empty value means the preset's value. */
 const CHANGE = /^at\.(\d{1,4}(?:\.\d)?)\.(.+)$/;
 
 /**
- * The request in a fragment: `flock` and `beside` (null: none) hold parameters by name, `changes` the changes
- * during the run, `other` the rest, and `ignored` a sentence for each part that cannot be followed.
+ * Reads a fragment. Returns `flock` and `beside` (null: no second flock), parameters by name; `changes`, the changes during the
+ * run; `other`, the parts of `OTHER`; and `ignored`, a sentence for each part that cannot be followed.
  */
 export function readLink(fragment, fields) {
   const wanted = { flock: {}, beside: null, changes: [], other: {}, ignored: [] };
@@ -66,18 +66,19 @@ export function readLink(fragment, fields) {
 
 /** Adds a change to a list in order of time; changes at the same time are merged. */
 export function withChange(changes, time, fields) {
-  const before = changes.filter((change) => change.time < time);
+  const earlier = changes.filter((change) => change.time < time);
+  const later = changes.filter((change) => change.time > time);
   const same = changes.find((change) => change.time === time);
-  return [...before, { time, fields: { ...same?.fields, ...fields } }, ...changes.filter((change) => change.time > time)];
+  return [...earlier, { time, fields: { ...same?.fields, ...fields } }, ...later];
 }
 
-/** The differences between two flocks, in the form of changes. */
+/** The fields in which a flock differs after a change; a field that was removed is empty. */
 export function differences(before, after) {
   const names = new Set([...Object.keys(before), ...Object.keys(after)]);
   return Object.fromEntries([...names].filter((name) => before[name] !== after[name]).map((name) => [name, after[name] ?? ""]));
 }
 
-/** A flock after a change. */
+/** The fields of a flock after a change; an empty field is removed. */
 export function changedFlock(flock, fields) {
   return Object.fromEntries(Object.entries({ ...flock, ...fields }).filter(([, value]) => value !== ""));
 }
@@ -87,7 +88,7 @@ function isWithin([low, high], text) {
   return value >= low && value <= high;
 }
 
-/** The fragment for flocks, their changes during the run, and the rest of what is shown. */
+/** The fragment for flocks, their changes during the run, and the other parts of a link. */
 export function linkTo({ flock, beside, changes = [], other }) {
   const pairs = [...Object.entries(flock), ...Object.entries(beside ?? {}).map(([name, value]) => [BESIDE + name, value]),
     ...changes.flatMap(({ time, fields }) => Object.entries(fields).map(([name, value]) => [`at.${time}.${name}`, value])),
@@ -95,9 +96,9 @@ export function linkTo({ flock, beside, changes = [], other }) {
   return `#${new URLSearchParams(pairs).toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
 }
 
-/** A field's value as JSON, from the text that links have: lists with commas, rows that semicolons end. */
+/** A field's value for JSON, from its text in links: commas separate a list, and semicolons end rows. */
 export function valueFrom(kind, text) {
-  // Anything but a number stays text, which the simulator refuses.
+  // Text that is not a number stays text, which the simulator refuses.
   const number = (item) => (item.trim() !== "" && Number.isFinite(Number(item)) ? Number(item) : item.trim());
   const list = (items, read) => items.split(",").filter((item) => item.trim() !== "").map(read);
   if (kind === "rows") {
@@ -112,13 +113,13 @@ export function valueFrom(kind, text) {
   return kind === "count" || kind === "real" ? number(text) : text;
 }
 
-/** The text that links have for a value. */
+/** The text of a value in links. */
 export function textOf(value) {
   const isRows = Array.isArray(value) && Array.isArray(value[0]);
   return Array.isArray(value) ? value.map(textOf).join(isRows ? ";" : ",") : String(value);
 }
 
-/** The simulator's request for a flock. `kinds`: what kind of value each field has. */
+/** The simulator's request for a flock. `kinds`: the kind of each field's value. */
 export function requestOf(flock, kinds) {
   const request = { parameters: {} };
   for (const [name, text] of Object.entries(flock)) {
@@ -131,21 +132,21 @@ export function requestOf(flock, kinds) {
   return request;
 }
 
-/** The simulator's requests for the flocks that are shown: one for each seed, and then those beside them. */
+/** The simulator's requests for all flocks: one for each seed, then those of the second kind. */
 export function requestsOf({ flock, beside, copies = 1 }, kinds) {
-  const kindsOfFlock = [flock, ...(beside ? [{ ...flock, ...beside }] : [])];
-  return kindsOfFlock.flatMap((flockOfKind) => Array.from({ length: copies }, (_, copy) => requestOf({ ...flockOfKind, ...seedOf(flockOfKind, copy) }, kinds)));
+  const flocks = [flock, ...(beside ? [{ ...flock, ...beside }] : [])];
+  return flocks.flatMap((fields) => Array.from({ length: copies }, (_, copy) => requestOf({ ...fields, ...seedOf(fields, copy) }, kinds)));
 }
 
-/** The seed of a copy of a flock. Text that is not a number is kept, and the simulator refuses it. */
+/** The field `seed` of a copy of a flock, unless it is that of the flock. A seed that is not a number is kept, and the simulator refuses it. */
 function seedOf({ seed = "0" }, copy) {
   return copy > 0 && /^\d+$/.test(seed) ? { seed: String(BigInt(seed) + BigInt(copy)) } : {};
 }
 
 /** Whether a field of a flock is one of its parameters. */
-export const isOwn = (name) => !STRINGS.includes(name);
+export const isParameter = (name) => !STRINGS.includes(name);
 
-/** Parameters as TOML, one per line. Their values look the same in JSON and TOML, except for infinity. */
+/** Parameters as TOML, one per line. JSON and TOML write their values alike, except for infinity. */
 export function tomlOf(values) {
   const line = ([name, value]) => `${name} = ${JSON.stringify(value).replaceAll('"inf"', "inf")}\n`;
   return Object.entries(values).map(line).join("");

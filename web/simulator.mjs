@@ -1,10 +1,9 @@
-// The simulator for the page: sends questions, receives answers, and starts a new thread if the old
-// one does not answer.
+// The simulator's thread as the page sees it: questions, answers, and a new thread if the old one does not answer.
 
-/** Time in ms after which the thread of an unanswered question counts as lost. */
+/** Time in ms after which a thread that does not answer is ended. */
 const PATIENCE = 15_000;
 
-/** The error if the simulator does not answer; `field` names the parameter at fault, if there is one. */
+/** A question that fails: the simulator refused it (`refused`), or its thread ended. `field`: the parameter at fault, if there is one. */
 export class Unanswered extends Error {
   constructor({ words, field = "", refused = false }) {
     super(words);
@@ -14,10 +13,11 @@ export class Unanswered extends Error {
 
 export class Simulator {
   worker = null;
-  next = 0;
+  lastId = 0;
+  /** Questions without an answer, by their number. */
   open = new Map();
 
-  /** `script`: the thread's own; `bytes`: the compiled simulator. */
+  /** `script`: source of the thread; `bytes`: the compiled simulator. */
   constructor(script, bytes) {
     this.script = script;
     this.bytes = bytes;
@@ -26,14 +26,14 @@ export class Simulator {
   /** For how many ms the oldest question has been open; 0 if none is. */
   get waiting() {
     const [oldest] = this.open.values();
-    return oldest ? performance.now() - oldest.asked : 0;
+    return oldest ? performance.now() - oldest.askedAt : 0;
   }
 
   /** Ends the thread at once; its open questions fail with this sentence. */
   stop(words) {
     this.worker?.terminate();
-    for (const { reject, waited } of this.open.values()) {
-      clearTimeout(waited);
+    for (const { reject, timeout } of this.open.values()) {
+      clearTimeout(timeout);
       reject(new Unanswered({ words }));
     }
     this.open.clear();
@@ -44,7 +44,7 @@ export class Simulator {
     this.worker?.terminate();
     const address = URL.createObjectURL(new Blob([this.script], { type: "text/javascript" }));
     this.worker = new Worker(address);
-    this.worker.addEventListener("message", ({ data }) => this.#answered(data));
+    this.worker.addEventListener("message", ({ data }) => this.#receive(data));
     this.worker.addEventListener("error", (event) => this.stop(event.message || "the simulator's thread does not start"));
     const { described } = await this.ask("start", { bytes: this.bytes });
     URL.revokeObjectURL(address);
@@ -54,25 +54,25 @@ export class Simulator {
   /** Asks a question; returns the answer, or throws an `Unanswered`. */
   ask(kind, message) {
     return new Promise((resolve, reject) => {
-      this.next += 1;
-      const id = this.next;
-      const waited = setTimeout(() => this.stop("it took too long"), PATIENCE);
-      this.open.set(id, { resolve, reject, waited, asked: performance.now() });
+      this.lastId += 1;
+      const id = this.lastId;
+      const timeout = setTimeout(() => this.stop("it took too long"), PATIENCE);
+      this.open.set(id, { resolve, reject, timeout, askedAt: performance.now() });
       this.worker.postMessage({ id, kind, ...message });
     });
   }
 
-  #answered({ id, said, error }) {
+  #receive({ id, answer, error }) {
     const question = this.open.get(id);
     if (!question) {
       return;
     }
     this.open.delete(id);
-    clearTimeout(question.waited);
+    clearTimeout(question.timeout);
     if (error) {
       question.reject(new Unanswered(error));
     } else {
-      question.resolve(said);
+      question.resolve(answer);
     }
   }
 }

@@ -1,6 +1,6 @@
 // A flock as a command and in Python.
 
-import { isOwn } from "./request.mjs";
+import { isParameter } from "./request.mjs";
 
 /** Fields that the command has options for. */
 const OPTIONS = { n_boats: "--n-boats", n_leaders: "--n-leaders", pool: "--pool", bw_s: "--bw-s" };
@@ -8,24 +8,24 @@ const shellWord = (text) => (/^[\w.:=+-]+$/.test(text) ? text : `'${text}'`);
 
 /** Whether commands and Python can express these changes. */
 export function isSchedule(changes) {
-  const isFixed = (name) => !isOwn(name) || name === "n_leaders";
+  const isFixed = (name) => !isParameter(name) || name === "n_leaders";
   return changes.every(({ fields }) => Object.entries(fields).every(([name, value]) => value !== "" && !isFixed(name)));
 }
 
-/** Words of a command for a flock's parameters. */
+/** Options of a command for a flock's parameters. */
 function fieldWords(flock) {
-  return Object.entries(flock).filter(([name]) => isOwn(name)).map(([name, value]) => {
-    const isList = value.includes(",") || value.includes(";");
+  return Object.entries(flock).filter(([name]) => isParameter(name)).map(([name, value]) => {
+    const isList = /[,;]/.test(value);
     return Object.hasOwn(OPTIONS, name) ? `${OPTIONS[name]} ${shellWord(isList ? `(${value.split(",").join(", ")})` : value)}` :
-      `--set ${shellWord(`${name}=${isList ? listed(value) : value}`)}`;
+      `--set ${shellWord(`${name}=${isList ? tomlList(value) : value}`)}`;
   });
 }
 
-/** The command that trains leaders of a flock from nothing, with these settings; none for other presets than the training's. `values`: those of all parameters. */
+/** The command that repeats a training with these settings; empty unless the flock has the training's preset. `values`: values of all parameters. */
 export function trainingCommand({ preset = "simulation", ...flock }, values, { flock_hours: hours, ...settings }, seed) {
-  const named = Object.fromEntries(Object.keys(OPTIONS).map((name) => [name, values[name]]));
+  const withOptions = Object.fromEntries(Object.keys(OPTIONS).map((name) => [name, values[name]]));
   const set = Object.entries({ action_mode: "rudder", ...settings }).map(([name, value]) => `--set ${name}=${value}`);
-  const words = [...fieldWords({ ...named, ...flock }), `--seed ${seed}`, `--flock-hours ${hours}`, ...set];
+  const words = [...fieldWords({ ...withOptions, ...flock }), `--seed ${seed}`, `--flock-hours ${hours}`, ...set];
   return preset === "simulation" ? `flockenv train --algorithm branches ${words.join(" ")}` : "";
 }
 
@@ -36,20 +36,20 @@ export function commandLine(flock, seconds, changes = []) {
   words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
   for (const { time, fields } of changes) {
     words.push(...Object.entries(fields).map(([name, value]) =>
-      `--at ${shellWord(`${time}:${name}=${/[,;]/.test(value) ? listed(value) : value}`)}`));
+      `--at ${shellWord(`${time}:${name}=${/[,;]/.test(value) ? tomlList(value) : value}`)}`));
   }
   return leaders.includes(",") ? "" : words.join(" ");
 }
 
-/** A list as TOML has it; a row of numbers that ends in a semicolon is one of several. */
-function listed(value) {
+/** A list in TOML, from its text in links. */
+function tomlList(value) {
   if (value.includes(";")) {
-    return `[${value.split(";").filter(Boolean).map(listed).join(", ")}]`;
+    return `[${value.split(";").filter(Boolean).map(tomlList).join(", ")}]`;
   }
   return `[${value.split(",").join(", ")}]`;
 }
 
-/** The same in Python, for one flock or several. `kinds`: what kind of value each field has. */
+/** Python that simulates flocks for a number of seconds, with their changes. `kinds`: the kind of each field's value. */
 export function pythonText(flocks, seconds, kinds, changes = []) {
   const names = ["recording", "beside"];
   const texts = flocks.map((flock, index) => simulation(flock, seconds, kinds, changes, names[index] ?? `recording_${index + 1}`));
@@ -57,13 +57,13 @@ export function pythonText(flocks, seconds, kinds, changes = []) {
 }
 
 function simulation(flock, seconds, kinds, changes, name) {
-  const given = (fields) => Object.entries(fields).filter(([name]) => isOwn(name)).map(([name, value]) => [name, pythonValue(value, kinds[name])]);
-  const fields = given(flock).map(([name, value]) => `${name}=${value}`);
+  const pythonFields = (fields) => Object.entries(fields).filter(([name]) => isParameter(name)).map(([name, value]) => [name, pythonValue(value, kinds[name])]);
+  const fields = pythonFields(flock).map(([name, value]) => `${name}=${value}`);
   const { leaders = "" } = flock;
-  const each = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
-  const steering = each.length > 1 ? `{${each.join(", ")}}` : `"${leaders}"`;
+  const policies = leaders.split(",").map((name, leader) => `"leader_${leader}": "${name}"`);
+  const steering = policies.length > 1 ? `{${policies.join(", ")}}` : `"${leaders}"`;
   const policy = leaders ? `, policy=${steering}` : "";
-  const entries = changes.map(({ time, fields }) => `(${time}, {${given(fields).map(([name, value]) => `"${name}": ${value}`).join(", ")}})`);
+  const entries = changes.map(({ time, fields }) => `(${time}, {${pythonFields(fields).map(([name, value]) => `"${name}": ${value}`).join(", ")}})`);
   const schedule = entries.length > 0 ? `,\n    schedule=[${entries.join(", ")}],\n` : "";
   return [
     "",

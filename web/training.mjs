@@ -1,4 +1,4 @@
-// A training that the visitor starts: leaders that learn rudders from nothing, judged now and then in other flocks.
+// A training that the visitor starts: leaders learn to choose rudders, and are judged at intervals in other flocks.
 
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
 import { SAMPLING } from "./flocks.mjs";
@@ -11,37 +11,38 @@ import { trainingCommand } from "./texts.mjs";
 
 /** Settings in which trainings differ from `flockenv train --algorithm branches` with rudders. */
 export const SETTINGS = { flock_hours: 60, hold_s: 0.8, seen_s: 0.8, trial_s: 8, branch_s: 16, offset: 1, step: 0.03 };
-/** Length of a judgment in s, and the number of judgments in a training. */
+/** Duration of a judging flock in s, and the number of judgments in a training. */
 const [JUDGED_SECONDS, JUDGMENTS] = [120, 12];
-/** Time in ms between two sentences for those who do not see the curve. */
+/** Time in ms between two sentences for screen readers. */
 const SAY_EVERY = 5000;
 
 export class Training {
-  /** The training's progress, null before the first report; and the last policy of the previous training, until there is a new one. */
+  /** The training's progress; null before the first report. */
   progress = null;
+  /** The last policy of the previous training; null without one. */
   before = null;
   seed = 0;
   isRunning = false;
   settings = { ...SETTINGS };
-  /** Time in ms that the training runs between two checks whether to continue. */
+  /** Time in ms that the training runs between two reports. */
   slice = 200;
-  /** Number of flocks that judge, with seeds from 0 on. */
+  /** Number of judging flocks, with seeds from 0 on. */
   judges = 64;
   curve = new LearningCurve(byId("curve"));
   #page;
   #simulator;
-  /** The flock that is being trained, as described in links, and the request for the flocks that judge. */
+  /** The flock that is trained, as links have it, and the request for the judging flocks. */
   #trained = null;
   #judged = null;
   #isAtWork = false;
-  #told = -Infinity;
+  #saidAt = -Infinity;
 
   constructor(page) {
     this.#page = page;
     this.#simulator = new Simulator(page.simulator.script, page.simulator.bytes);
   }
 
-  /** Starts a training of the flock that is shown, stops the one that runs, or goes on with it. */
+  /** Starts a training of the shown flock, stops the training, or continues it. */
   async toggle() {
     this.isRunning = !this.isRunning;
     this.show();
@@ -50,7 +51,7 @@ export class Training {
     }
     this.#isAtWork = true;
     try {
-      await this.#goOn();
+      await this.#run();
       this.#say(this.progress.has_ended ? `The training is over. ${this.#words} These are the last leaders, not the best.` : `Stopped. ${this.#words}`);
     } catch (error) {
       this.progress = null;
@@ -61,7 +62,7 @@ export class Training {
     showTexts(this.#page.flocks, this.#page.time);
   }
 
-  /** Stops if the shown flock cannot be trained, and says so. */
+  /** Stops the training if the shown flock's leaders are not trained; returns a sentence about that, or empty text. */
   leave() {
     if (!this.isRunning || this.#page.flocks.areTrained) {
       return "";
@@ -70,23 +71,23 @@ export class Training {
     return "The training waits in its lesson.";
   }
 
-  async #goOn() {
+  async #run() {
     if (!this.progress || this.progress.has_ended || this.#isOther) {
       await this.#start();
     }
     while (this.isRunning && !this.progress.has_ended) {
       const { training } = await this.#simulator.ask("learn", { milliseconds: this.slice });
-      await this.#took(training);
+      await this.#report(training);
     }
   }
 
-  /** The flock that is shown, as a link has it, without what a training chooses itself. */
+  /** The shown flock, as links have it, without the seed and the policy. */
   get #flock() {
     const { seed: _, leaders: __, ...flock } = this.#page.shown.flock;
     return flock;
   }
 
-  /** Whether the flock that is shown is not the one whose training began. */
+  /** Whether another flock is shown than the one that is trained. */
   get #isOther() {
     return JSON.stringify(this.#flock) !== JSON.stringify(this.#trained);
   }
@@ -105,31 +106,32 @@ export class Training {
     if (!this.#simulator.worker) {
       await this.#simulator.start();
     }
-    const asked = { flock: { ...flock, seed: String(this.seed) }, options: this.settings, provenance };
-    const { training } = await this.#simulator.ask("train", { asked });
+    const request = { flock: { ...flock, seed: String(this.seed) }, options: this.settings, provenance };
+    const { training } = await this.#simulator.ask("train", { request });
     this.#say("Measuring how the paper's law leads.");
     this.#judged = { ...flock, parameters: { ...flock.parameters, ...training.physics } };
     this.curve.clear(training.end, await this.#judge({ leaders: flocks.laws.atEverySubstep }));
-    await this.#took(training);
+    await this.#report(training);
   }
 
-  async #took(training) {
+  /** Shows the training's progress, and judges its policy if that is due. */
+  async #report(training) {
     this.progress = training;
     await this.#page.flocks.teach(training.policy);
     if (training.hours >= this.curve.next(JUDGMENTS)) {
       this.curve.add(training.hours, await this.#judge({ leaders: TRAINED, trained: training.policy }));
     }
-    const isDue = performance.now() - this.#told > SAY_EVERY;
+    const isDue = performance.now() - this.#saidAt > SAY_EVERY;
     this.#say(`${fixed(training.hours, 0)} of ${fixed(training.end, 0)} flock-hours. ${this.#words}`, isDue);
     this.show();
   }
 
-  /** Mean signed order over the flocks that judge, which have the training's physics. */
-  async #judge(steered) {
+  /** Mean signed order over the judging flocks, which have the training's physics. `steering`: fields of the request that say how leaders steer. */
+  async #judge(steering) {
     const { series } = this.#page.flocks;
     let sum = 0;
     for (let seed = 0; seed < this.judges; seed += 1) {
-      const request = { ...this.#judged, ...steered, seed: String(seed) };
+      const request = { ...this.#judged, ...steering, seed: String(seed) };
       const question = { request, samples: SAMPLING * JUDGED_SECONDS, index: series.indexOf("signed_order"), quantities: series.length };
       sum += (await this.#simulator.ask("judge", question)).mean;
     }
@@ -141,7 +143,7 @@ export class Training {
     return `Signed order in ${this.judges} other flocks: your leaders ${fixed(last, 2, true)}, the paper's law ${fixed(law, 2, true)}.`;
   }
 
-  /** Draws the curve, and names what the button does next. */
+  /** Draws the curve, and updates the buttons. */
   show() {
     byId("train").textContent = this.isRunning ? "stop" : this.#next;
     byId("save-policy").disabled = !this.progress;
@@ -154,9 +156,9 @@ export class Training {
       return "train";
     }
     if (this.#isOther) {
-      return "train anew, this flock";
+      return "train again, this flock";
     }
-    return this.progress.has_ended ? "train anew, other seed" : "go on";
+    return this.progress.has_ended ? "train again, other seed" : "go on";
   }
 
   draw() {
@@ -170,11 +172,11 @@ export class Training {
     this.#page.say("policy.json holds your leaders: flockenv run --policy policy.json leads a flock with them.");
   }
 
-  /** Describes the progress beside the curve and, now and then, to those who cannot see it. */
+  /** Shows a sentence beside the curve and, if `isDue`, to screen readers. */
   #say(words, isDue = true) {
     byId("trained").textContent = words;
     if (isDue) {
-      this.#told = performance.now();
+      this.#saidAt = performance.now();
       byId("trained-said").textContent = words;
     }
   }

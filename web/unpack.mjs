@@ -1,9 +1,9 @@
-// The page's first script: unpacks the others, which run only if the page's policy names their digest.
+// The page's first script: unpacks the main script, which the page's security policy allows by its digest.
 
 /** The digits of Python's base64.b85encode, from 0 to 84. */
 const DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;<=>?@^_`{|}~";
 
-/** The bytes of text in base 85: five digits are four bytes; missing digits at the end count as the largest digit. */
+/** The bytes of text in base 85: five digits are four bytes, and missing digits at the end count as the largest digit. */
 function bytesOf(text) {
   const values = Object.fromEntries(Array.from(DIGITS, (digit, value) => [digit, value]));
   const view = new DataView(new ArrayBuffer(4 * Math.ceil(text.length / 5)));

@@ -4,7 +4,7 @@ import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
 import { colors, giveColors } from "../flockenv/replay/shared/scene.mjs";
 import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
-import { chosenBoat, clockwise, doing, scoreWords } from "./doing.mjs";
+import { boatWords, clockwiseWords, flockWords, scoreWords } from "./doing.mjs";
 import { ROUND_SECONDS, scoreOf } from "./game.mjs";
 import { drawLapFrame } from "./lap_frame.mjs";
 import { storyOf, wordsOf } from "./lessons.mjs";
@@ -13,21 +13,21 @@ import { MEANINGS } from "./quantities.mjs";
 import { readLink } from "./request.mjs";
 
 const CHARTS = ["psi_o", "rotation", "signed_order"];
-/** Seconds of the charts before and after the present. */
+/** Time in s that charts show before and after the present. */
 const REACH = 60;
-/** How long trails are, in s, and in all boats together: they take most of the time in which many boats are drawn. */
+/** Length of trails in s, and the largest sum over all boats: trails take most of the time of drawing many boats. */
 const [TRAIL_SECONDS, TRAIL_BOAT_SECONDS] = [10, 270];
-/** Time in ms between two updates of words and numbers, which nobody reads faster. */
+/** Time in ms between two updates of words and numbers. */
 const WORDS_EVERY = 250;
-/** Time in ms between two sentences for those who do not see the flocks. */
+/** Time in ms between two sentences for screen readers. */
 const ANNOUNCE_EVERY = 5000;
-/** Force, in cm/s², that a bar half as long as a hull is wide stands for. */
+/** Force, in cm/s², whose bar is half as long as a hull is wide. */
 const FORCE = 20;
 
 export class View {
   panels = [];
   palette = colors();
-  /** The boat whose numbers stay, and the one under the pointer. */
+  /** The boat whose numbers stay, and the boat under the pointer; null for none. */
   pinned = null;
   hovered = null;
   /** The pinned leader's observation. */
@@ -40,8 +40,9 @@ export class View {
   #charts;
   /** Elements for means: under each picture, and of a game under all of them. */
   #scores = [];
-  #worded = -Infinity;
-  #told = -Infinity;
+  /** Times in ms of the latest words and of the latest sentence for screen readers. */
+  #wordsAt = -Infinity;
+  #announcedAt = -Infinity;
 
   /** `orders`: expected curves of the map; `seek`: goes to a time. */
   constructor(flocks, { quantities, entries }, orders, seek) {
@@ -52,32 +53,31 @@ export class View {
     this.map = new OrderMap(byId("map"), orders);
   }
 
-  /** Shows what a link says besides flocks. */
-  choose({ speed, forces, colors: shown = "direction", boat, lesson = "" }) {
+  /** Applies the parts of a link besides the flocks. */
+  choose({ speed, forces, colors: coloring = "direction", boat, lesson = "" }) {
     byId("speed").value = speed;
     byId("forces").checked = forces === "1";
-    byId("colors").value = shown;
+    byId("colors").value = coloring;
     this.pinned = boat === undefined ? null : Number(boat);
-    this.tell(lesson);
+    this.showLesson(lesson);
   }
 
-  /** The sentences of a lesson, before and after the picture. */
-  tell(name) {
+  /** Shows the sentences of a lesson, before and after the picture. */
+  showLesson(name) {
     const { before, after } = wordsOf(name);
     if (byId("story").dataset.lesson !== name) {
       byId("story").dataset.lesson = name;
       byId("story").replaceChildren(...storyOf(before));
       byId("after").replaceChildren(...storyOf(after));
       byId("observes").open = name === "forces";
-      // Until the lesson's flock has started, nothing is said about the previous flock.
-      byId("doing").textContent = "";
+      byId("doing").textContent = ""; // It described the previous flock.
     }
     const lessons = byId("lessons");
     for (const link of lessons.querySelectorAll("a")) {
       const isShown = link.dataset.lesson === name;
       link.setAttribute("aria-current", String(isShown));
       if (isShown) {
-        // On a phone they are a row that scrolls.
+        // On a phone the lessons are a row that scrolls.
         lessons.scrollLeft = link.offsetLeft - (lessons.clientWidth - link.clientWidth) / 2;
       }
     }
@@ -85,16 +85,16 @@ export class View {
 
   /** Replaces the pictures by those of other runs. `pin` pins or unpins a boat's numbers. */
   rebuild(pin, redraw) {
-    const { runs, seen, besides, areYours, isRecorded, shown } = this.#flocks;
-    const isPair = seen.length === 2 && besides === 1;
+    const { runs, drawnRuns, firstBeside, areYours, isRecorded, shown } = this.#flocks;
+    const isPair = drawnRuns.length === 2 && firstBeside === 1;
     document.body.classList.toggle("you", areYours);
     document.body.classList.toggle("trains", this.#flocks.areTrained);
     document.body.classList.toggle("pair", isPair);
-    document.body.classList.toggle("many", seen.length > 1 && !isPair);
+    document.body.classList.toggle("many", drawnRuns.length > 1 && !isPair);
     document.body.classList.toggle("recorded", isRecorded);
     giveColors(runs);
-    this.panels = seen.map((run, index) => new Panel(run, index, isPair));
-    this.hurry();
+    this.panels = drawnRuns.map((run, index) => new Panel(run, index, isPair));
+    this.showWordsNow();
     for (const panel of this.panels) {
       panel.onBoat((boat) => { this.hovered = boat; redraw(); }, (boat) => pin(boat === this.pinned ? null : boat));
     }
@@ -102,12 +102,12 @@ export class View {
     byId("runs").replaceChildren(...(isPair ? [runSwitch(runs, redraw)] : []), ...this.panels.map(({ root }) => root),
       ...(areYours ? this.#scores : []));
     for (const [chart] of this.#charts) {
-      chart.runs = [runs[0], ...runs.slice(besides, besides + 1)];
+      chart.runs = [runs[0], ...runs.slice(firstBeside, firstBeside + 1)];
     }
     byId("signed").hidden = runs.every(({ target }) => target === null);
     this.map.expect(isRecorded ? null : shown.flock, this.#flocks.signature);
-    const kept = (boat, leaders) => new Option(boat < leaders ? `${boat}, leader` : boat, boat);
-    byId("boat").replaceChildren(new Option("none", ""), ...Array.from({ length: runs[0].boats }, (_, k) => kept(k, runs[0].leaders)));
+    const optionOf = (boat) => new Option(boat < runs[0].leaders ? `${boat}, leader` : boat, boat);
+    byId("boat").replaceChildren(new Option("none", ""), ...Array.from({ length: runs[0].boats }, (_, boat) => optionOf(boat)));
     byId("parameters").replaceChildren(parameterTable(runs));
     for (const link of byId("story").querySelectorAll("a")) {
       const { flock } = readLink(link.hash, Object.keys(this.#flocks.kinds));
@@ -115,12 +115,12 @@ export class View {
     }
   }
 
-  /** Lets the next picture update the words, written and spoken. */
-  hurry() {
-    this.#worded = this.#told = -Infinity;
+  /** Updates the words, written and spoken, with the next picture. */
+  showWordsNow() {
+    this.#wordsAt = this.#announcedAt = -Infinity;
   }
 
-  /** Draws the flocks at a time, and now and then writes what else is said of them. */
+  /** Draws the flocks at a time in s; updates words and numbers at intervals. */
   show(time, { now = performance.now(), isPlaying = false, rate = "" } = {}) {
     const { runs, areYours } = this.#flocks;
     const trailSeconds = Math.min(TRAIL_SECONDS, TRAIL_BOAT_SECONDS / runs[0].boats);
@@ -137,8 +137,8 @@ export class View {
       chart.draw(time, this.#quantity(key), this.palette);
     }
     this.map.draw(this.palette);
-    if (!isPlaying || !(now - this.#worded < WORDS_EVERY)) {
-      this.#worded = now;
+    if (!isPlaying || !(now - this.#wordsAt < WORDS_EVERY)) {
+      this.#wordsAt = now;
       this.#showWords(time, rate, isPlaying);
     }
   }
@@ -164,7 +164,7 @@ export class View {
 
   /** Shows the mean so far in large type. A pair of pictures has both means below it, of which a wide window shows one under each picture; a game shows both. */
   #score(index, time) {
-    const { areYours, besides, runs, seen } = this.#flocks;
+    const { areYours, firstBeside, runs, drawnRuns } = this.#flocks;
     const line = (words, value, className = "") => {
       const part = element("span", className);
       part.append(element("span", "faint", words), element("b", "", value));
@@ -172,7 +172,7 @@ export class View {
     };
     const signed = (value) => fixed(value, 2, true);
     if (areYours) {
-      const [yours, law] = [runs.slice(0, besides), runs.slice(besides)].map((side) => signed(scoreOf(side)));
+      const [yours, law] = [runs.slice(0, firstBeside), runs.slice(firstBeside)].map((side) => signed(scoreOf(side)));
       const isGame = byId("story").dataset.lesson === "steer";
       const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
       return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
@@ -180,33 +180,33 @@ export class View {
     const key = (run) => wordsOf(byId("story").dataset.lesson).headline ?? (run.target === null ? "psi_o" : "signed_order");
     const mean = (run) => fixed(run.isRecorded ? run.meanUpTo(key(run), run.sampleAt(time)) : run.mean(key(run)), 2, key(run) !== "psi_o");
     const words = (run) => `mean ${this.#quantity(key(run)).words.split(",")[0]} so far `;
-    const meaning = element("small", "faint", MEANINGS[key(seen[index])]);
+    const meaning = element("small", "faint", MEANINGS[key(drawnRuns[index])]);
     if (!document.body.classList.contains("pair")) {
-      return [line(words(seen[index]), mean(seen[index])), meaning];
+      return [line(words(drawnRuns[index]), mean(drawnRuns[index])), meaning];
     }
-    return [line(words(seen[index]), mean(seen[index]), "own"), ...seen.map((run) => line(`${run.name} `, mean(run), "each")), meaning];
+    return [line(words(drawnRuns[index]), mean(drawnRuns[index]), "own"), ...drawnRuns.map((run) => line(`${run.name} `, mean(run), "each")), meaning];
   }
 
   /** Says what the flocks do to those who do not see it: in the pictures' names, and in a sentence that is read now and then. */
   #announceFlocks(time, isPlaying) {
     const { areYours } = this.#flocks;
-    const told = this.panels.map(({ canvas, run }) => {
-      const words = doing(run, run.sampleAt(time), this.palette);
+    const sentences = this.panels.map(({ canvas, run }) => {
+      const words = flockWords(run, run.sampleAt(time), this.palette);
       canvas.setAttribute("aria-label", words);
       return this.panels.length > 1 ? `${run.name}: ${words}` : words;
     });
-    const chosen = this.pinned === null ? [] : [chosenBoat(this.panels[0].run, time, this.pinned, this.palette)];
-    // No more than is spoken before the next sentence.
-    const game = () => [clockwise(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.rounds))];
-    const said = [...chosen, ...(areYours ? game() : told)].join(" ");
-    const isDue = !isPlaying || performance.now() - this.#told > ANNOUNCE_EVERY;
-    if (isDue && said !== byId("doing").textContent) {
-      this.#told = performance.now();
-      byId("doing").textContent = said;
+    const chosen = this.pinned === null ? [] : [boatWords(this.panels[0].run, time, this.pinned, this.palette)];
+    // Only as much as a screen reader speaks before the next sentence.
+    const game = () => [clockwiseWords(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.rounds))];
+    const text = [...chosen, ...(areYours ? game() : sentences)].join(" ");
+    const isDue = !isPlaying || performance.now() - this.#announcedAt > ANNOUNCE_EVERY;
+    if (isDue && text !== byId("doing").textContent) {
+      this.#announcedAt = performance.now();
+      byId("doing").textContent = text;
     }
   }
 
-  /** Statistics of each run's substeps so far. */
+  /** Shows the statistics of each run's substeps so far. */
   #showStatistics() {
     const { runs, statistics } = this.#flocks;
     const rows = byId("about-flock").open ? statistics : [];
@@ -218,6 +218,7 @@ export class View {
     }));
   }
 
+  /** Shows the numbers that the pinned leader observes. */
   #showObserved() {
     const { runs, isRecorded } = this.#flocks;
     const isLeader = this.pinned !== null && this.pinned < runs[0].leaders && !isRecorded;
@@ -228,9 +229,9 @@ export class View {
     }
     const table = element("table");
     table.setAttribute("aria-label", "Observation");
-    this.#entries.forEach(({ block, place: count, name, meaning }, index) => {
+    this.#entries.forEach(({ block, place: number, name, meaning }, index) => {
       const row = element("tr");
-      row.append(element("th", "", block === "neighbors" ? `neighbor ${count + 1}: ${name}` : name),
+      row.append(element("th", "", block === "neighbors" ? `neighbor ${number + 1}: ${name}` : name),
         element("td", "", fixed(this.observed[index], 2, true)), element("td", "faint", meaning));
       table.append(row);
     });

@@ -1,10 +1,10 @@
-// The simulator's own thread: answers one message after another, so that drawing never waits.
+// The simulator's thread: answers one message after another, so that drawing need not wait.
 
 import { Core, Refusal } from "./core.mjs";
 
-/** Substeps times boats between two readings of the clock: some milliseconds. */
+/** Work limit of a call in substeps times boats: some milliseconds. */
 const WORK = 20_000;
-/** Samples of one flock before the next flock's turn. */
+/** Largest number of samples of one flock before the next flock advances. */
 const TURN = 4;
 
 let core = null;
@@ -20,14 +20,13 @@ export const ANSWERS = {
   check: ({ request }) => ({ values: core.check(request) }),
 
   /**
-   * The rows of all quantities, in the order of their `names`, for a number of samples. Recorded quantities
-   * come from the request or are computed from the `states`; the other quantities are derived from them. The
-   * flock is the one that was checked last.
+   * All quantities of a number of samples, in the order of their `names`, for the flock that was checked last.
+   * Recorded quantities come from the request or are computed from the `states`; the others are derived from them.
    */
   derive({ names, recorded, states, samples, sign }) {
     const rows = Array.from({ length: samples }, (_, k) => {
-      const known = states ? core.recorded(states[k]) : null;
-      const value = (name, index) => recorded[name]?.[k] ?? known?.[index] ?? NaN;
+      const computed = states ? core.recorded(states[k]) : null;
+      const value = (name, index) => recorded[name]?.[k] ?? computed?.[index] ?? NaN;
       const [order, angle] = ["psi_o", "phi_o"].map((name) => value(name, names.indexOf(name)));
       return names.map((name, index) => {
         const derived = core.derived(index, order, angle, sign);
@@ -39,25 +38,25 @@ export const ANSWERS = {
 
   /** Starts all flocks again. */
   open({ requests }) {
-    const values = opened(requests);
-    return { continues: false, values, taken: taken(requests.length) };
+    const values = openAll(requests);
+    return { continues: false, values, taken: takeAll(requests.length) };
   },
 
   /** Changes all flocks; if one of them has to start again, all do. */
   change({ requests }) {
     try {
-      const said = requests.map((request, flock) => core.change(flock, request));
+      const answers = requests.map((request, flock) => core.change(flock, request));
       shown = requests;
-      const continues = said.every(({ continued }) => continued);
-      const values = continues ? said : opened(requests);
-      return { continues, values, taken: taken(requests.length) };
+      const continues = answers.every(({ continued }) => continued);
+      const values = continues ? answers : openAll(requests);
+      return { continues, values, taken: takeAll(requests.length) };
     } catch (refusal) {
-      opened(shown);
+      openAll(shown);
       throw refusal;
     }
   },
 
-  /** Takes up to this many samples of all flocks, for at most this many milliseconds. */
+  /** Advances all flocks by up to `samples` samples, for about `milliseconds`; leaders of the visitor head as it says. */
   advance({ samples, milliseconds, boat, heading }) {
     const start = performance.now();
     for (const flock of shown.keys()) {
@@ -65,13 +64,13 @@ export const ANSWERS = {
     }
     for (let left = samples; left > 0 && performance.now() - start < milliseconds; left -= TURN) {
       for (const flock of shown.keys()) {
-        advanced(flock, Math.min(TURN, left));
+        advanceBy(flock, Math.min(TURN, left));
       }
     }
     return { ...ANSWERS.look({ boat }), milliseconds: performance.now() - start, memory: core.memory };
   },
 
-  /** Lets the leaders that the visitor trains follow this policy from now on. */
+  /** Gives leaders that the visitor trains this policy. */
   teach({ policy }) {
     shown.forEach((request, flock) => {
       if (request.leaders === "trained") {
@@ -81,7 +80,7 @@ export const ANSWERS = {
     return {};
   },
 
-  train: ({ asked }) => ({ training: core.train(asked) }),
+  train: ({ request }) => ({ training: core.train(request) }),
 
   /** Continues the training for this many milliseconds, or to its end. */
   learn({ milliseconds }) {
@@ -93,48 +92,51 @@ export const ANSWERS = {
     return { training };
   },
 
-  /** The mean of the quantity at this index, of `quantities` in each sample, over the first `samples` samples of a flock. */
+  /** The mean of a quantity over the first `samples` samples of a flock; `index`: its index among the `quantities` of a sample. */
   judge({ request, samples, index, quantities }) {
     core.open(0, request);
     core.take(0);
-    advanced(0, samples);
+    advanceBy(0, samples);
     const values = core.take(0).series.filter((_, position) => position % quantities === index);
     core.close(0);
     return { mean: values.reduce((sum, value) => sum + value, 0) / values.length };
   },
 
-  /** The contacts, and a boat's observation, at this moment. */
+  /** The samples since the last call, with the present contacts and a boat's present observation. */
   look({ boat }) {
     for (const flock of shown.keys()) {
       core.look(flock, boat);
     }
-    return { taken: taken(shown.length) };
+    return { taken: takeAll(shown.length) };
   },
 };
 
-function advanced(flock, samples) {
+/** Advances a flock by a number of samples. */
+function advanceBy(flock, samples) {
   for (let missing = samples; missing > 0;) {
     missing -= core.advance(flock, missing, WORK);
   }
 }
 
-function opened(requests) {
+/** Starts all flocks again; returns their parameters. */
+function openAll(requests) {
   const values = requests.map((request, flock) => core.open(flock, request));
   shown = requests;
   return values;
 }
 
-function taken(flocks) {
+/** The columns of all flocks since the last call. */
+function takeAll(flocks) {
   return Array.from({ length: flocks }, (_, flock) => core.take(flock));
 }
 
-async function answer({ data: { id, kind, ...message } }) {
+async function reply({ data: { id, kind, ...message } }) {
   try {
-    const said = await ANSWERS[kind](message);
-    postMessage({ id, said }, (said.taken ?? []).flatMap((columns) => Object.values(columns).map(({ buffer }) => buffer)));
+    const answer = await ANSWERS[kind](message);
+    postMessage({ id, answer }, (answer.taken ?? []).flatMap((columns) => Object.values(columns).map(({ buffer }) => buffer)));
   } catch (error) {
     postMessage({ id, error: { refused: error instanceof Refusal, field: error.field ?? "", words: error.message } });
   }
 }
 
-addEventListener("message", answer);
+addEventListener("message", reply);

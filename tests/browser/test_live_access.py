@@ -234,9 +234,9 @@ def test_nothing_is_lost_when_a_phone_turns_amid_a_game_or_the_page_is_there_twi
     live.press("ARROW_RIGHT")
     live.until("return page.runs[0].end > 5")
     resize(live.driver, *PHONE[::-1])
-    now, heading = live.script("return [page.runs[0].end, page.hand.value]")
+    now, heading = live.script("return [page.runs[0].end, page.helm.value]")
     live.until("return page.runs[0].end > arguments[0] + 5", now)
-    assert live.script("return page.hand.value") == heading
+    assert live.script("return page.helm.value") == heading
     assert live.script("return document.documentElement.scrollWidth <= innerWidth")
     live.driver.switch_to.new_window("tab")
     second = LivePage(live.driver, live.file, PHONE).go(plays=True)

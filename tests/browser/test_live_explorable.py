@@ -130,7 +130,7 @@ def test_arrow_keys_steer_whatever_had_the_focus(live, selector):
         live.script("document.querySelector(arguments[0]).focus()", selector)
         live.press(key)
         assert live.script("return document.activeElement.id") == "thumb"
-        assert live.script("return page.hand.value") == heading / 180
+        assert live.script("return page.helm.value") == heading / 180
     # Nothing else was changed by them, and they started the flock.
     assert live.script("return [page.shown, page.flocks.values]") == [shown, values]
     assert live.script("return page.playing")
@@ -144,7 +144,7 @@ def test_arrow_keys_steer_neither_in_text_nor_in_a_dialog(live):
 
     live.script("document.getElementById('command').focus()")
     live.actions().key_down(Keys.ARROW_RIGHT).perform()
-    assert live.script("return [document.activeElement.id, page.hand.value]") == ["command", 0]
+    assert live.script("return [document.activeElement.id, page.helm.value]") == ["command", 0]
     live.actions().key_up(Keys.ARROW_RIGHT).perform()
     live.script("document.activeElement.blur()")
     live.press("?")
@@ -210,7 +210,7 @@ def test_rounds_of_the_game_are_scored_against_the_law(open_live):
         live.click("#play" if number == 1 else "#again")
         live.until("return !page.playback.isOver")
         live.wait()
-        assert live.script("return page.hand.value") == 0
+        assert live.script("return page.helm.value") == 0
     # The law's three flocks have the same starts, and another round has others.
     assert seeds == ["1", "2", "3", "1", "2", "3", "4", "5", "6", "4", "5", "6"]
     assert live.complaints() == []

@@ -101,10 +101,10 @@ def test_it_plays_is_steered_and_draws_the_same_numbers(firefox, file, open_live
     firefox.script("document.getElementById('more').open = true")
     firefox.script("document.getElementById('pool').focus()")
     firefox.press("\ue012", "keyDown")
-    firefox.until("return page.hand.value === -15 / 180")
+    firefox.until("return page.helm.value === -15 / 180")
     assert firefox.script("return document.activeElement.id") == "thumb"
     firefox.press("\ue012", "keyUp")
     # The heading stays where it was turned to.
-    assert firefox.script("return page.hand.value === -15 / 180")
+    assert firefox.script("return page.helm.value === -15 / 180")
     assert firefox.script("return document.getElementById('pool').value") == "wide"
     assert firefox.script("return document.getElementById('status').textContent") == ""

@@ -215,7 +215,7 @@ def test_a_thumb_steers_on_a_phone(open_live):
     held = live.actions().move_to_element(thumb).click_and_hold()
     held.move_by_offset(round(0.25 * width), 0).release().perform()
     # It stays where it was left, and the round has started.
-    assert live.script("return page.hand.value") == pytest.approx(0.5, abs=0.1)
+    assert live.script("return page.helm.value") == pytest.approx(0.5, abs=0.1)
     assert "clockwise" in live.text("#heading")
     assert live.script("return page.playing")
 

@@ -127,11 +127,11 @@ def test_a_flock_goes_on_where_it_was_after_a_recording(live, tmp_path, recordin
         mean = recording.order.signed_order("cw")[counted].mean() if counted.any() else np.nan
         shown = live.text(".so-far b").replace("−", "-")
         assert shown == ("–" if np.isnan(mean) else f"{mean:+.2f}")
-    heading = live.script("return page.hand.value")
+    heading = live.script("return page.helm.value")
     live.click("#again")
     live.until("return !page.recorded")
     assert live.script("return page.time") > 20
-    assert live.script("return [page.playing, page.hand.value]") == [True, heading]
+    assert live.script("return [page.playing, page.helm.value]") == [True, heading]
     live.until("return page.time > 26")
     live.click("#play")
     live.wait()

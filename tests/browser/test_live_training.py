@@ -54,7 +54,7 @@ def test_a_training_ends_in_a_curve_and_in_a_policy_that_leads_the_flock(open_li
     until_over(live)
     assert live.text("#trained").startswith("The training is over. Signed order in 2 other flocks:")
     assert "These are the last leaders, not the best." in live.text("#trained")
-    assert live.text("#train") == "train anew, other seed"
+    assert live.text("#train") == "train again, other seed"
     assert not live.find("#save-before").is_displayed()
     points, law = live.script("return [page.training.curve.points, page.training.curve.law]")
     assert points[0][0] == 0.0
@@ -151,7 +151,7 @@ def test_a_training_waits_while_its_lesson_is_left(open_live):
     # Another flock is another training.
     live.script("page.set('bw_s', '0.4')")
     live.wait()
-    assert live.text("#train") == "train anew, this flock"
+    assert live.text("#train") == "train again, this flock"
     assert live.complaints() == []
 
 

@@ -18,16 +18,16 @@ test("opposed leaders are two halves, the larger one clockwise", () => {
 const laws = new Laws(["paper's law at every substep", "paper's law", "tuned law", "learned"].map((name) => ({ name })));
 
 test("laws that differ only in how often they act are offered once for all leaders, and each for one of them", () => {
-  assert.deepEqual(laws.ofAll, ["paper's law at every substep", "tuned law", "learned", "trained", "you"]);
-  assert.deepEqual(laws.ofAll.map((name) => laws.words(name)), ["the paper's law", "the tuned law", "learned steering", "what you trained", "you"]);
-  assert.deepEqual(laws.ofEach, ["paper's law", "tuned law", "learned"]);
+  assert.deepEqual(laws.sharedChoices, ["paper's law at every substep", "tuned law", "learned", "trained", "you"]);
+  assert.deepEqual(laws.sharedChoices.map((name) => laws.words(name)), ["the paper's law", "the tuned law", "learned steering", "what you trained", "you"]);
+  assert.deepEqual(laws.leaderChoices, ["paper's law", "tuned law", "learned"]);
 });
 
 test("each leader has a policy, the last one's if no other is known", () => {
-  assert.equal(laws.forEach("paper's law at every substep", 3), "paper's law,paper's law,paper's law");
-  assert.equal(laws.forEach("learned,tuned law", 3), "learned,tuned law,tuned law");
-  assert.equal(laws.forEach("learned,tuned law", 1), "learned");
-  assert.equal(laws.forEach("you", 2), "paper's law,paper's law");
+  assert.equal(laws.policiesFor("paper's law at every substep", 3), "paper's law,paper's law,paper's law");
+  assert.equal(laws.policiesFor("learned,tuned law", 3), "learned,tuned law,tuned law");
+  assert.equal(laws.policiesFor("learned,tuned law", 1), "learned");
+  assert.equal(laws.policiesFor("you", 2), "paper's law,paper's law");
 });
 
 test("a lesson has a short sentence or two before and after, and so has the opening", () => {

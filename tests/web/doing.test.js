@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { chosenBoat, clockwise, doing, scoreWords } from "../../web/doing.mjs";
+import { boatWords, clockwiseWords, flockWords, scoreWords } from "../../web/doing.mjs";
 
 /** A run whose boats stand in the east and head up (counter-clockwise), down (clockwise) or outward. */
 function runOf({ up = 0, down = 0, outward = 0, leaders = 0, inner = 50, outer = 90 }) {
@@ -22,16 +22,16 @@ test("what most boats do is named, and what none does is counted", () => {
     [{ up: 5, down: 5 }, "10 boats; 5 clockwise, 5 counter-clockwise."],
     [{ up: 2, inner: 0, outer: null }, "2 boats, in open water."],
   ]) {
-    assert.equal(doing(runOf(boats), 0, { "circles-from": "0.5" }), words);
+    assert.equal(flockWords(runOf(boats), 0, { "circles-from": "0.5" }), words);
   }
 });
 
 test("several flocks are told in one short sentence, and the chosen boat by its role and direction", () => {
   const palette = { "circles-from": "0.5" };
   const runs = [{ down: 8, up: 4 }, { down: 5, outward: 7 }, { up: 12 }].map((boats) => runOf({ ...boats, leaders: 4 })).map((run) => ({ ...run, sampleAt: () => 0 }));
-  assert.equal(clockwise(runs, 0, palette), "Clockwise: 8, 5, 0 of 12 boats.");
-  assert.equal(chosenBoat(runs[1], 0, 11, palette), "Boat 11: against a wall.");
-  assert.equal(chosenBoat(runs[0], 0, 0, palette), "Boat 0, a leader: counter-clockwise.");
+  assert.equal(clockwiseWords(runs, 0, palette), "Clockwise: 8, 5, 0 of 12 boats.");
+  assert.equal(boatWords(runs[1], 0, 11, palette), "Boat 11: against a wall.");
+  assert.equal(boatWords(runs[0], 0, 0, palette), "Boat 0, a leader: counter-clockwise.");
 });
 
 test("a score that is heard is that of this round", () => {

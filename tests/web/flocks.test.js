@@ -55,7 +55,7 @@ test("flocks wait behind a recording with what they were asked before it, and co
   let answered;
   const flocks = flocksOf((kind) => (kind === "advance" ? new Promise((resolve) => { answered = resolve; }) :
     Promise.resolve({ continues: false, values: [answer()], taken: [taken] })));
-  await flocks.become({ flock: { n_boats: "2" }, beside: null, copies: 1 }, "open");
+  await flocks.update({ flock: { n_boats: "2" }, beside: null, copies: 1 }, "open");
   const { runs, values } = flocks;
   const asked = flocks.advance({});
   const recorded = [{ parameters: { n_boats: "5" } }, { parameters: { n_boats: "6" } }];
@@ -63,7 +63,7 @@ test("flocks wait behind a recording with what they were asked before it, and co
   assert.deepEqual([flocks.runs, flocks.values, flocks.isRecorded], [[recorded[1]], { n_boats: "6" }, true]);
   answered({ taken: [{ ...taken, time_s: [2, 3] }] });
   await asked;
-  flocks.comeBack();
+  flocks.returnToFlocks();
   assert.deepEqual([flocks.runs === runs, flocks.values === values, flocks.isRecorded], [true, true, false]);
   assert.equal(flocks.runs[0].end, 3);
 });
@@ -76,9 +76,9 @@ test("what the simulator refuses is not what is asked for next", async () => {
     return { continues: false, values: [answer()], taken: [taken] };
   });
   const first = { flock: { n_boats: "2" }, beside: null, copies: 1 };
-  await flocks.become(first, "open");
-  await assert.rejects(flocks.become({ ...first, flock: { n_boats: "3" } }, "change"), /refused/);
-  assert.equal(flocks.asked, first);
+  await flocks.update(first, "open");
+  await assert.rejects(flocks.update({ ...first, flock: { n_boats: "3" } }, "change"), /refused/);
+  assert.equal(flocks.requested, first);
   assert.equal(flocks.shown, first);
 });
 
@@ -92,20 +92,20 @@ async function run() {
     time += 2;
     return { continues: kind === "change", values: [answer()], taken: [later([time - 1, time])] };
   });
-  await flocks.become(first, "open");
+  await flocks.update(first, "open");
   return flocks;
 }
 
 test("the score leaves out what was simulated before anybody looked, and a link says from when on", async () => {
   const flocks = await run();
   assert.ok(Number.isFinite(flocks.runs[0].mean("psi_o")));
-  assert.deepEqual(flocks.linked().other, {});
+  assert.deepEqual(flocks.linkFields().other, {});
   await flocks.runTo(5, () => true);
   assert.equal(flocks.runs[0].end, 5);
   flocks.restartMeans();
   assert.ok(Number.isNaN(flocks.runs[0].mean("psi_o")));
-  assert.deepEqual(flocks.linked(), { ...first, changes: [], other: { start: "5" }, isWhole: true });
-  assert.deepEqual(flocks.linked(5.5).other, { start: "5", now: "5.5" });
+  assert.deepEqual(flocks.linkFields(), { ...first, changes: [], other: { start: "5" }, isComplete: true });
+  assert.deepEqual(flocks.linkFields(5.5).other, { start: "5", now: "5.5" });
 });
 
 test("a flock that is not wanted any more runs no further", async () => {
@@ -116,23 +116,23 @@ test("a flock that is not wanted any more runs no further", async () => {
 
 test("what changes on the way is in the link, with its time, and starts the score again", async () => {
   const flocks = await run();
-  await flocks.become({ ...first, flock: { ...first.flock, bw_s: "0.5" } }, "change");
-  await flocks.become({ ...first, flock: { seed: "7", bw_s: "0.7" } }, "change");
-  const { flock, changes, other } = flocks.linked();
+  await flocks.update({ ...first, flock: { ...first.flock, bw_s: "0.5" } }, "change");
+  await flocks.update({ ...first, flock: { seed: "7", bw_s: "0.7" } }, "change");
+  const { flock, changes, other } = flocks.linkFields();
   assert.deepEqual(flock, first.flock);
   assert.deepEqual(changes, [{ time: 3, fields: { bw_s: "0.5" } }, { time: 5, fields: { n_boats: "", bw_s: "0.7" } }]);
   assert.deepEqual(other, {});
-  await flocks.become(first, "open");
-  assert.deepEqual(flocks.linked().changes, []);
+  await flocks.update(first, "open");
+  assert.deepEqual(flocks.linkFields().changes, []);
 });
 
 test("more changes than a link holds are left out, and it says so", async () => {
   const flocks = await run();
   for (let k = 1; k <= 201; k += 1) {
-    await flocks.become({ ...first, flock: { ...first.flock, bw_s: String(k) } }, "change");
+    await flocks.update({ ...first, flock: { ...first.flock, bw_s: String(k) } }, "change");
   }
-  const { flock, changes, isWhole } = flocks.linked();
-  assert.deepEqual([flock.bw_s, changes, isWhole], ["201", undefined, false]);
+  const { flock, changes, isComplete } = flocks.linkFields();
+  assert.deepEqual([flock.bw_s, changes, isComplete], ["201", undefined, false]);
 });
 
 test("an answer about flocks that are no longer shown is dropped", async () => {
@@ -155,18 +155,18 @@ test("a map gets settled orders alone, of the first flock", async () => {
 
 test("flocks of several seeds are seen, and those beside them only where nobody steers", async () => {
   const flocks = flocksOf(async (_, { requests }) => ({ continues: false, values: requests.map(() => answer()), taken: requests.map(() => taken) }));
-  await flocks.become({ flock: { n_boats: "2", seed: "9", leaders: "you" }, beside: { leaders: "a law" }, copies: 3 }, "open");
+  await flocks.update({ flock: { n_boats: "2", seed: "9", leaders: "you" }, beside: { leaders: "a law" }, copies: 3 }, "open");
   assert.deepEqual(flocks.runs.map(({ seed }) => seed), ["9", "10", "11", "9", "10", "11"]);
-  assert.deepEqual([flocks.seen.length, flocks.besides], [3, 3]);
-  await flocks.become({ flock: { n_boats: "2" }, beside: { leaders: "a law" }, copies: 1 }, "open");
-  assert.deepEqual([flocks.seen.length, flocks.besides], [2, 1]);
+  assert.deepEqual([flocks.drawnRuns.length, flocks.firstBeside], [3, 3]);
+  await flocks.update({ flock: { n_boats: "2" }, beside: { leaders: "a law" }, copies: 1 }, "open");
+  assert.deepEqual([flocks.drawnRuns.length, flocks.firstBeside], [2, 1]);
 });
 
 test("leaders have one target or several", () => {
   const flocks = flocksOf();
   const { parameters, lengths } = answer(["cw", "ccw"]);
-  const opposed = flocks.described({ parameters: { ...parameters, n_leaders: 2 }, lengths }, {});
+  const opposed = flocks.runDescription({ parameters: { ...parameters, n_leaders: 2 }, lengths }, {});
   assert.deepEqual([opposed.target, opposed.targets], [null, ["cw", "ccw"]]);
-  const common = flocks.described(answer("ccw"), {});
+  const common = flocks.runDescription(answer("ccw"), {});
   assert.deepEqual([common.target, common.targets], ["ccw", undefined]);
 });

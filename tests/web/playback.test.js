@@ -15,14 +15,14 @@ function played({ end, speed = "8", lesson, means = [0.5, 0.2], waiting = 0 }) {
   const noted = { asked: [], said: [], map: [], again: 0, links: 0 };
   const run = (mean) => ({ time: [0], end, bw_s: 0.3, mean: () => mean });
   const page = {
-    changing: false, other: { speed, lesson }, runs: means.map(run), hand: { value: 0.25, center: () => undefined },
+    changing: false, other: { speed, lesson }, runs: means.map(run), helm: { value: 0.25, center: () => undefined },
     view: { panels: [{}], pinned: null, observed: null, map: { note: (...words) => noted.map.push(words) }, show: () => undefined },
     simulator: { waiting, stop: (words) => noted.said.push(words) },
     attempt: (question) => question(), say: (words) => noted.said.push(words),
     again: async () => { noted.again += 1; }, link: { write: () => { noted.links += 1; } },
   };
   page.flocks = {
-    runs: page.runs, besides: 1, areYours: lesson === "steer", isRecorded: false, shown: { flock: {} },
+    runs: page.runs, firstBeside: 1, areYours: lesson === "steer", isRecorded: false, shown: { flock: {} },
     advance: async (question, onCycle) => {
       noted.asked.push(question);
       onCycle(0.3, 0.7);
@@ -179,12 +179,12 @@ test("a round that waits behind a recording goes on where it was", async () => {
   for (const plays of [true, false]) {
     const { playback, page, noted, tick } = played({ end: 57, lesson: "steer" });
     let centered = 0;
-    page.hand.center = () => { centered += 1; };
+    page.helm.center = () => { centered += 1; };
     page.showRuns = () => undefined;
     const { runs } = page;
     Object.assign(page.flocks, {
       show: (run) => { page.runs = [run]; Object.assign(page.flocks, { runs: page.runs, isRecorded: true, areYours: false }); },
-      comeBack: () => { page.runs = runs; Object.assign(page.flocks, { runs, isRecorded: false, areYours: true }); },
+      returnToFlocks: () => { page.runs = runs; Object.assign(page.flocks, { runs, isRecorded: false, areYours: true }); },
     });
     playback.restart();
     page.view.pinned = 3;
@@ -199,7 +199,7 @@ test("a round that waits behind a recording goes on where it was", async () => {
     page.view.pinned = null;
     playback.toggle();
     await tick(16);
-    playback.comeBack();
+    playback.returnToFlocks();
     assert.deepEqual([playback.time, playback.transport.playing, centered, page.view.pinned], [56.5, plays, 1, 3]);
     assert.deepEqual([noted.again, noted.said], [0, [""]]);
   }

@@ -23,7 +23,7 @@ async function said(path) {
   try {
     const run = await runOfFile(file, { format, phases, series, statistics, quantities: known }, {
       check: async (request) => ANSWERS.check({ request }).values,
-      describe: (answer, named) => flocks.described(answer, named),
+      describe: (answer, named) => flocks.runDescription(answer, named),
       derive: async (arrays, described) => ANSWERS.derive(derivedOf(arrays, described, series)).series,
     });
     return { refusal: null, signed: Array.from({ length: run.length }, (_, k) => run.value("signed_order", k)) };

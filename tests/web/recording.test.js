@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { array, readNpz, writeNpz } from "../../web/npz.mjs";
-import { checkedArrays } from "../../web/recording.mjs";
+import { checkRecording } from "../../web/recording.mjs";
 
 const QUANTITIES = [{ key: "psi_o", kind: "recorded", least_boats: 1 }, { key: "c_o", kind: "recorded", least_boats: 2 }];
 const STATISTICS = [{ name: "unsolved", kind: "count" }, { name: "worst_overlap_cm", kind: "real" }];
@@ -31,7 +31,7 @@ async function arraysOf({ contacts, ...others } = {}) {
 }
 
 const check = async (others, parameters = {}) =>
-  checkedArrays(await arraysOf(others), ABOUT, async () => ({ parameters: { n_boats: 3, n_leaders: 1, discs: [], walls: [], ...parameters } }));
+  checkRecording(await arraysOf(others), ABOUT, async () => ({ parameters: { n_boats: 3, n_leaders: 1, discs: [], walls: [], ...parameters } }));
 
 test("a recording is accepted, and its last time may lie beyond its end by a rounding", async () => {
   await check();
