@@ -42,16 +42,16 @@ DECAY_1, DECAY_2 = 0.9, 0.99
 def lean(pool: str, episode_s: float) -> dict[str, Any]:
     """Return the task of examples/train_leaders.py: three leaders lean about the tangent.
 
-    Without a lean they follow the tuned law, from which the search starts. The only reward is the
-    order.
+    A leader that does not lean follows the tuned law, so the search starts from this law. The
+    only reward is the signed order.
     """
-    others = dict.fromkeys(("own", "phase", "target", "order"), False)
+    switched_off = dict.fromkeys(("own", "phase", "target", "order"), False)
     return {
         "pool": pool,
         "n_boats": 27,
         "n_leaders": 3,
         "bw_s": flockenv.FlockParameters.critical_bw_s("simulation", pool),
-        "observation": {**others, "neighbors": 0, "lean_features": True},
+        "observation": {**switched_off, "neighbors": 0, "lean_features": True},
         "action_mode": "lean",
         "decision_period_s": 1.0,
         "episode_s": episode_s,
@@ -74,17 +74,17 @@ TASKS: dict[str, dict[str, Any]] = {
 
 
 def environment(task: str, flocks: int) -> flockenv.LeadersVectorEnv:
-    """Return flocks of a task."""
+    """Return a vector environment with this number of flocks of a task."""
     options = {"target": "random", "mirror_to_target": True, **TASKS[task]}
     return flockenv.LeadersVectorEnv(flocks, autoreset_mode="disabled", **options)
 
 
 def episode(env: flockenv.LeadersVectorEnv, seeds: list[int], steer: Any) -> tuple[Any, Any]:
-    """Return the mean reward and the signed order of one episode of each flock."""
-    seen, _ = env.reset(seed=seeds)
+    """Return the mean reward per decision and the signed order of one episode of each flock."""
+    observations, _ = env.reset(seed=seeds)
     total, steps, ended = np.zeros(env.num_envs), 0, np.zeros(env.num_envs, bool)
     while not ended.all():
-        seen, rewards, _, ended, infos = env.step(steer(seen))
+        observations, rewards, _, ended, infos = env.step(steer(observations))
         total, steps = total + rewards, steps + 1
     return total / steps, infos["episode_summary"]["signed_order"]
 
@@ -96,37 +96,36 @@ def linear(weights: np.ndarray, leaders: int) -> Any:
     """
     matrix, bias = weights[:, :-1].astype(np.float32), weights[:, -1:].astype(np.float32)
 
-    def steer(seen: np.ndarray) -> np.ndarray:
-        rows = seen.reshape(len(matrix), leaders, -1)
+    def steer(observations: np.ndarray) -> np.ndarray:
+        rows = observations.reshape(len(matrix), leaders, -1)
         return np.clip(np.einsum("fls,fs->fl", rows, matrix) + bias, -1.0, 1.0)
 
     return steer
 
 
 def ranks(values: np.ndarray) -> np.ndarray:
-    """Return -0.5 for the worst to 0.5 for the best."""
-    found = np.empty(len(values))
-    found[np.argsort(values, kind="stable")] = np.arange(len(values))
-    return found / (len(values) - 1) - 0.5
+    """Return the ranks of values, scaled from -0.5 for the worst to 0.5 for the best."""
+    places = np.empty(len(values))
+    places[np.argsort(values, kind="stable")] = np.arange(len(values))
+    return places / (len(values) - 1) - 0.5
 
 
 def next_generation(
     state: dict[str, Any], env: Any, options: argparse.Namespace, steer: Any = None
 ) -> dict[str, Any]:
-    """Try the candidates of a generation, and return the state after it.
+    """Try the candidates of a generation, and return the state of the search after it.
 
     `steer` maps weights and the number of leaders to a policy, as the default `linear` does.
     """
     weights, number = state["weights"], int(state["generation"])
-    # Each generation has its own random generator, so a checkpoint needs only the generation's
-    # number.
+    # Each generation seeds its own random generator, so a checkpoint stores only its number.
     random = np.random.default_rng([options.seed, number])
-    half = random.standard_normal((options.pairs, len(weights)))
-    candidates = weights + options.sigma * np.concatenate([half, -half])
+    changes = random.standard_normal((options.pairs, len(weights)))
+    candidates = weights + options.sigma * np.concatenate([changes, -changes])
     seeds = list(SEEDS.seeds(1, options.seed, number)) * len(candidates)
     rewards, orders = episode(env, seeds, (steer or linear)(candidates, env.num_leaders))
     scores = ranks(rewards)
-    gradient = (scores[: options.pairs] - scores[options.pairs :]) @ half
+    gradient = (scores[: options.pairs] - scores[options.pairs :]) @ changes
     gradient /= 2 * options.pairs * options.sigma
     moment_1 = DECAY_1 * state["moment_1"] + (1 - DECAY_1) * gradient
     moment_2 = DECAY_2 * state["moment_2"] + (1 - DECAY_2) * gradient**2
@@ -145,13 +144,16 @@ def next_generation(
 
 
 def first_state(size: int) -> dict[str, Any]:
-    """Return the start: weights of zero, with which leaders go straight ahead or follow the law."""
+    """Return the state before the first generation.
+
+    With weights of zero, leaders go straight ahead or, if they lean, follow the tuned law.
+    """
     zeros = {name: np.zeros(size) for name in ("weights", "average", "moment_1", "moment_2")}
     return {"generation": np.array(0), "curve": np.zeros((0, 2)), **zeros}
 
 
 def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
-    """Return the state of a search that was interrupted, if there is one with these options."""
+    """Return the state of an interrupted search, or None; exit if it has other options."""
     if not path.exists():
         return None
     with np.load(path) as file:
@@ -162,22 +164,22 @@ def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
 
 
 def search(options: argparse.Namespace, command: str) -> np.ndarray:
-    """Search, write the policy and the learning curve, and return the weights."""
-    env, start = environment(options.task, 2 * options.pairs), time.process_time()
+    """Search, write the policy and the learning curve, and return the average weights."""
+    env, start_s = environment(options.task, 2 * options.pairs), time.process_time()
     size = env.single_observation_space.shape[0] // env.num_leaders
-    free = ("out", "flock_hours", "episodes")
-    identity = json.dumps({k: v for k, v in vars(options).items() if k not in free})
+    # A search that is resumed may differ in these options.
+    may_differ = ("out", "flock_hours", "episodes")
+    identity = json.dumps({k: v for k, v in vars(options).items() if k not in may_differ})
     path = options.out / "state.npz"
     state = stored_state(path, identity) or first_state(size + 1)
     options.out.mkdir(parents=True, exist_ok=True)
     hours = env.num_envs * TASKS[options.task]["episode_s"] / 3600.0
     while int(state["generation"]) * hours < options.flock_hours:
         state = next_generation(state, env, options)
-        # Written completely or not at all: an interrupt leaves the previous generation's
-        # checkpoint.
-        half = path.with_suffix(".half.npz")
-        np.savez(half, **state, identity=identity)
-        half.replace(path)
+        # Replaced at once, so that an interrupt leaves the previous generation's checkpoint.
+        partial = path.with_suffix(".half.npz")
+        np.savez(partial, **state, identity=identity)
+        partial.replace(path)
         reward, order = state["curve"][-1]
         done = int(state["generation"]) * hours
         print(f"{done:.2f} flock-hours: mean reward {reward:.3f}, signed order {order:.3f}")
@@ -189,7 +191,7 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
         command,
         seed=options.seed,
         samples=round(generations * hours * 3600 * env.num_leaders * decisions_hz),
-        cpu_s=time.process_time() - start,
+        cpu_s=time.process_time() - start_s,
         flock_hours=generations * hours,
     )
     save(options, env, state["average"], provenance)
@@ -199,11 +201,13 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
 def save(
     options: argparse.Namespace, env: Any, weights: np.ndarray, provenance: dict[str, str]
 ) -> None:
-    """Write the policy: a law of leans, or a network."""
+    """Write the policy: a law of leans if leaders lean, otherwise a network."""
     if TASKS[options.task].get("action_mode") == "lean":
         *leans, bias = map(float, LARGEST_LEAN * weights)
-        named = dict(zip(LEAN_FEATURES, leans, strict=True))
-        law = LeaningLaw(options.task, bias, named, bound="clip", provenance=provenance)
+        weights_by_feature = dict(zip(LEAN_FEATURES, leans, strict=True))
+        law = LeaningLaw(
+            options.task, bias, weights_by_feature, bound="clip", provenance=provenance
+        )
         law.save(options.out / "policy.json")
         return
     observation = env.single_observation_space.options["observation"]
@@ -225,8 +229,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if min(options.pairs, options.episodes) < 2:
         parser.error("--pairs and --episodes are at least 2")
-    given = sys.argv[1:] if arguments is None else arguments
-    weights = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *given]))
+    words = sys.argv[1:] if arguments is None else arguments
+    weights = search(options, shlex.join(["python", "baselines/evolution_strategy.py", *words]))
     env, seeds = environment(options.task, options.episodes), list(range(options.episodes))
     orders = {}
     for name, candidate in (("evolved", weights), ("no search", 0.0 * weights)):

@@ -45,7 +45,7 @@ class Settings:
     groups: int = 16
     size: int = 8
     branch_s: int = 60
-    #: Only the order in this last part of a branch counts; before, it may respond the wrong way.
+    #: Only the order in the last part of a branch counts: at first it may change the wrong way.
     judged_s: int = 30
     episode_s: int = 480
     #: Standard deviation of the explored weights, and the initial learning rate, which falls to 0.
@@ -53,7 +53,7 @@ class Settings:
     learning_rate: float = 2e-3
     #: Passes over the decisions of all branches, and minibatches in each pass.
     epochs: int = 4
-    parts: int = 4
+    minibatches: int = 4
     clip_range: float = 0.2
 
 
@@ -65,21 +65,21 @@ def branch(
     Also returns the leaders' observations, shape (seconds, flocks, leaders, features).
     """
     weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
-    every: list[np.ndarray] = []
+    observations: list[np.ndarray] = []
 
-    def leans(seen: np.ndarray) -> np.ndarray:
-        every.append(seen)
-        return np.einsum("fls,fs->fl", seen, weights) + bias
+    def leans(rows: np.ndarray) -> np.ndarray:
+        observations.append(rows)
+        return np.einsum("fls,fs->fl", rows, weights) + bias
 
     orders = flocks.branch(leans)
-    return (orders[-judged_s:] / judged_s).sum(axis=0), np.array(every)
+    return (orders[-judged_s:] / judged_s).sum(axis=0), np.array(observations)
 
 
 def advantages(orders: np.ndarray, settings: Settings) -> np.ndarray:
     """Return how much better each flock is than the mean of its group, in standard deviations."""
     groups = orders.reshape(settings.size, settings.groups)
-    beyond = (groups - groups.mean(axis=0)).ravel()
-    return beyond / (beyond.std() + 1e-12)
+    differences = (groups - groups.mean(axis=0)).ravel()
+    return differences / (differences.std() + 1e-12)
 
 
 def ascent(
@@ -91,19 +91,19 @@ def ascent(
     advantage: np.ndarray,
     clip_range: float,
 ) -> np.ndarray:
-    """Return the gradient of the clipped objective by the weights.
+    """Return the gradient of the clipped objective with respect to the weights.
 
     The decisions `chosen` were drawn from normal distributions about the leans of the weights
     `start`, with the standard deviations `spread`.
     """
     before, now = ((chosen - features @ w) / spread for w in (start, weights))
     ratio = np.exp((before**2 - now**2) / 2)
-    free = np.where(advantage > 0, ratio < 1 + clip_range, ratio > 1 - clip_range)
-    return (advantage * ratio * free * now / spread) @ features / len(chosen)
+    is_unclipped = np.where(advantage > 0, ratio < 1 + clip_range, ratio > 1 - clip_range)
+    return (advantage * ratio * is_unclipped * now / spread) @ features / len(chosen)
 
 
 def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the weights, and the mean order of the branches of each round."""
+    """Return the average weights, and the mean order of the branches of each round."""
     flocks = BranchingFlocks(
         settings.pool,
         groups=settings.groups,
@@ -120,20 +120,22 @@ def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray
     for number in range(rounds):
         shape = (settings.groups * settings.size, len(weights))
         changes = settings.sigma * random.standard_normal(shape)
-        orders, seen = branch(weights + changes, flocks, settings.judged_s)
-        features = np.concatenate([seen, np.ones_like(seen[..., :1])], axis=-1).astype(float)
+        orders, observations = branch(weights + changes, flocks, settings.judged_s)
+        features = np.concatenate(
+            [observations, np.ones_like(observations[..., :1])], axis=-1
+        ).astype(float)
         chosen = np.einsum("tfls,fs->tfl", features, weights + changes).ravel()
-        advantage = np.broadcast_to(advantages(orders, settings)[:, None], seen.shape[:-1]).ravel()
+        shape = observations.shape[:-1]
+        advantage = np.broadcast_to(advantages(orders, settings)[:, None], shape).ravel()
         features = features.reshape(len(chosen), -1)
-        # Each decision has its own distribution, taken as independent of the branch's other
-        # decisions.
+        # Decisions of a branch are treated as independent, each with its own distribution.
         spread = settings.sigma * np.linalg.norm(features, axis=1)
         start, rate = weights.copy(), settings.learning_rate * (1 - number / rounds)
         for _ in range(settings.epochs):
-            for part in np.array_split(random.permutation(len(chosen)), settings.parts):
+            for part in np.array_split(random.permutation(len(chosen)), settings.minibatches):
                 decisions = (array[part] for array in (chosen, features, spread))
-                own = (start, advantage[part], settings.clip_range)
-                gradient, steps = ascent(weights, *decisions, *own), steps + 1
+                objective = (start, advantage[part], settings.clip_range)
+                gradient, steps = ascent(weights, *decisions, *objective), steps + 1
                 moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient
                 moment_2 = DECAY_2 * moment_2 + (1 - DECAY_2) * gradient**2
                 step = moment_1 / (1 - DECAY_1**steps)
@@ -150,24 +152,24 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--flock-hours", type=float, default=200.0)
     parser.add_argument("--out", type=Path, default=Path("results/group"))
     options = parser.parse_args(arguments)
-    given = sys.argv[1:] if arguments is None else arguments
-    settings, start = Settings(), time.process_time()
+    words = sys.argv[1:] if arguments is None else arguments
+    settings, start_s = Settings(), time.process_time()
     weights, curve = train(settings, options.seed, options.flock_hours)
     hours = settings.groups * settings.size * settings.branch_s / 3600.0 * len(curve)
     provenance = provenance_of(
-        shlex.join(["python", "baselines/group_relative.py", *given]),
+        shlex.join(["python", "baselines/group_relative.py", *words]),
         seed=options.seed,
         samples=round(hours * 3600 * 3),
-        cpu_s=time.process_time() - start,
+        cpu_s=time.process_time() - start_s,
         flock_hours=hours,
     )
     folder = options.out / str(options.seed)
     folder.mkdir(parents=True, exist_ok=True)
     *leans, bias = map(float, LARGEST_LEAN * weights)
-    named = dict(zip(LEAN_FEATURES, leans, strict=True))
-    law = LeaningLaw(settings.pool, bias, named, bound="clip", provenance=provenance)
+    weights_by_feature = dict(zip(LEAN_FEATURES, leans, strict=True))
+    law = LeaningLaw(settings.pool, bias, weights_by_feature, bound="clip", provenance=provenance)
     law.save(folder / "policy.json")
-    print(f"{hours:.0f} flock-hours, {time.process_time() - start:.0f} s of one core")
+    print(f"{hours:.0f} flock-hours, {time.process_time() - start_s:.0f} s of one core")
     print(f"order in branches {curve[0]:.3f} at first, {curve[-len(curve) // 4 :].mean():.3f} late")
 
 

@@ -39,7 +39,7 @@ COLUMNS = ("policy", "seed", "samples", "cpu_s", *SCORE)
 
 
 def ppo(seed: int) -> PPO:
-    """Return PPO on 64 flocks at once, untrained."""
+    """Return untrained PPO on 64 flocks."""
     venv = LeaderVecEnv(64, **OPTIONS)
     model = PPO(
         "MlpPolicy",
@@ -64,30 +64,35 @@ def orders(policy: Any, flocks: int) -> np.ndarray:
 
 
 class Curve(BaseCallback):
-    """Scores the mean policy at regular intervals of samples, against a law in the same flocks."""
+    """Scores the mean policy at regular intervals of samples.
+
+    `law` is the signed order of the paper's law in the same flocks.
+    """
 
     def __init__(self, seed: int, samples: int, law: np.ndarray) -> None:
         super().__init__()
         self.seed, self.law = seed, law
-        self.every, self.due, self.rows = max(1, samples // 4), 0, list[dict[str, Any]]()
-        self.start, self.outside = time.process_time(), 0.0
+        self.interval, self.due, self.rows = max(1, samples // 4), 0, list[dict[str, Any]]()
+        self.start_s, self.scoring_s = time.process_time(), 0.0
 
     def _on_rollout_start(self) -> None:
         if self.num_timesteps >= self.due:
-            self.note(EARLIER_EPISODES)
-            self.due += self.every
+            self.add_point(EARLIER_EPISODES)
+            self.due += self.interval
 
     def _on_training_end(self) -> None:
-        self.note(EPISODES)
+        self.add_point(EPISODES)
 
-    def note(self, flocks: int) -> None:
-        """Add a point."""
-        paused = time.process_time()
-        led = {"PPO": orders(self.model, flocks), "paper's law": self.law[:flocks]}
+    def add_point(self, flocks: int) -> None:
+        """Score the policy in this number of flocks; scoring does not count as training time."""
+        paused_s = time.process_time()
+        orders_by_policy = {"PPO": orders(self.model, flocks), "paper's law": self.law[:flocks]}
         point = {"seed": self.seed, "samples": self.num_timesteps}
-        point |= {"cpu_s": paused - self.start - self.outside}
-        self.rows.append(score_policies(led, "paper's law").to_dict("records")[0] | point)
-        self.outside += time.process_time() - paused
+        point |= {"cpu_s": paused_s - self.start_s - self.scoring_s}
+        self.rows.append(
+            score_policies(orders_by_policy, "paper's law").to_dict("records")[0] | point
+        )
+        self.scoring_s += time.process_time() - paused_s
         print(self.rows[-1], flush=True)
 
     def _on_step(self) -> bool:
@@ -110,10 +115,10 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     layout = {name: OPTIONS[name] for name in ("observation", "mirror_to_target")}
-    found = {name: orders(law(**layout), EPISODES) for name, law in LAWS.items()}
-    rows = score_policies(found).to_dict("records")
+    law_orders = {name: orders(law(**layout), EPISODES) for name, law in LAWS.items()}
+    rows = score_policies(law_orders).to_dict("records")
     for seed in options.seeds:
-        rows += learn(seed, options.samples, found["paper's law"])
+        rows += learn(seed, options.samples, law_orders["paper's law"])
         table = pd.DataFrame(rows)[[*COLUMNS]].astype({"seed": "Int64", "samples": "Int64"})
         table.to_csv(options.out / "curve.csv", index=False, float_format="%.4f")
     print(f"written to {options.out}")

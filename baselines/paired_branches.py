@@ -45,7 +45,7 @@ class Settings:
     #: Number of pairs of flocks, and length of a branch in s.
     pairs: int = 64
     branch_s: int = 64
-    #: Only the order in this last part of a branch counts; before, it may respond the wrong way.
+    #: Only the order in the last part of a branch counts: at first it may change the wrong way.
     judged_s: int = 32
     episode_s: int = 480
     #: Standard deviation of a weight's changes, and the initial learning rate, which falls to 0.
@@ -56,12 +56,12 @@ class Settings:
 def orders_led_by(candidates: np.ndarray, flocks: BranchingFlocks, judged_s: int) -> np.ndarray:
     """Return the mean order of each flock, led by its own weights, at the end of a branch."""
     weights, bias = candidates[:, :-1].astype(np.float32), candidates[:, -1:]
-    orders = flocks.branch(lambda seen: np.einsum("fls,fs->fl", seen, weights) + bias)
+    orders = flocks.branch(lambda rows: np.einsum("fls,fs->fl", rows, weights) + bias)
     return (orders[-judged_s:] / judged_s).sum(axis=0)
 
 
 def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the weights, and the mean order of each generation."""
+    """Return the average weights, and the mean order of each generation."""
     flocks = BranchingFlocks(
         settings.pool,
         groups=settings.pairs,
@@ -93,10 +93,10 @@ def search(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarra
 
 
 def law(pool: str, weights: np.ndarray, provenance: dict[str, str]) -> LeaningLaw:
-    """Return the law of leans by these weights, the last of which is the bias."""
+    """Return the law of leans with these weights; the last one is the bias."""
     *leans, bias = map(float, LARGEST_LEAN * weights)
-    named = dict(zip(LEAN_FEATURES, leans, strict=True))
-    return LeaningLaw(pool, bias, named, bound="clip", provenance=provenance)
+    weights_by_feature = dict(zip(LEAN_FEATURES, leans, strict=True))
+    return LeaningLaw(pool, bias, weights_by_feature, bound="clip", provenance=provenance)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -107,8 +107,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--flock-hours", type=float, default=200.0)
     parser.add_argument("--out", type=Path, default=Path("results/paired"))
     options = parser.parse_args(arguments)
-    given = sys.argv[1:] if arguments is None else arguments
-    settings, start = Settings(pool=options.pool, pairs=options.pairs), time.process_time()
+    words = sys.argv[1:] if arguments is None else arguments
+    settings, start_s = Settings(pool=options.pool, pairs=options.pairs), time.process_time()
     weights, curve = search(settings, options.seed, options.flock_hours)
     hours = 2 * settings.pairs * settings.branch_s / 3600.0
     folder = options.out / str(options.seed)
@@ -117,14 +117,16 @@ def main(arguments: list[str] | None = None) -> None:
     header = "flock_hours,signed_order"
     np.savetxt(folder / "curve.csv", rows, "%.5g", ",", header=header, comments="")
     provenance = provenance_of(
-        shlex.join(["python", "baselines/paired_branches.py", *given]),
+        shlex.join(["python", "baselines/paired_branches.py", *words]),
         seed=options.seed,
         samples=round(len(curve) * hours * 3600 * 3),
-        cpu_s=time.process_time() - start,
+        cpu_s=time.process_time() - start_s,
         flock_hours=len(curve) * hours,
     )
     law(options.pool, weights, provenance).save(folder / "policy.json")
-    print(f"{len(curve) * hours:.0f} flock-hours, {time.process_time() - start:.0f} s of one core")
+    print(
+        f"{len(curve) * hours:.0f} flock-hours, {time.process_time() - start_s:.0f} s of one core"
+    )
     print(f"order in branches {curve[0]:.3f} at first, {curve[-len(curve) // 4 :].mean():.3f} late")
 
 

@@ -41,7 +41,7 @@ OPTIONS = {
 
 @dataclass(frozen=True)
 class Settings:
-    """One sample is one leader's decision."""
+    """Settings of the training; one sample is one leader's decision."""
 
     samples: int = 100_000
     seed: int = 0
@@ -79,15 +79,18 @@ class Learner:
 
     def __init__(self, settings: Settings, env: flockenv.LeadersVectorEnv) -> None:
         self.settings, self.leaders = settings, env.num_leaders
-        seen = env.single_observation_space.shape[0] // self.leaders
-        self.mean = layers(seen, settings.hidden, 0.01)
+        size = env.single_observation_space.shape[0] // self.leaders
+        self.mean = layers(size, settings.hidden, 0.01)
         self.log_std = torch.nn.Parameter(torch.tensor(settings.first_log_std))
         self.critic = layers(env.flock_feature_space.shape[0], settings.hidden, 1.0)
         self.parameters = [*self.mean.parameters(), self.log_std, *self.critic.parameters()]
         self.optimizer = torch.optim.Adam(self.parameters, settings.learning_rate, eps=1e-5)
 
     def actions(self, observations: torch.Tensor) -> torch.distributions.Normal:
-        """Return the distribution of actions, (flocks, leaders), from (flocks, leaders * size)."""
+        """Return the distribution of actions, shape (flocks, leaders).
+
+        `observations` has shape (flocks, leaders * size).
+        """
         rows = observations.unflatten(-1, (self.leaders, -1))
         return torch.distributions.Normal(self.mean(rows).squeeze(-1), self.log_std.exp())
 
@@ -96,19 +99,20 @@ class Learner:
         return self.critic(features).squeeze(-1)
 
     def update(self, rollout: dict[str, torch.Tensor]) -> None:
-        """Update both networks in some passes over a rollout."""
+        """Update both networks in `epochs` passes over a rollout."""
         settings, size = self.settings, len(rollout["returns"])
         for _ in range(settings.epochs):
             for part in torch.randperm(size).chunk(settings.minibatches):
                 batch = {name: values[part] for name, values in rollout.items()}
-                gain = batch["advantages"]
-                gain = ((gain - gain.mean()) / (gain.std() + 1e-8)).unsqueeze(-1)
-                now = self.actions(batch["observations"]).log_prob(batch["actions"])
-                ratio = (now - batch["log_probs"]).exp()
+                advantages = batch["advantages"]
+                normalized = (advantages - advantages.mean()) / (advantages.std() + 1e-8)
+                gain = normalized.unsqueeze(-1)
+                log_probs = self.actions(batch["observations"]).log_prob(batch["actions"])
+                ratio = (log_probs - batch["log_probs"]).exp()
                 clipped = ratio.clamp(1 - settings.clip, 1 + settings.clip)
                 actor_loss = -torch.minimum(ratio * gain, clipped * gain).mean()
-                differences = self.values(batch["features"]) - batch["returns"]
-                loss = actor_loss + settings.value_weight * differences.square().mean()
+                value_errors = self.values(batch["features"]) - batch["returns"]
+                loss = actor_loss + settings.value_weight * value_errors.square().mean()
                 self.optimizer.zero_grad()
                 loss.backward()
                 torch.nn.utils.clip_grad_norm_(self.parameters, settings.largest_gradient)
@@ -119,44 +123,53 @@ class Learner:
 def rollout_of(
     env: flockenv.LeadersVectorEnv, learner: Learner, observations: np.ndarray
 ) -> tuple[dict[str, torch.Tensor], np.ndarray, float]:
-    """Return a rollout with advantages, the observations that follow it, and its mean reward."""
+    """Return a rollout with advantages, the observations after it, and its mean reward."""
     settings = learner.settings
     steps: dict[str, list[torch.Tensor]] = {
         name: []
-        for name in ("observations", "features", "actions", "log_probs", "rewards", "next", "goes")
+        for name in (
+            "observations",
+            "features",
+            "actions",
+            "log_probs",
+            "rewards",
+            "next_values",
+            "continues",
+        )
     }
     for _ in range(settings.steps):
-        seen = torch.from_numpy(observations)
+        observed = torch.from_numpy(observations)
         features = torch.from_numpy(env.flock_features())
-        chances = learner.actions(seen)
-        actions = chances.sample()
+        distribution = learner.actions(observed)
+        actions = distribution.sample()
         observations, rewards, _, truncated, _ = env.step(actions.numpy())
-        # An episode that was cut off would have gone on: its end has a value, too.
-        after = learner.values(torch.from_numpy(env.flock_features()))
+        # A truncated episode would have gone on, so its last state has a value, too.
+        next_values = learner.values(torch.from_numpy(env.flock_features()))
         if truncated.any():
             observations, _ = env.reset(options={"reset_mask": truncated})
         for name, value in (
-            ("observations", seen),
+            ("observations", observed),
             ("features", features),
             ("actions", actions),
-            ("log_probs", chances.log_prob(actions)),
+            ("log_probs", distribution.log_prob(actions)),
             ("rewards", torch.from_numpy(rewards.astype(np.float32))),
-            ("next", after),
-            ("goes", torch.from_numpy(~truncated).float()),
+            ("next_values", next_values),
+            ("continues", torch.from_numpy(~truncated).float()),
         ):
             steps[name].append(value)
-    whole = {name: torch.stack(values) for name, values in steps.items()}
-    values = learner.values(whole["features"])
+    stacked = {name: torch.stack(values) for name, values in steps.items()}
+    values = learner.values(stacked["features"])
     # Generalized advantage estimation (Schulman et al. 2016, eq. 16), backward in time.
-    surprises = whole["rewards"] + settings.gamma * whole["next"] - values
-    advantages, later = torch.empty_like(values), torch.zeros(env.num_envs)
+    errors = stacked["rewards"] + settings.gamma * stacked["next_values"] - values
+    advantages, advantage = torch.empty_like(values), torch.zeros(env.num_envs)
+    decay = settings.gamma * settings.gae_lambda
     for step in reversed(range(settings.steps)):
-        later = surprises[step] + settings.gamma * settings.gae_lambda * whole["goes"][step] * later
-        advantages[step] = later
-    rollout = {name: whole[name] for name in ("observations", "features", "actions", "log_probs")}
+        advantage = errors[step] + decay * stacked["continues"][step] * advantage
+        advantages[step] = advantage
+    rollout = {name: stacked[name] for name in ("observations", "features", "actions", "log_probs")}
     rollout |= {"advantages": advantages, "returns": advantages + values}
     flat = {name: values.flatten(0, 1) for name, values in rollout.items()}
-    return flat, observations, float(whole["rewards"].mean())
+    return flat, observations, float(stacked["rewards"].mean())
 
 
 def train(settings: Settings, out: Path, report=print) -> NetworkPolicy:

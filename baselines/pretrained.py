@@ -62,9 +62,9 @@ class Settings:
     seeds: tuple[int, ...] = tuple(range(8))
     #: Flocks of a PPO training; the numbers of leaders are dealt out to them in turn.
     environment: Mapping[str, Any] = field(default_factory=lambda: {"n_leaders": [1, 2, 3, 4]})
-    #: Flock-hours of each training.
+    #: Flock-hours of each training; PPO also saves its policy after `early_hours`.
     wide_hours: float = 1100.0
-    kept_hours: float = 500.0
+    early_hours: float = 500.0
     narrow_hours: float = 400.0
     num_flocks: int = 128
     #: Number of validation flocks for each number of leaders, one to four, and of judging flocks.
@@ -76,7 +76,7 @@ class Settings:
 TRIAL = Settings(
     seeds=(0, 1),
     wide_hours=1.5,
-    kept_hours=0.5,
+    early_hours=0.5,
     narrow_hours=1.0,
     num_flocks=8,
     validation_flocks=2,
@@ -85,8 +85,8 @@ TRIAL = Settings(
 )
 
 
-class Keep(BaseCallback):
-    """Saves the policy once a training has had this many samples."""
+class SaveEarly(BaseCallback):
+    """Saves the policy once a training has taken this many samples."""
 
     def __init__(self, samples: int, pool: str, path: Path) -> None:
         super().__init__()
@@ -95,20 +95,20 @@ class Keep(BaseCallback):
     def _on_rollout_start(self) -> None:
         if self.num_timesteps >= self.samples and not self.path.exists():
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            every_step(LeaningLaw.from_model(self.model, self.pool), {}).save(self.path)
+            at_every_step(LeaningLaw.from_model(self.model, self.pool), {}).save(self.path)
 
     def _on_step(self) -> bool:
         return True
 
 
-def every_step(law: LeaningLaw, provenance: dict[str, str]) -> LeaningLaw:
-    """Return the law, deciding at every control step instead of once per second as in training."""
+def at_every_step(law: LeaningLaw, provenance: dict[str, str]) -> LeaningLaw:
+    """Return a law that decides at every control step instead of once per second as in training."""
     return LeaningLaw(law.pool, law.bias, law.weights, provenance=provenance)
 
 
 def train_wide(given: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
-    """Return the leans that PPO learns."""
-    start = time.process_time()
+    """Return the law of leans that PPO learns with this seed."""
+    start_s = time.process_time()
     settings = TrainingSettings(
         pool="wide",
         seed=seed,
@@ -120,25 +120,25 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
     env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
     model = settings.model(env)
     model.set_logger(configure(str(folder), ["csv"]))
-    kept = settings.replace(flock_hours=given.kept_hours)
-    beside = folder.parent.with_name(f"{folder.parent.name}-{given.kept_hours:g}")
+    early = settings.replace(flock_hours=given.early_hours)
+    early_folder = folder.parent.with_name(f"{folder.parent.name}-{given.early_hours:g}")
     model.learn(
         settings.samples(env),
-        callback=Keep(kept.samples(env), "wide", beside / str(seed) / "policy.json"),
+        callback=SaveEarly(early.samples(env), "wide", early_folder / str(seed) / "policy.json"),
     )
     model.logger.close()
-    made = provenance_of(
+    provenance = provenance_of(
         command,
         seed=seed,
         samples=model.num_timesteps,
-        cpu_s=time.process_time() - start,
+        cpu_s=time.process_time() - start_s,
         flock_hours=model.num_timesteps / env.num_envs * given.num_flocks / 3600.0,
     )
-    return every_step(LeaningLaw.from_model(model, "wide"), made)
+    return at_every_step(LeaningLaw.from_model(model, "wide"), provenance)
 
 
 def search_narrow(given: Settings, seed: int, folder: Path, _command: str) -> LeaningLaw:
-    """Return the leans that paired_branches.py finds, with its command as their provenance."""
+    """Return the law of leans that paired_branches.py finds, with its command as provenance."""
     words = ["--pool", "narrow", "--pairs", str(given.num_flocks // 2), "--seed", str(seed)]
     words += ["--flock-hours", str(given.narrow_hours), "--out", str(folder.parent)]
     script = Path(__file__).with_name("paired_branches.py")
@@ -158,14 +158,14 @@ def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -
     return run_episodes(flock, policy, seeds, episode_s)["signed_order"]
 
 
-def made_by(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]:
-    """Return the provenance of a policy that follows from these laws."""
+def combined_provenance(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]:
+    """Return the provenance of a policy that is chosen or averaged from these laws."""
     provenances = [law.provenance for law in laws]
     return {
         "command": command,
         "chosen": chosen,
         "flockenv": provenances[0]["flockenv"],
-        "commit": ", ".join(sorted({own["commit"] for own in provenances})),
+        "commit": ", ".join(sorted({each["commit"] for each in provenances})),
         "seed": ", ".join(own["seed"] for own in provenances),
         **{
             name: f"{sum(float(own[name]) for own in provenances):.10g}"
@@ -174,14 +174,14 @@ def made_by(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]
     }
 
 
-def mean_of(laws: list[LeaningLaw], made: dict[str, str] | None = None) -> LeaningLaw:
-    """Return the mean of laws of one pool, number by number, with a provenance."""
+def mean_of(laws: list[LeaningLaw], provenance: dict[str, str] | None = None) -> LeaningLaw:
+    """Return the law whose weights and bias are the means of those of laws of one pool."""
     pool = laws[0].pool
     weights = {
         name: float(np.mean([law.weights[name] for law in laws])) for name in laws[0].weights
     }
     bias = float(np.mean([law.bias for law in laws]))
-    return LeaningLaw(pool, bias, weights, bound=BOUND[pool], provenance=made or {})
+    return LeaningLaw(pool, bias, weights, bound=BOUND[pool], provenance=provenance or {})
 
 
 def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.DataFrame:
@@ -198,7 +198,7 @@ def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.Data
 
 
 def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, LeaningLaw]:
-    """Make the missing trainings, and return the policy of each seed."""
+    """Run the trainings without a stored policy, and return the policy of each seed."""
     laws = {}
     for seed in given.seeds:
         folder = out / pool / str(seed)
@@ -211,11 +211,11 @@ def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, Le
 
 
 def judged(given: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
-    """Return the order that a policy reaches with three leaders in unused flocks."""
+    """Return the order of a policy with three leaders in unused flocks, and their settings."""
     seeds = release_seeds("pretrained", given.judging_flocks)
-    own = orders(law, pool, 3, seeds, given.episode_s)
-    found = score_policies({"law": own}).loc[0, ["signed_order", "low", "high"]]
-    signed_order, low, high = (round(float(value), 3) for value in found)
+    flock_orders = orders(law, pool, 3, seeds, given.episode_s)
+    score = score_policies({"law": flock_orders}).loc[0, ["signed_order", "low", "high"]]
+    signed_order, low, high = (round(float(value), 3) for value in score)
     return {
         "signed_order": signed_order,
         "interval": [low, high],
@@ -240,13 +240,12 @@ def make(given: Settings, pool: str, out: Path, command: str) -> bool:
     score = scores.set_index("policy")["score"]
     best = str(score[list(laws)].idxmax())
     chosen = "mean" if score["mean"] >= score[best] else best
-    used = list(laws.values()) if chosen == "mean" else [laws[chosen]]
+    parents = list(laws.values()) if chosen == "mean" else [laws[chosen]]
     rule = f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks"
     law, order = candidates[chosen], judged(given, pool, candidates[chosen])
-    made = made_by(used, command, rule)
-    LeaningLaw(pool, law.bias, law.weights, bound=BOUND[pool], judged=order, provenance=made).save(
-        out / f"{pool}.json"
-    )
+    provenance = combined_provenance(parents, command, rule)
+    options = {"bound": BOUND[pool], "judged": order, "provenance": provenance}
+    LeaningLaw(pool, law.bias, law.weights, **options).save(out / f"{pool}.json")
     low, high = order["interval"]
     reached = f"{order['signed_order']:.3f} [{low:.3f}, {high:.3f}]"
     print(f"{pool}: {chosen}, signed order {reached}", flush=True)
@@ -262,8 +261,8 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if options.trial and options.ship:
         parser.error("what a trial makes does not ship")
-    given = sys.argv[1:] if arguments is None else arguments
-    command = shlex.join(["python", "baselines/pretrained.py", *given])
+    words = sys.argv[1:] if arguments is None else arguments
+    command = shlex.join(["python", "baselines/pretrained.py", *words])
     for pool in options.pool or MAKERS:
         passes = make(TRIAL if options.trial else Settings(), pool, options.out, command)
         if options.ship and passes:
