@@ -1,7 +1,7 @@
-"""Build the live page: the crate compiled to WebAssembly, and all that shows it, in one HTML file.
+"""Build the live page: the crate compiled to WebAssembly and the page's scripts, in one HTML file.
 
-`make live` writes it to ``flockenv/replay/live.html``, where the package finds it. It loads nothing
-and opens from anywhere. This needs cargo, and of the package its sources alone.
+`make live` writes it to ``flockenv/replay/live.html``, where the package finds it. The page loads
+no other file. The build needs cargo, and only the sources of the package.
 """
 
 import ast
@@ -22,7 +22,7 @@ ROOT = WEB.parent
 REPLAY = ROOT / "flockenv" / "replay"
 PAGE = REPLAY / "live.html"
 MOST_BYTES = 500_000
-"""Size that the page may not exceed."""
+"""Largest size of the page in bytes."""
 
 _TARGET = "wasm32-unknown-unknown"
 _THREAD = ("core.mjs", "worker.mjs")
@@ -69,7 +69,7 @@ _OWN = (
 
 def without_names(module: bytes) -> bytes:
     """Return a WebAssembly module without its custom sections, such as names of functions."""
-    kept, start = [module[:8]], 8
+    parts, start = [module[:8]], 8
     while start < len(module):
         length = shift = 0
         end = start + 1
@@ -81,38 +81,40 @@ def without_names(module: bytes) -> bytes:
                 break
         end += length
         if module[start] != 0:
-            kept.append(module[start:end])
+            parts.append(module[start:end])
         start = end
-    return b"".join(kept)
+    return b"".join(parts)
 
 
 def wasm() -> bytes:
-    """Compile the simulator, and return it."""
+    """Compile the simulator to WebAssembly, and return the module."""
     command = ["cargo", "build", "--locked", "--release", "--target", _TARGET]
     subprocess.run(command, cwd=WEB, check=True)
-    asked = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
-    said = subprocess.run(asked, cwd=WEB, check=True, capture_output=True, text=True).stdout
-    folder = Path(json.loads(said)["target_directory"], _TARGET, "release")
+    command = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
+    metadata = subprocess.run(command, cwd=WEB, check=True, capture_output=True, text=True).stdout
+    folder = Path(json.loads(metadata)["target_directory"], _TARGET, "release")
     return without_names((folder / "flockenv_web.wasm").read_bytes())
 
 
 def constant(path: Path, name: str) -> str:
-    """Return a constant of a module that is read, not imported."""
-    for each in ast.parse(path.read_text("utf-8")).body:
-        if isinstance(each, ast.Assign) and ast.unparse(each.targets[0]) == name:
-            return str(ast.literal_eval(each.value))
+    """Return a constant of a Python module without importing it."""
+    for statement in ast.parse(path.read_text("utf-8")).body:
+        if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == name:
+            return str(ast.literal_eval(statement.value))
     raise SystemExit(f"{path} has no {name}")
 
 
 def expected_orders() -> list[dict[str, object]]:
-    """Return mean order against the backward duration for the paper's leaderless flocks."""
+    """Return mean order by backward duration for flocks without leaders, as the paper has them."""
     orders = defaultdict(list)
     results = ROOT / "studies" / "section4" / "results" / "section4.csv.gz"
     with gzip.open(results, "rt", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if row["preset"] == "experiment" and row["n_leaders"] == "0":
                 orders[float(row["bw_s"])].append(float(row["psi_o"]))
-    points = [[bw_s, round(sum(each) / len(each), 3)] for bw_s, each in sorted(orders.items())]
+    points = [
+        [bw_s, round(sum(values) / len(values), 3)] for bw_s, values in sorted(orders.items())
+    ]
     return [{"preset": "experiment", "n_boats": 27, "n_leaders": 0, "points": points}]
 
 
@@ -123,9 +125,9 @@ def bare(script: str) -> str:
 
 
 def packed(content: bytes) -> str:
-    """Return compressed bytes as text; the header has no time, so every build gives the same text.
+    """Return compressed bytes as text, the same in every build since the header holds no time.
 
-    Base 85 takes 6 % less room than base 64, and cannot spell the end of a script element.
+    Base 85 takes 6 % fewer bytes than base 64, and cannot spell the end of a script element.
     """
     return base64.b85encode(gzip.compress(content, mtime=0)).decode("ascii")
 
@@ -134,7 +136,9 @@ def page(compiled: bytes) -> str:
     """Return the page around a compiled simulator."""
     template = runpy.run_path(str(REPLAY / "template.py"))
     shared = [(REPLAY / "shared" / name).read_text("utf-8") for name in _SHARED]
-    own, threads = ([(WEB / name).read_text("utf-8") for name in each] for each in (_OWN, _THREAD))
+    own, threads = (
+        [(WEB / name).read_text("utf-8") for name in names] for names in (_OWN, _THREAD)
+    )
     script = bare(template["joined"]([*shared, *own]))
     thread = bare(template["joined"](threads))
     unpack = bare((WEB / "unpack.mjs").read_text("utf-8"))

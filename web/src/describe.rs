@@ -25,11 +25,11 @@ fn kind_name(kind: Kind) -> &'static str {
     }
 }
 
-fn field(each: &Field<FlockParameters>) -> Json {
+fn field(field: &Field<FlockParameters>) -> Json {
     json!({
-        "name": each.name,
-        "kind": kind_name(each.kind),
-        "meaning": each.doc.split_whitespace().collect::<Vec<_>>().join(" "),
+        "name": field.name,
+        "kind": kind_name(field.kind),
+        "meaning": field.doc.split_whitespace().collect::<Vec<_>>().join(" "),
     })
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn all() -> Json {
         "laws": Law::NAMED.iter().map(NamedLaw::declaration).map(|law| written(&law)).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
-        "quantities": quantities().map(|each| written(&Quantity::declaration(each))).collect::<Json>(),
+        "quantities": quantities().map(|quantity| written(&Quantity::declaration(quantity))).collect::<Json>(),
         "statistics": statistics(&Statistics::default()).into_iter().map(statistic).collect::<Json>(),
         "entries": entries
             .map(|(block, index, entry)| written(&entry.named(block.name(), index)))
@@ -59,14 +59,14 @@ pub(crate) fn all() -> Json {
     })
 }
 
-/// The values of all parameters, and lengths that a picture needs, in cm; null for a missing wall.
+/// The values of all parameters, and the lengths in cm that a picture needs; null for a missing outer wall.
 pub(crate) fn values(parameters: &FlockParameters) -> Json {
     let fields = FlockParameters::FIELDS.iter().zip(parameters.values());
     let values: serde_json::Map<_, _> = fields
         .map(|(field, value)| (field.name.to_owned(), written(&value)))
         .collect();
     let (pool, hull) = (parameters.pool, Hull::new(parameters));
-    let mut described = json!({
+    let mut description = json!({
         "parameters": values,
         "lengths": {
             "outer_radius_cm": pool.has_outer_wall().then_some(pool.outer_radius_cm),
@@ -74,7 +74,7 @@ pub(crate) fn values(parameters: &FlockParameters) -> Json {
         },
     });
     for (name, length) in hull.lengths() {
-        described["lengths"][name] = json!(length);
+        description["lengths"][name] = json!(length);
     }
-    described
+    description
 }

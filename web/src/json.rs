@@ -1,4 +1,4 @@
-//! Values of the core as JSON, in which the page asks and the simulator answers.
+//! Values of the core as JSON, the language of requests and answers.
 
 use flockenv::parameters::{Kind, Value};
 use serde_json::{Value as Json, json};
@@ -20,9 +20,9 @@ pub(crate) fn written(value: &Value) -> Json {
     }
 }
 
-/// The value of a field of this kind. Text stands for a number where a number is wanted.
+/// Reads the value of a field of this kind. Text is read as a number if the field holds numbers.
 pub(crate) fn read(kind: Kind, json: &Json) -> Value {
-    let wants_number = matches!(kind, Kind::Real | Kind::Pool | Kind::Rows(_));
+    let holds_numbers = matches!(kind, Kind::Real | Kind::Pool | Kind::Rows(_));
     match json {
         Json::Bool(flag) => Value::Flag(*flag),
         Json::Number(number) => match number.as_u64().and_then(|count| count.try_into().ok()) {
@@ -30,10 +30,10 @@ pub(crate) fn read(kind: Kind, json: &Json) -> Value {
             None => number.as_f64().map_or(Value::Other, Value::Real),
         },
         Json::String(text) => match text.parse() {
-            Ok(real) if wants_number => Value::Real(real),
+            Ok(real) if holds_numbers => Value::Real(real),
             _ => Value::Name(text.clone()),
         },
-        Json::Array(values) => Value::List(values.iter().map(|each| read(kind, each)).collect()),
+        Json::Array(values) => Value::List(values.iter().map(|value| read(kind, value)).collect()),
         Json::Null | Json::Object(_) => Value::Other,
     }
 }

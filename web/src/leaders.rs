@@ -7,16 +7,16 @@ use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
 use flockenv::{Flock, FlockError, Result};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The paper's law at every substep, by the name that the command line has for it.
+/// The name of the paper's law at every substep, as on the command line.
 pub(crate) const EVERY_SUBSTEP: &str = Law::EVERY_SUBSTEP;
 
 /// Decisions per second of all policies but the law at every substep.
 pub(crate) const CONTROL_HZ: f64 = 10.0;
 
-/// The leaders that the visitor trained, by the name that requests have for them.
+/// The name, in requests, of the policy that the visitor trained.
 pub(crate) const TRAINED: &str = "trained";
 
-/// The numbers of a policy that has not learned anything: rudders of 0.
+/// The weights of an untrained policy, whose rudders are 0.
 const UNTRAINED: [f64; LEAN_FEATURES + 1] = [0.0; LEAN_FEATURES + 1];
 
 /// How the leaders of a flock steer.
@@ -27,22 +27,22 @@ pub(crate) enum Leaders {
     Law(Pilot),
     /// To the visitor's heading, by the damped law.
     You(Pilot),
-    /// By a law for each leader, from its observation.
-    Each(Vec<Observing>),
+    /// By a law of its own for each leader, from its observation.
+    Each(Vec<ObservingLeader>),
 }
 
-/// A leader's own law.
-pub(crate) struct Observing {
+/// A leader with a law of its own, and the observation that the law takes.
+pub(crate) struct ObservingLeader {
     law: ObservedLaw,
     layout: ObservationLayout,
 }
 
 impl Leaders {
-    /// The policy of this name, or the policies whose names commas separate, one for each leader. `trained`: the policy
+    /// The policy of this name, or a policy for each leader from names that are separated by commas. `trained`: the policy
     /// that the visitor trained, in JSON; without it, trained leaders head straight ahead.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for unknown names, and flocks that the policy is not made for.
+    /// [`FlockError::Parameter`] for unknown names, and for flocks that the policy cannot lead.
     pub fn named(name: &str, trained: Option<&str>, parameters: &FlockParameters) -> Result<Self> {
         if name.contains(',') {
             return Self::each(&name.split(',').collect::<Vec<_>>(), parameters);
@@ -73,38 +73,44 @@ impl Leaders {
             let accepted = format!("one policy for each of {} leaders", parameters.n_leaders);
             return Err(refused(&names.join(","), &accepted));
         }
-        let own = names.iter().map(|name| {
+        let leaders = names.iter().map(|name| {
             let law = law(name, parameters)?;
             let mut layout = ObservationLayout::default();
-            // As in Python, leaning laws look at lean features, and see each target as the clockwise one.
+            // As in Python, a leaning law takes lean features, mirrored to a clockwise target.
             let leans = matches!(law, Law::Leaning(_));
             layout.repeat(Block::LeanFeatures, usize::from(leans));
             layout = layout.mirrored(leans);
             let law = ObservedLaw::new(law, &layout)?;
-            Ok(Observing { law, layout })
+            Ok(ObservingLeader { law, layout })
         });
-        own.collect::<Result<_>>().map(Self::Each)
+        leaders.collect::<Result<_>>().map(Self::Each)
     }
 
-    /// The next rudders, given the `held` ones; `None` for the law at every substep. `yours`: the heading that the
-    /// visitor asks of all leaders, clockwise from outward, over π.
+    /// The next rudders, from the present rudders `held`; `None` for the law at every substep. `heading`: the heading
+    /// that the visitor sets for all leaders, clockwise from outward, divided by π.
     ///
     /// # Errors
     /// As for [`Pilot::rudders`] and [`observe_flock`].
-    pub fn decide(&mut self, flock: &Flock, held: &[f64], yours: f64) -> Result<Option<Vec<f64>>> {
+    pub fn decide(
+        &mut self,
+        flock: &Flock,
+        held: &[f64],
+        heading: f64,
+    ) -> Result<Option<Vec<f64>>> {
         match self {
             Self::EverySubstep => Ok(None),
             Self::Law(pilot) => pilot.rudders(flock).map(Some),
             Self::You(pilot) => {
                 let targets = &flock.parameters().target;
                 let leaders = 0..flock.parameters().n_leaders;
-                // Clockwise of outward; a clockwise tangent is a quarter turn from there.
-                pilot.lean_to(leaders.map(|k| FRAC_PI_2 - targets.of(k).sign() * PI * yours));
+                // A lean is measured from the target's tangent, a quarter turn from outward.
+                pilot.lean_to(leaders.map(|k| FRAC_PI_2 - targets.of(k).sign() * PI * heading));
                 pilot.rudders(flock).map(Some)
             }
-            Self::Each(own) => {
-                let own = own.iter().enumerate();
-                own.map(|(leader, own)| own.rudder(flock, held, leader))
+            Self::Each(leaders) => {
+                let leaders = leaders.iter().enumerate();
+                leaders
+                    .map(|(index, leader)| leader.rudder(flock, held, index))
                     .collect::<Result<_>>()
                     .map(Some)
             }
@@ -112,10 +118,11 @@ impl Leaders {
     }
 }
 
-impl Observing {
+impl ObservingLeader {
     fn rudder(&self, flock: &Flock, held: &[f64], leader: usize) -> Result<f64> {
-        let (all, size) = (observe_flock(flock, self.layout, held)?, self.layout.size());
-        let action = self.law.action(&all[leader * size..][..size]);
+        let observations = observe_flock(flock, self.layout, held)?;
+        let size = self.layout.size();
+        let action = self.law.action(&observations[leader * size..][..size]);
         let sign = flock.parameters().target.of(leader).sign();
         Ok(if self.layout.is_mirrored {
             sign * action
@@ -131,12 +138,11 @@ fn refused(name: &str, accepted: &str) -> FlockError {
 
 /// The law with this name, which acts at every decision.
 fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
-    let names: Vec<_> = Law::NAMED.iter().map(|each| each.name).collect();
+    let names: Vec<_> = Law::NAMED.iter().map(|law| law.name).collect();
     if name == EVERY_SUBSTEP || !names.contains(&name) {
         return Err(refused(name, &format!("{}, you", names.join(", "))));
     }
-    let found = Law::named(name, parameters.pool.name());
-    found.map_err(|error| match error {
+    Law::named(name, parameters.pool.name()).map_err(|error| match error {
         FlockError::Parameter { accepted, .. } => refused(name, &accepted),
         other => other,
     })
@@ -148,7 +154,11 @@ fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
 /// Those of [`observe_flock`].
 pub(crate) fn observed(flock: &Flock, rudders: &[f64], leader: usize) -> Result<Vec<f64>> {
     let layout = ObservationLayout::default();
-    let all = observe_flock(flock, layout, rudders)?;
-    let own = all.chunks_exact(layout.size()).nth(leader);
-    Ok(own.unwrap_or_default().iter().map(|&x| x.into()).collect())
+    let observations = observe_flock(flock, layout, rudders)?;
+    let observation = observations.chunks_exact(layout.size()).nth(leader);
+    Ok(observation
+        .unwrap_or_default()
+        .iter()
+        .map(|&x| x.into())
+        .collect())
 }

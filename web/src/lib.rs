@@ -28,7 +28,7 @@ struct Page {
     input: Vec<u8>,
     text: String,
     flocks: [Option<Live>; FLOCKS],
-    /// The flock that was last checked: it takes the states of a recording.
+    /// The flock that was checked last, which takes the states of a recording.
     checked: Option<Flock>,
     training: Option<Training>,
 }
@@ -37,7 +37,7 @@ thread_local! {
     static PAGE: RefCell<Page> = RefCell::default();
 }
 
-fn with<T>(call: impl FnOnce(&mut Page) -> T) -> T {
+fn with_page<T>(call: impl FnOnce(&mut Page) -> T) -> T {
     PAGE.with_borrow_mut(call)
 }
 
@@ -48,9 +48,9 @@ impl Page {
     }
 
     /// Stores the answer of a call, and returns whether the call succeeded.
-    fn say(&mut self, said: Result<Json, FlockError>) -> u32 {
-        let is_done = said.is_ok();
-        let said = said.unwrap_or_else(|error| {
+    fn answer(&mut self, answer: Result<Json, FlockError>) -> u32 {
+        let is_done = answer.is_ok();
+        let answer = answer.unwrap_or_else(|error| {
             let field = match &error {
                 FlockError::Parameter { field, .. } => field,
                 FlockError::Placement { .. } => "n_boats",
@@ -58,20 +58,20 @@ impl Page {
             };
             json!({ "field": field, "words": error.to_string() })
         });
-        self.text = said.to_string();
+        self.text = answer.to_string();
         u32::from(is_done)
     }
 
     fn flock(&mut self, flock: usize) -> Result<&mut Live, FlockError> {
-        let found = self.flocks.get_mut(flock).and_then(Option::as_mut);
-        found.ok_or_else(|| FlockError::parameter("flock", flock, "a flock that is open"))
+        let live = self.flocks.get_mut(flock).and_then(Option::as_mut);
+        live.ok_or_else(|| FlockError::parameter("flock", flock, "a flock that is open"))
     }
 }
 
 /// Memory for the next request: a number of bytes of UTF-8.
 #[unsafe(no_mangle)]
 pub extern "C" fn input(length: usize) -> *mut u8 {
-    with(|page| {
+    with_page(|page| {
         page.input.clear();
         page.input.resize(length, 0);
         page.input.as_mut_ptr()
@@ -81,32 +81,32 @@ pub extern "C" fn input(length: usize) -> *mut u8 {
 /// Address of the last call's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text() -> *const u8 {
-    with(|page| page.text.as_ptr())
+    with_page(|page| page.text.as_ptr())
 }
 
 /// Number of bytes of the last call's text.
 #[unsafe(no_mangle)]
 pub extern "C" fn text_length() -> usize {
-    with(|page| page.text.len())
+    with_page(|page| page.text.len())
 }
 
 /// Answers with all parameters, policies, quantities, entries of an observation and colors.
 #[unsafe(no_mangle)]
 pub extern "C" fn describe() -> u32 {
-    with(|page| page.say(Ok(describe::all())))
+    with_page(|page| page.answer(Ok(describe::all())))
 }
 
-/// Answers with all parameters of a request, and starts no flock.
+/// Checks a request, and answers with all its parameters; no flock starts.
 #[unsafe(no_mangle)]
 pub extern "C" fn check() -> u32 {
-    with(|page| {
-        let said = page.request().and_then(request::Request::read);
-        let said = said.and_then(|request| {
+    with_page(|page| {
+        let answer = page.request().and_then(request::Request::read);
+        let answer = answer.and_then(|request| {
             let values = describe::values(&request.parameters);
             page.checked = Flock::new(request.parameters, request.seed).ok();
             Ok(values)
         });
-        page.say(said)
+        page.answer(answer)
     })
 }
 
@@ -114,9 +114,9 @@ pub extern "C" fn check() -> u32 {
 /// `velocity`, three numbers per boat. An undefined quantity is null.
 #[unsafe(no_mangle)]
 pub extern "C" fn recorded() -> u32 {
-    with(|page| {
-        let said = page.state();
-        page.say(said)
+    with_page(|page| {
+        let quantities = page.recorded_quantities();
+        page.answer(quantities)
     })
 }
 
@@ -128,7 +128,8 @@ struct State {
 }
 
 impl Page {
-    fn state(&mut self) -> Result<Json, FlockError> {
+    /// The recorded quantities of the checked flock in the state of the request.
+    fn recorded_quantities(&mut self) -> Result<Json, FlockError> {
         let State { pose, velocity } = serde_json::from_str(self.request()?)
             .map_err(|error| FlockError::parameter("state", error, "JSON"))?;
         let flock = self.checked.as_mut();
@@ -155,9 +156,9 @@ impl Page {
 /// Starts a flock again from a request.
 #[unsafe(no_mangle)]
 pub extern "C" fn open(flock: usize) -> u32 {
-    with(|page| {
+    with_page(|page| {
         let opened = page.request().and_then(request::Request::read);
-        let said = opened.and_then(Live::new).and_then(|live| {
+        let answer = opened.and_then(Live::new).and_then(|live| {
             let values = describe::values(live.parameters());
             let slot = page.flocks.get_mut(flock);
             *slot.ok_or_else(|| {
@@ -165,30 +166,30 @@ pub extern "C" fn open(flock: usize) -> u32 {
             })? = Some(live);
             Ok(values)
         });
-        page.say(said)
+        page.answer(answer)
     })
 }
 
 /// Changes a flock as a request asks. `continued` says whether the flock continues from its state or starts again.
 #[unsafe(no_mangle)]
 pub extern "C" fn change(flock: usize) -> u32 {
-    with(|page| {
+    with_page(|page| {
         let wanted = page.request().and_then(request::Request::read);
-        let said = wanted.and_then(|request| {
+        let answer = wanted.and_then(|request| {
             let live = page.flock(flock)?;
             let continues = live.change(request)?;
             let mut values = describe::values(live.parameters());
             values["continued"] = continues.into();
             Ok(values)
         });
-        page.say(said)
+        page.answer(answer)
     })
 }
 
 /// Drops a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn close(flock: usize) {
-    with(|page| {
+    with_page(|page| {
         if let Some(slot) = page.flocks.get_mut(flock) {
             *slot = None;
         }
@@ -198,24 +199,24 @@ pub extern "C" fn close(flock: usize) {
 /// Starts a training from a request, and answers with its progress.
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> u32 {
-    with(|page| {
+    with_page(|page| {
         let training = page.request().and_then(Training::new);
-        let said = training.and_then(|training| page.training.insert(training).said());
-        page.say(said)
+        let answer = training.and_then(|training| page.training.insert(training).progress());
+        page.answer(answer)
     })
 }
 
-/// Takes a number of branches of the training, and answers with its progress.
+/// Simulates a number of branches of the training, and answers with its progress.
 #[unsafe(no_mangle)]
 pub extern "C" fn learn(branches: u32) -> u32 {
-    with(|page| {
-        let none = || FlockError::parameter("training", "none", "a training that has started");
-        let training = page.training.as_mut().ok_or_else(none);
-        let said = training.and_then(|training| {
+    with_page(|page| {
+        let missing = || FlockError::parameter("training", "none", "a training that has started");
+        let training = page.training.as_mut().ok_or_else(missing);
+        let progress = training.and_then(|training| {
             (0..branches).try_for_each(|_| training.advance())?;
-            training.said()
+            training.progress()
         });
-        page.say(said)
+        page.answer(progress)
     })
 }
 
@@ -245,21 +246,21 @@ pub extern "C" fn derived(index: usize, psi_o: f64, phi_o: f64, sign: f64) -> f6
 /// Sets the heading of the leaders that the visitor steers, from the next control step on.
 #[unsafe(no_mangle)]
 pub extern "C" fn steer(flock: usize, heading: f64) -> u32 {
-    with(|page| {
-        let said = page.flock(flock).and_then(|live| live.steer(heading));
-        page.say(said.map(|()| Json::Null))
+    with_page(|page| {
+        let answer = page.flock(flock).and_then(|live| live.steer(heading));
+        page.answer(answer.map(|()| Json::Null))
     })
 }
 
 /// Takes up to `samples` samples within a work limit in substeps times boats; returns their number, −1 for an error.
 #[unsafe(no_mangle)]
 pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32 {
-    with(|page| {
+    with_page(|page| {
         let live = page.flock(flock);
         match live.and_then(|live| live.advance(samples, u64::from(boat_substeps))) {
             Ok(taken) => taken as i32,
             Err(error) => {
-                page.say(Err(error));
+                page.answer(Err(error));
                 -1
             }
         }
@@ -270,14 +271,14 @@ pub extern "C" fn advance(flock: usize, samples: u32, boat_substeps: u32) -> i32
 /// nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
-    with(|page| {
-        let said = page.flock(flock).and_then(|live| live.look(boat));
-        page.say(said.map(|()| Json::Null))
+    with_page(|page| {
+        let answer = page.flock(flock).and_then(|live| live.look(boat));
+        page.answer(answer.map(|()| Json::Null))
     })
 }
 
 fn column_of(flock: usize, column: usize) -> (*const f64, usize) {
-    with(|page| {
+    with_page(|page| {
         let live = page.flock(flock).ok();
         let column = live.and_then(|live| live.columns().get(column));
         column.map_or((std::ptr::null(), 0), |values| {
@@ -301,7 +302,7 @@ pub extern "C" fn column_length(flock: usize, column: usize) -> usize {
 /// Empties the columns of a flock, for the samples that follow.
 #[unsafe(no_mangle)]
 pub extern "C" fn take(flock: usize) {
-    with(|page| {
+    with_page(|page| {
         if let Ok(live) = page.flock(flock) {
             live.columns().iter_mut().for_each(Vec::clear);
         }

@@ -12,16 +12,17 @@ use flockenv::{Flock, FlockError, Result};
 /// The longest run that is sampled, in s.
 const LONGEST_S: f64 = 1e9;
 
-/// Numbers of the samples since they were last taken: time in s, phase (0 to 3), whether it is analyzed, poses,
-/// velocities, rudders, quantities; then the statistics of [`statistics`] at the last sample, the contacts that carry a
-/// force now (boats, −1 for a wall; position along the core in cm; direction as a vector; force in cm/s²), and what a
-/// leader observes now.
+/// The samples since the last call of `take`: time in s, phase (0 to 3), whether it is in the analysis window, poses,
+/// velocities, rudders and quantities. Then the [`statistics`] at the last sample, the present contacts that carry a force
+/// (boats, −1 for a wall; position along the core in cm; direction as a vector; force in cm/s²), and the present
+/// observation of a leader.
 pub(crate) type Columns = [Vec<f64>; 10];
 
 /// The quantities of a sample, in the order of the table.
 pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
-    let all = QUANTITIES.iter();
-    all.filter(|each| !matches!(each.formula, Formula::Structure(_)))
+    QUANTITIES
+        .iter()
+        .filter(|quantity| !matches!(quantity.formula, Formula::Structure(_)))
 }
 
 /// Present values of [`quantities`]; NaN if the flock has no normal boats.
@@ -37,9 +38,9 @@ fn measured(flock: &Flock) -> impl Iterator<Item = f64> {
         })
 }
 
-/// Statistics that say whether overlaps stayed within the tolerance: names and values.
-pub(crate) fn statistics(of: &Statistics) -> Vec<(String, Value)> {
-    match of.named_of_steps() {
+/// Names and values of the statistics that say whether overlaps stayed within the tolerance.
+pub(crate) fn statistics(statistics: &Statistics) -> Vec<(String, Value)> {
+    match statistics.named_of_steps() {
         Value::Map(values) => values,
         _ => Vec::new(),
     }
@@ -57,9 +58,12 @@ fn number(value: &Value) -> f64 {
 pub(crate) struct Live {
     flock: Flock,
     leaders: Leaders,
+    /// The rudders until the next decision; `None` for the law at every substep.
     rudder: Option<Vec<f64>>,
-    yours: f64,
+    /// The heading that the visitor sets, clockwise from outward, divided by π.
+    heading: f64,
     sampling: Sampling,
+    /// Number of samples that were taken.
     taken: u64,
     columns: Columns,
 }
@@ -75,7 +79,7 @@ impl Live {
             flock: Flock::new(request.parameters, request.seed)?,
             leaders,
             rudder: None,
-            yours: 0.0,
+            heading: 0.0,
             sampling: Sampling::new(LONGEST_S, CONTROL_HZ)?,
             taken: 0,
             columns: Columns::default(),
@@ -106,10 +110,10 @@ impl Live {
         let continues = request.seed == self.flock.seed()
             && new.n_boats == old.n_boats
             && new.pool.has_outer_wall() == old.pool.has_outer_wall();
-        let mut turned = old.clone();
-        turned.target.clone_from(&new.target);
-        // As in a schedule of Python: new parameters restart the random streams, and another target alone does not.
-        let change = if turned == *new {
+        let mut retargeted = old.clone();
+        retargeted.target.clone_from(&new.target);
+        // As in a schedule in Python, new parameters restart the random streams unless only the target differs.
+        let change = if retargeted == *new {
             Change::Target(new.target.clone())
         } else {
             Change::Parameters(Box::new(new.clone()))
@@ -121,12 +125,13 @@ impl Live {
         self.leaders = leaders;
         self.start_steering();
         // The decisions at this time were made before the change.
-        let now = self.rudders();
-        self.rudder = self.leaders.decide(&self.flock, &now, self.yours)?;
+        let held = self.rudders();
+        self.rudder = self.leaders.decide(&self.flock, &held, self.heading)?;
         Ok(true)
     }
 
-    /// Holds rudders amidships until the next decision, if the leaders hold rudders.
+    /// Keeps the rudders until the next decision, or sets them amidships if the number of leaders has changed. Removes them
+    /// for the law at every substep.
     fn start_steering(&mut self) {
         let is_held = !matches!(self.leaders, Leaders::EverySubstep);
         let amidships = vec![0.0; self.parameters().n_leaders];
@@ -137,7 +142,7 @@ impl Live {
         self.rudder = is_held.then(|| held.unwrap_or(amidships));
     }
 
-    /// Sets the heading that the visitor asks for, from the next decision on: clockwise from outward, over π.
+    /// Sets the visitor's heading from the next decision on: clockwise from outward, divided by π.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for a heading beyond −1 and 1.
@@ -149,7 +154,7 @@ impl Live {
                 "a number in [-1, 1]",
             ));
         }
-        self.yours = heading;
+        self.heading = heading;
         Ok(())
     }
 
@@ -162,13 +167,13 @@ impl Live {
         let boats = self.parameters().n_boats as u64;
         let mut taken = 0;
         while taken < samples {
-            let done = (self.flock.statistics().substeps - start) * boats;
-            if done >= boat_substeps {
+            let work = (self.flock.statistics().substeps - start) * boats;
+            if work >= boat_substeps {
                 break;
             }
             let steering = self.rudder.as_deref().map_or(Steering::Law, Steering::Held);
             let end = self.sampling.time(self.taken);
-            let stop = self.flock.stop_towards(end, boat_substeps - done);
+            let stop = self.flock.stop_towards(end, boat_substeps - work);
             self.flock.advance_to(&|| true, stop, steering)?;
             if stop == end {
                 self.sample()?;
@@ -180,7 +185,7 @@ impl Live {
 
     /// Takes a sample, then lets the leaders decide.
     fn sample(&mut self) -> Result<()> {
-        let now = self.rudders();
+        let held = self.rudders();
         let flock = &self.flock;
         let [
             time,
@@ -190,7 +195,7 @@ impl Live {
             velocities,
             rudders,
             series,
-            counts,
+            statistics_column,
             ..,
         ] = &mut self.columns;
         time.push(flock.time_s());
@@ -203,16 +208,16 @@ impl Live {
         for velocity in flock.velocities() {
             velocities.extend([velocity.linear.x, velocity.linear.y, velocity.angular]);
         }
-        rudders.extend(&now);
+        rudders.extend(&held);
         series.extend(measured(flock));
-        let counted = statistics(flock.statistics());
-        *counts = counted.iter().map(|(_, value)| number(value)).collect();
+        let named = statistics(flock.statistics());
+        *statistics_column = named.iter().map(|(_, value)| number(value)).collect();
         self.taken += 1;
-        self.rudder = self.leaders.decide(flock, &now, self.yours)?;
+        self.rudder = self.leaders.decide(flock, &held, self.heading)?;
         Ok(())
     }
 
-    /// The leaders' rudders as they stand.
+    /// The leaders' present rudders.
     fn rudders(&self) -> Vec<f64> {
         let law = || {
             let leaders = 0..self.parameters().n_leaders;
@@ -223,19 +228,20 @@ impl Live {
         self.rudder.clone().unwrap_or_else(law)
     }
 
-    /// Fills the columns of contacts and of what a leader observes.
+    /// Fills the columns of the present contacts and of a leader's observation.
     ///
     /// # Errors
-    /// Those of the observer.
+    /// Those of [`observed`].
     pub fn look(&mut self, boat: usize) -> Result<()> {
-        let seen = if boat < self.parameters().n_leaders {
+        let observation = if boat < self.parameters().n_leaders {
             observed(&self.flock, &self.rudders(), boat)?
         } else {
             Vec::new()
         };
         let mut contacts = Vec::new();
-        for each in self.flock.contacts().iter().filter(|each| each.force > 0.0) {
-            let contact = &each.contact;
+        let loaded_contacts = self.flock.contacts().into_iter();
+        for loaded in loaded_contacts.filter(|loaded| loaded.force > 0.0) {
+            let contact = &loaded.contact;
             let partner = match contact.partner {
                 Partner::Boat(boat) => f64::from(boat),
                 Partner::OuterWall | Partner::InnerWall | Partner::Obstacle(_) => -1.0,
@@ -247,11 +253,11 @@ impl Live {
                 contact.gap.along,
                 normal.x,
                 normal.y,
-                each.force,
+                loaded.force,
             ]);
         }
-        let [.., carried, observation] = &mut self.columns;
-        (*carried, *observation) = (contacts, seen);
+        let [.., contact_column, observation_column] = &mut self.columns;
+        (*contact_column, *observation_column) = (contacts, observation);
         Ok(())
     }
 }

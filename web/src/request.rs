@@ -7,10 +7,10 @@ use flockenv::parameters::{Field, FlockParameters, Preset};
 use flockenv::{FlockError, Result};
 use serde_json::{Map, Value as Json};
 
-/// Largest number of letters of a value in a message.
+/// Largest number of letters of a value in an error message.
 const SHOWN: usize = 40;
 
-/// A request as JSON holds it. The seed is text: JavaScript has no whole numbers of 64 bits.
+/// A request in JSON. The seed is text, since JavaScript's numbers do not hold all integers of 64 bits.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Written {
@@ -34,10 +34,10 @@ pub(crate) struct Request {
     trained: Option<String>,
 }
 
-/// Sets the fields whose values are given by name.
+/// Sets the fields that have a value in `given`, by name.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] for what is unreadable or out of range.
+/// [`FlockError::Parameter`] for values that are unreadable or out of range.
 pub(crate) fn set_given<T>(
     values: &mut T,
     fields: &[Field<T>],
@@ -49,10 +49,10 @@ pub(crate) fn set_given<T>(
         };
         (field.set)(values, &read(field.kind, json)).map_err(|error| match error {
             FlockError::Kind { .. } => {
-                let given = json
+                let text = json
                     .as_str()
                     .map_or_else(|| json.to_string(), str::to_owned);
-                FlockError::parameter(field.name, shortened(&given), field.accepted())
+                FlockError::parameter(field.name, shortened(&text), field.accepted())
             }
             other => other,
         })?;
@@ -64,7 +64,7 @@ impl Request {
     /// A request from JSON: `preset`, `seed`, `leaders`, and fields of the parameters.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for what is unknown, unreadable or out of range.
+    /// [`FlockError::Parameter`] for fields that are unknown, unreadable or out of range.
     pub fn read(text: &str) -> Result<Self> {
         let written: Written = serde_json::from_str(text)
             .map_err(|error| FlockError::parameter("request", error, "JSON"))?;

@@ -1,4 +1,4 @@
-//! A training that the page continues, some branches at a time.
+//! A training that the page advances by some branches at a time.
 
 use crate::request::{Request, Written, set_given};
 use flockenv::environment::ActionMode;
@@ -8,15 +8,17 @@ use flockenv::{FlockError, Result};
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 
-/// The first seed of trainings by branches, and the seeds of one training, as in `flockenv/runs/seeds.py`.
-const SEEDS: (u64, u64) = ((1 << 32) + (6 << 56), 1 << 24);
-/// Seeds of trainings.
-const RUNS: u64 = 1 << 32;
+/// The first seed of flocks that trainings by branches use, as in `flockenv/runs/seeds.py`.
+const FIRST_SEED: u64 = (1 << 32) + (6 << 56);
+/// Number of seeds of flocks for one training.
+const SEEDS_PER_TRAINING: u64 = 1 << 24;
+/// Number of trainings that differ by their own seed.
+const TRAININGS: u64 = 1 << 32;
 
 /// A request for a training: the flock with the training's seed, settings by name, and texts for the policy.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Asked {
+struct TrainingRequest {
     flock: Written,
     options: Map<String, Json>,
     provenance: BTreeMap<String, String>,
@@ -34,29 +36,29 @@ impl Training {
     /// # Errors
     /// [`FlockError::Parameter`].
     pub fn new(text: &str) -> Result<Self> {
-        let asked: Asked = serde_json::from_str(text)
+        let request: TrainingRequest = serde_json::from_str(text)
             .map_err(|error| FlockError::parameter("training", error, "JSON"))?;
         let Request {
             mut parameters,
             seed,
             ..
-        } = Request::checked(asked.flock)?;
+        } = Request::checked(request.flock)?;
         if let Some((dt_s, tolerance_cm)) = Physics::Training.stepping() {
             (parameters.dt_s, parameters.tolerance_cm) = (dt_s, tolerance_cm);
         }
-        if seed >= RUNS {
+        if seed >= TRAININGS {
             return Err(FlockError::parameter("seed", seed, "0 to 2^32 - 1"));
         }
         let mut settings = BranchSettings::usual(ActionMode::Rudder);
-        set_given(&mut settings, BranchSettings::FIELDS, &asked.options)?;
-        let first = SEEDS.0 + SEEDS.1 * seed;
+        set_given(&mut settings, BranchSettings::FIELDS, &request.options)?;
+        let first = FIRST_SEED + SEEDS_PER_TRAINING * seed;
         Ok(Self {
             trainer: Trainer::new(settings, parameters, seed, first)?,
-            provenance: asked.provenance,
+            provenance: request.provenance,
         })
     }
 
-    /// Takes one more branch.
+    /// Simulates one more branch.
     ///
     /// # Errors
     /// As for [`Trainer::advance`].
@@ -64,17 +66,17 @@ impl Training {
         self.trainer.advance(&|| true, 1)
     }
 
-    /// Flock-hours so far and at the end, whether the end is reached, the flocks' physics, and the present policy as a
-    /// file's text.
+    /// Flock-hours so far and at the end, whether the training has ended, the flocks' physics, and the present policy as the
+    /// text of its file.
     ///
     /// # Errors
     /// As for [`Trainer::law`].
-    pub fn said(&self) -> Result<Json> {
+    pub fn progress(&self) -> Result<Json> {
         let (parameters, (hours, end)) = (self.trainer.parameters(), self.trainer.flock_hours());
         let mut law = self.trainer.law()?;
         law.provenance = self.provenance.clone();
-        let done = ("flock_hours".to_owned(), hours.to_string());
-        law.provenance.extend([done]);
+        law.provenance
+            .insert("flock_hours".to_owned(), hours.to_string());
         Ok(json!({
             "hours": hours,
             "end": end,
