@@ -24,7 +24,7 @@ from flockenv.replay.demo import demo_runs, live_page  # noqa: E402
 environment_pages.write()
 environment_pages.draw()
 
-# Sphinx knows pages below this folder alone.
+# Sphinx reads only pages below this folder.
 _studies = Path(__file__).parent / "studies"
 shutil.rmtree(_studies, ignore_errors=True)
 shutil.copytree(
@@ -38,7 +38,7 @@ _notebooks.mkdir()
 for _notebook in (_notebooks.parents[1] / "examples").glob("*.ipynb"):
     shutil.copy2(_notebook, _notebooks)
 
-# What index.md shows: the live page where `make live` has built it, else the replay of two flocks.
+# index.md shows the live page if `make live` has built it, and otherwise the replay of two flocks.
 html_extra_path = ["_build/shown", "replay.webp", "replay-still.webp"]
 _shown = Path(__file__).parent / html_extra_path[0] / "flock.html"
 _shown.parent.mkdir(parents=True, exist_ok=True)
@@ -72,7 +72,7 @@ html_show_copyright = False
 html_copy_source = False
 
 nitpicky = True
-# Their pages are elsewhere, and a build needs no network.
+# Names of other packages are not linked, so that a build needs no network.
 nitpick_ignore_regex = [
     (
         r"py:.*",
@@ -91,9 +91,9 @@ nitpick_ignore_regex = [
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
-# Pages with code cells run whole, at every build; a cell that fails, fails the build.
+# All code cells of pages run at every build; a cell that fails makes the build fail.
 nb_execution_mode = "force"
-# These need versions of their own: `make test-rllib` and `make test-benchmarl` run them.
+# These need other versions of packages: `make test-rllib` and `make test-benchmarl` run them.
 nb_execution_excludepatterns = ["examples/with_rllib.ipynb", "examples/with_benchmarl.ipynb"]
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
@@ -140,7 +140,7 @@ def setup(app: Sphinx) -> None:
 def _link_environment_pages(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
 ) -> None:
-    # Their docstrings are Markdown, on a page of their own.
+    # These docstrings are Markdown, on a separate page.
     if what == "class" and name in ENVIRONMENTS:
         lines[:] = ["See :doc:`/environments/classes`."]
 
@@ -185,5 +185,5 @@ def _mark_wide_pictures(app: Sphinx, doctree: nodes.document, docname: str) -> N
 def _plain_name(
     app: Sphinx, env: BuildEnvironment, node: pending_xref, shown: nodes.Element
 ) -> nodes.Element | None:
-    # Names in single backticks link to what the reference has, and are just names otherwise.
+    # A name in single backticks links to the reference, or is plain text if the reference lacks it.
     return shown if node["reftype"] == "obj" else None

@@ -1,10 +1,10 @@
-"""Follow pages of this folder to the letter: `make extend`, or `make extend PAGE=policy`.
+"""Apply and test the pages of this folder: `make extend`, or `make extend PAGE=policy`.
 
 A page is a patch. A block ```` ```diff ```` starts with the file that it changes; the lines that it
-keeps or removes have to occur in that file exactly once. A block after ``<!-- new file: PATH -->``
-is a file. The changes are made in a copy of the tree, where the page's blocks for a shell are then
-run in their order. The first command that fails ends the script. The copy stays in target/extend,
-so that the next page compiles its own changes alone.
+keeps or removes must occur in that file exactly once. A block after ``<!-- new file: PATH -->`` is
+a new file. The changes are made in a copy of the tree. There the page's shell commands then run in
+their order. The first command that fails ends the script. The copy stays in target/extend, so that
+the next page compiles only its own changes.
 """
 
 import os
@@ -27,7 +27,7 @@ class PageError(Exception):
 
 
 def apply(page: str, tree: Path) -> list[str]:
-    """Make a page's changes in a tree; return its commands."""
+    """Make a page's changes in a tree; return its shell commands."""
     commands = []
     for block in FENCE.finditer(page):
         text = block["text"]
@@ -37,10 +37,10 @@ def apply(page: str, tree: Path) -> list[str]:
                 raise PageError(f"{block['new']} already exists")
             path.write_text(text, encoding="utf-8")
         elif block["language"] == "diff":
-            first, _, rest = text.partition("\n")
-            name = first.removeprefix("+++ ")
+            header, _, hunks = text.partition("\n")
+            name = header.removeprefix("+++ ")
             content = (tree / name).read_text("utf-8")
-            for hunk in rest.split("@@\n")[1:]:
+            for hunk in hunks.split("@@\n")[1:]:
                 content = changed(content, hunk, name)
             (tree / name).write_text(content, encoding="utf-8")
         elif block["language"] == "sh":
@@ -59,7 +59,7 @@ def changed(content: str, hunk: str, name: str) -> str:
 
 
 def copy_tree() -> None:
-    """Bring the copy to the state of this tree: every file that git knows or would add."""
+    """Make the copy hold the files of this tree that git tracks or does not ignore."""
 
     def git(*words: str, folder: Path = REPOSITORY) -> str:
         done = subprocess.run(["git", *words], cwd=folder, check=True, capture_output=True)
@@ -67,16 +67,16 @@ def copy_tree() -> None:
 
     COPY.mkdir(parents=True, exist_ok=True)
     names = git("ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0")
-    wanted = {name for name in names if name and (REPOSITORY / name).is_file()}
+    files = {name for name in names if name and (REPOSITORY / name).is_file()}
     if (COPY / ".git").exists():
-        there = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", folder=COPY)
-        for name in {*there.split("\0")} - wanted - {""}:
+        copied = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", folder=COPY)
+        for name in {*copied.split("\0")} - files - {""}:
             (COPY / name).unlink(missing_ok=True)
     else:
         git("init", "--quiet", str(COPY))
-    for name in wanted:
+    for name in files:
         source, target = REPOSITORY / name, COPY / name
-        # Unchanged files keep their time, so that nothing is compiled again.
+        # Unchanged files keep their time, so that they are not compiled again.
         if not target.exists() or target.read_bytes() != source.read_bytes():
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(source.read_bytes())
@@ -87,21 +87,21 @@ def follow(page: Path) -> None:
     """Apply a page to a copy of the tree, and run its commands there."""
     print(f"--- {page.stem}", flush=True)
     copy_tree()
-    apart = {"CARGO_TARGET_DIR": str(COPY / "target")}
+    own_target = {"CARGO_TARGET_DIR": str(COPY / "target")}
     for commands in apply(page.read_text("utf-8"), COPY):
         run = ["bash", "-euxc", commands]
-        done = subprocess.run(run, cwd=COPY, env={**os.environ, **apart}, check=False)
+        done = subprocess.run(run, cwd=COPY, env={**os.environ, **own_target}, check=False)
         if done.returncode:
             raise PageError(f"{page.stem}: a command ended with {done.returncode}")
 
 
 def main() -> None:
-    """Follow the pages that are named, or all that change something."""
-    named = sys.argv[1:] or sorted(
+    """Follow the pages of the command line, or all that change something."""
+    pages = sys.argv[1:] or sorted(
         path.stem for path in FOLDER.glob("*.md") if "```diff" in path.read_text("utf-8")
     )
     try:
-        for name in named:
+        for name in pages:
             follow(FOLDER / f"{name}.md")
     except (PageError, OSError) as error:
         sys.exit(str(error))

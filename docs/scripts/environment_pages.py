@@ -2,8 +2,8 @@
 
 `tables.md` lists parameters, options, terms of the reward, entries of the observation and of the
 global state, and features of the flock. id_pages.py makes a page for each id, and the table of
-`index.md`. They are committed, so that they are there where a repository is read. `classes.md`, the
-docstring of each class, is on the site alone.
+`index.md`. They are committed, so that readers of the repository see them. `classes.md`, the
+docstring of each class, is only on the site.
 """
 
 import inspect
@@ -39,22 +39,22 @@ EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
 
 def pages() -> dict[Path, str]:
     """Return the text of every page that is committed."""
-    index, listed = ((FOLDER / name).read_text("utf-8") for name in ("index.md", "tables.md"))
-    filled_in = {"index": filled(index, ids=registered()), "tables": tables(listed)}
+    index, tables_page = ((FOLDER / name).read_text("utf-8") for name in ("index.md", "tables.md"))
+    filled_in = {"index": filled(index, ids=registered()), "tables": tables(tables_page)}
     texts = {**id_pages(), **filled_in}
     return {FOLDER / f"{name}.md": text for name, text in texts.items()}
 
 
 def classes() -> str:
-    """Return the page of the classes, which are their docstrings."""
-    docs = "\n\n".join(f"# {each.__name__}\n\n{inspect.getdoc(each)}" for each in CLASSES)
+    """Return the page with the docstring of each class."""
+    docs = "\n\n".join(f"# {cls.__name__}\n\n{inspect.getdoc(cls)}" for cls in CLASSES)
     docs = docs.replace("docs/environments/tables.md", "[Tables](tables.md)")
     docs = re.sub("^(#+ )", r"#\1", docs, flags=re.MULTILINE)
     return f"# Classes\n\n`help(flockenv.LeadersEnv)` shows the same text.\n\n{docs}\n"
 
 
 def tables(page: str) -> str:
-    """Return the page of everything that the core declares of the environments, filled in."""
+    """Return the page `tables.md`, with its tables filled in from the core's declarations."""
     options = [
         [f"`{name}`", f"`{option.default!r}`", plain_cell(option.doc)]
         for name, option in OPTIONS.items()
@@ -74,12 +74,12 @@ def tables(page: str) -> str:
 def _parameters() -> str:
     presets = {name: FlockParameters.preset(name).to_dict() for name in FlockParameters.presets()}
     body = []
-    for each in fields(FlockParameters):
-        values = [str(values[each.name]) for values in presets.values()]
-        preset = values[0] if len({*values}) == 1 else ", ".join(values)
-        unit = each.metadata["unit"]
-        meaning = each.metadata["doc"] + (f" [{unit}]" if unit else "")
-        body.append([f"`{each.name}`", meaning, preset, each.metadata["accepted"]])
+    for field in fields(FlockParameters):
+        values = [str(preset[field.name]) for preset in presets.values()]
+        default = values[0] if len({*values}) == 1 else ", ".join(values)
+        unit = field.metadata["unit"]
+        meaning = field.metadata["doc"] + (f" [{unit}]" if unit else "")
+        body.append([f"`{field.name}`", meaning, default, field.metadata["accepted"]])
     return markdown(["field", "meaning", ", ".join(presets), "accepted"], body)
 
 
@@ -94,27 +94,27 @@ def _by_block(entries: Iterable[Entry]) -> str:
             header,
             [
                 [
-                    f"`{each.name}`",
-                    _bounds(each),
-                    plain_cell(each.scale),
-                    "yes" if each.mirrored else "",
-                    plain_cell(each.meaning),
+                    f"`{entry.name}`",
+                    _bounds(entry),
+                    plain_cell(entry.scale),
+                    "yes" if entry.mirrored else "",
+                    plain_cell(entry.meaning),
                 ]
-                for each in own
+                for entry in block_entries
             ],
         )
-        for block, own in blocks.items()
+        for block, block_entries in blocks.items()
     )
 
 
 def _features() -> str:
-    of: dict[str, list[str]] = {}
+    blocks: dict[str, list[str]] = {}
     entries = {entry.name: entry for entry in flock_feature_entries()}
     for entry in flock_feature_entries():
-        of.setdefault(entry.name, []).append(entry.block)
+        blocks.setdefault(entry.name, []).append(entry.block)
     body = [
-        [f"`{name}`", ", ".join(of[name]), _bounds(each), plain_cell(each.meaning)]
-        for name, each in entries.items()
+        [f"`{name}`", ", ".join(blocks[name]), _bounds(entry), plain_cell(entry.meaning)]
+        for name, entry in entries.items()
     ]
     return markdown(["feature", "of", "bounds", "meaning"], body)
 
@@ -124,14 +124,14 @@ def _bounds(entry: Entry) -> str:
 
 
 def write() -> None:
-    """Write the pages that differ."""
+    """Write the pages whose text has changed."""
     for path, text in {**pages(), FOLDER / "classes.md": classes()}.items():
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
 
 
 def draw() -> None:
-    """Draw what the pages show on the site."""
+    """Draw the films and plots that the pages show on the site."""
     draw_films()
 
 

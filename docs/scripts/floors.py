@@ -19,7 +19,7 @@ def floors() -> str:
     """Return a row for each layer, from the top down."""
     project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf-8"))
     contracts = project["tool"]["importlinter"]["contracts"]
-    python = next(each["layers"] for each in contracts if each["type"] == "layers")
+    python = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     cargo = tomllib.loads((REPOSITORY / "Cargo.toml").read_text("utf-8"))
     layers = [(REPOSITORY / "flockenv", names) for names in python]
     layers += [(REPOSITORY / "src", names) for names in cargo["package"]["metadata"]["layers"]]
@@ -37,9 +37,9 @@ def _module(folder: Path, name: str) -> Path:
 
 
 def _purpose(path: Path) -> str:
-    """Return the first sentence of a module's own words."""
-    inside = (path / "__init__.py", path / "mod.rs")
-    file = path if path.is_file() else next(each for each in inside if each.exists())
+    """Return the first sentence of a module's docstring."""
+    roots = (path / "__init__.py", path / "mod.rs")
+    file = path if path.is_file() else next(root for root in roots if root.exists())
     text = file.read_text("utf-8")
     if file.suffix == ".py":
         words = ast.get_docstring(ast.parse(text)) or ""

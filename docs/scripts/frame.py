@@ -1,4 +1,4 @@
-"""Draw the sketch of the page about the model: `python -m docs.scripts.frame`."""
+"""Draw the sketch on the page about the model: `python -m docs.scripts.frame`."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -24,26 +24,26 @@ def _draw_pool(axes: Axes) -> None:
     axes.add_patch(
         Wedge((0, 0), OUTER_CM, -5, 95, width=OUTER_CM - INNER_CM, fc="#e8f1f8", ec="0.4")
     )
-    theta, alpha, at = np.radians(38), np.radians(-8), 66.0
-    position = at * np.array([np.cos(theta), np.sin(theta)])
+    theta, alpha, radius = np.radians(38), np.radians(-8), 66.0
+    position = radius * np.array([np.cos(theta), np.sin(theta)])
     heading = np.array([np.cos(alpha), np.sin(alpha)])
-    outward = position / at
+    outward = position / radius
     clockwise = np.array([outward[1], -outward[0]])
     hull = FancyBboxPatch(
         (-HALF_CM, 0), 2 * HALF_CM, 0, f"round,pad={RADIUS_CM}", fc="#f7d9c4", ec=BOAT
     )
     hull.set_transform(Affine2D().rotate(alpha).translate(*position) + axes.transData)
     axes.add_patch(hull)
-    for way, color, word in (
+    for direction, color, word in (
         (outward, AXES, "outward"),
         (clockwise, AXES, "clockwise"),
         (heading, BOAT, "heading u(α)"),
     ):
-        tip = position + 21 * way
+        tip = position + 21 * direction
         axes.annotate(
             "", tip, position, arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.5}
         )
-        axes.annotate(word, tip + 2 * way, color=color, va="center", ha="left")
+        axes.annotate(word, tip + 2 * direction, color=color, va="center", ha="left")
     axes.plot([0, position[0]], [0, position[1]], color="0.5", lw=1)
     axes.plot([0, 40], [0, 0], color="0.5", lw=1)
     axes.add_patch(Arc((0, 0), 50, 50, theta1=0, theta2=np.degrees(theta), color="0.3"))

@@ -1,8 +1,8 @@
 """A page for each registered id of the environments: purpose, spaces, reward, arguments, results.
 
-All of it follows from the declaration in flockenv/envs/ids.py, what the core declares and committed
-data, so that an id costs that one file. What only the site can show is a comment `<!-- site`, which
-conf.py opens: in a repository's viewer the page is plain Markdown.
+All of it follows from flockenv/envs/ids.py, the core's declarations and committed data, so that a
+new id changes only that file. Parts that only the site can show stand in a comment
+`<!-- site`, which conf.py opens: in a repository's viewer the page is plain Markdown.
 """
 
 import re
@@ -31,9 +31,9 @@ from flockenv.policies import policy
 
 LEADERS, EASY = "flockenv/Leaders-v0", "flockenv/Order-easy-v0"
 GOOD_POLICIES = {"wide": "learned"}
-"""The policy in a film, by the pool; elsewhere it is the damped law."""
+"""The policy in a film, by the pool; in other pools it is the damped law."""
 BEFORE_S, FRAMES, STEP_S, SEED = 10.0, 100, 0.8, 10
-"""A film starts so long before a quarter of the episode is over, when targets may change. With this
+"""A film starts 10 s before a quarter of the episode is over, when targets may change. With this
 seed the flocks follow."""
 
 SCORES = STUDIES / "suite" / "results" / "v2.csv"
@@ -46,7 +46,7 @@ WORDS = {
         re.MULTILINE,
     )
 }
-"""Text below the plot of the orders that policies reach, by the data."""
+"""Text below the plot of the orders that policies reach, by the kind of data."""
 MEANS = STUDIES / "leaders" / "results" / "means.csv"
 
 
@@ -57,14 +57,14 @@ def page_name(env_id: str) -> str:
 
 def id_pages() -> dict[str, str]:
     """Return the text of every page by its name."""
-    return {page_name(each): page(each) for each in ENVIRONMENTS}
+    return {page_name(env_id): page(env_id) for env_id in ENVIRONMENTS}
 
 
 def registered() -> str:
     """Return a table of all ids, and their order on the site."""
     body = [
-        [f"[`{env_id.removeprefix('flockenv/')}`]({page_name(env_id)}.md)", each.purpose]
-        for env_id, each in ENVIRONMENTS.items()
+        [f"[`{env_id.removeprefix('flockenv/')}`]({page_name(env_id)}.md)", declared.purpose]
+        for env_id, declared in ENVIRONMENTS.items()
     ]
     names = "\n".join(map(page_name, ENVIRONMENTS))
     toctree = site(f"```{{toctree}}\n:hidden:\n\n{names}\n```")
@@ -72,7 +72,7 @@ def registered() -> str:
 
 
 def site(text: str) -> str:
-    """Return a text that the site shows, and a repository's viewer does not."""
+    """Return a text as a comment that the site shows and a repository's viewer hides."""
     return f"<!-- site\n{text}\n-->"
 
 
@@ -89,7 +89,7 @@ def page(env_id: str) -> str:
         history="\n".join(f"- {change}" for change in declared.history),
         film=shown(name, alt, "../"),
         policy=good_policy(env_id),
-        told=_shared_target(env_id),
+        told=_shared_target_words(env_id),
         seed=SEED,
         step_s=f"{step_s:g}",
         steps=steps,
@@ -103,13 +103,13 @@ def page(env_id: str) -> str:
 
 def _reached(env_id: str) -> str:
     """Return the section on the orders that policies reach; empty without data."""
-    found = reached(env_id)
-    if found is None:
+    plot_and_words = reached(env_id)
+    if plot_and_words is None:
         return ""
     source = f"../loops/{page_name(env_id)}.png"
     picture = f'<img class="plot" src="{source}" alt="Signed order by policy" width="540">'
     picture = site(f"```{{raw}} html\n{picture}\n```")
-    return f"## What policies reach\n\n{picture}\n\n{found[1]}\n\n"
+    return f"## What policies reach\n\n{picture}\n\n{plot_and_words[1]}\n\n"
 
 
 def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
@@ -120,16 +120,16 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
     indices: dict[tuple[str, str], list[int]] = {}
     for index, entry in enumerate(entries):
         indices.setdefault((entry.block, entry.name), []).append(index)
-    first = {key: entries[own[0]] for key, own in indices.items()}
-    rows_of = [
+    first = {key: entries[numbers[0]] for key, numbers in indices.items()}
+    table = [
         [
-            _indices(own),
+            _indices(numbers),
             f"`{name}`",
             first[block, name].unit or "1",
             f"[{first[block, name].low:g}, {first[block, name].high:g}]",
             plain_cell(first[block, name].meaning),
         ]
-        for (block, name), own in indices.items()
+        for (block, name), numbers in indices.items()
     ]
     return {
         "action_space": str(env.action_space),
@@ -137,7 +137,7 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
         "observation_shape": str(env.observation_space.shape),
         "times": "The table has leader 0's entries; each further leader adds the same. "
         * (leaders > 1),
-        "entries": markdown(["index", "name", "unit", "range", "meaning"], rows_of),
+        "entries": markdown(["index", "name", "unit", "range", "meaning"], table),
     }
 
 
@@ -165,17 +165,19 @@ USUAL = ("n_boats", "n_leaders", "pool", "bw_s", "target", "episode_s", "control
 
 def _arguments(env_id: str) -> str:
     """Return the arguments that most trainings set, and those that an id sets."""
-    usual, own = _settings(LEADERS), _settings(env_id)
-    differing = [name for name, value in own.items() if value != usual[name]]
+    usual, settings = _settings(LEADERS), _settings(env_id)
+    differing = [name for name, value in settings.items() if value != usual[name]]
     names = list(dict.fromkeys([*USUAL, *differing]))
-    meanings = {each.name: each.metadata["doc"] for each in fields(FlockParameters)}
-    meanings = {name: each.doc for name, each in OPTIONS.items()} | meanings
+    meanings = {field.name: field.metadata["doc"] for field in fields(FlockParameters)}
+    meanings = {name: option.doc for name, option in OPTIONS.items()} | meanings
     meanings["episode_s"] = OPTIONS["episode_s"].doc
     body = []
     for name in names:
         block = re.fullmatch(r'observation\["(\w+)"\]', name)
-        meaning = f"block `{block[1]}` of the observation" if block else _first(meanings[name])
-        body.append([f"`{name}`", f"`{own[name]}`", f"`{usual[name]}`", meaning])
+        meaning = (
+            f"block `{block[1]}` of the observation" if block else _first_sentence(meanings[name])
+        )
+        body.append([f"`{name}`", f"`{settings[name]}`", f"`{usual[name]}`", meaning])
     header = ["argument", "here", f"in `{page_name(LEADERS)}`", "meaning"]
     if env_id == LEADERS:
         body, header = (
@@ -185,8 +187,8 @@ def _arguments(env_id: str) -> str:
     return markdown(header, body)
 
 
-def _first(text: str) -> str:
-    """Return the first sentence of a meaning, for a table."""
+def _first_sentence(text: str) -> str:
+    """Return the first sentence of a meaning as a table's cell."""
     return plain_cell(re.split(r"\.\s(?=[A-Z])", text, maxsplit=1)[0].rstrip("."))
 
 
@@ -196,44 +198,45 @@ def plain_cell(text: str) -> str:
 
 
 def _settings(env_id: str, *, by_block: bool = False) -> dict[str, Any]:
-    """Return all parameters and options by name, those that an id leaves at their default too."""
+    """Return all parameters and options of an id by name, with their defaults."""
     parsed = EnvOptions.parse(ENVIRONMENTS[env_id].options)
     parameters = asdict(parsed.parameters)
-    defaults = {name: each.default for name, each in OPTIONS.items()}
-    found = {**parameters, **defaults, **parameters, **parsed.settings}
-    found["observation"] = {**defaults["observation"], **found["observation"]}
+    defaults = {name: option.default for name, option in OPTIONS.items()}
+    settings = {**parameters, **defaults, **parameters, **parsed.settings}
+    settings["observation"] = {**defaults["observation"], **settings["observation"]}
     if not by_block:
-        for block, value in found.pop("observation").items():
-            found[f'observation["{block}"]'] = value
-    # None stands for a length that depends on the target.
+        for block, value in settings.pop("observation").items():
+            settings[f'observation["{block}"]'] = value
+    # The option may be None for a length that depends on the target.
     env = gymnasium.make(env_id)
-    found["episode_s"] = round(env.spec.max_episode_steps / env.metadata["render_fps"])
-    return found
+    settings["episode_s"] = round(env.spec.max_episode_steps / env.metadata["render_fps"])
+    return settings
 
 
 # --- films ----------------------------------------------------------------------------------------
 
 
 def draw_films() -> None:
-    """Draw the film and the plot of each id, if they are not there already."""
+    """Draw the plot of each id, and its film unless it is up to date."""
     code = Path(__file__).read_text(encoding="utf-8")
     for env_id, declared in ENVIRONMENTS.items():
         draw(page_name(env_id), partial(film, env_id), repr(declared.options), code)
-        if found := reached(env_id):
+        if plot_and_words := reached(env_id):
             SHOWN.mkdir(parents=True, exist_ok=True)
-            found[0].save(SHOWN / f"{page_name(env_id)}.png")
+            plot_and_words[0].save(SHOWN / f"{page_name(env_id)}.png")
 
 
 def good_policy(env_id: str) -> str:
     """Return the name of the policy in the film."""
-    if _shared_target(env_id):
-        # Learned leaders see the flock in the frame of their own target.
+    if _shared_target_words(env_id):
+        # Learned leaders observe the flock mirrored to their own target.
         return REFERENCE
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
     return GOOD_POLICIES.get(pool, "damped law")
 
 
-def _shared_target(env_id: str) -> str:
+def _shared_target_words(env_id: str) -> str:
+    """Return words on a target that leaders with different ones share; empty for other ids."""
     is_per_leader = isinstance(ENVIRONMENTS[env_id].options.get("target"), tuple)
     return ", which are both told the direction of leader 0" if is_per_leader else ""
 
@@ -252,14 +255,16 @@ def film(env_id: str) -> Iterator[Image.Image]:
         if step >= skipped and (step - skipped) % round(STEP_S * hz) == 0:
             yield Image.fromarray(env.render())
         rows = observation.reshape(env.unwrapped.num_leaders, -1)
-        if _shared_target(env_id):
-            # The roles of studies/roles/misinformed_pair.py.
-            rows[:, _TOLD] = rows[0, _TOLD]
+        if _shared_target_words(env_id):
+            # As in studies/roles/misinformed_pair.py, both are told the target of leader 0.
+            rows[:, _TARGET_ENTRIES] = rows[0, _TARGET_ENTRIES]
         observation = env.step(leaders.predict(rows.reshape(-1))[0])[0]
     env.close()
 
 
-_TOLD = [index for index, each in enumerate(observation_entries()) if each.block == "target"]
+_TARGET_ENTRIES = [
+    index for index, entry in enumerate(observation_entries()) if entry.block == "target"
+]
 
 
 # --- what policies reach --------------------------------------------------------------------------
@@ -267,59 +272,59 @@ _TOLD = [index for index, each in enumerate(observation_entries()) if each.block
 
 def reached(env_id: str) -> tuple[Plot, str] | None:
     """Return the plot of an id's committed data, and the words below it; None without data."""
-    task = next((name for name, each in TASK_IDS.items() if each == env_id), None)
+    task = next((name for name, task_id in TASK_IDS.items() if task_id == env_id), None)
     if task is not None:
         return _suite(task)
     if env_id in DATA:
         return DATA[env_id]()
-    level = next((name for name, each in LEVEL_IDS.items() if each == env_id), None)
+    level = next((name for name, level_id in LEVEL_IDS.items() if level_id == env_id), None)
     return None if level is None else _level(level)
 
 
 def _suite(task: str) -> tuple[Plot, str]:
-    found = rows(SCORES, task=task)
+    scores = rows(SCORES, task=task)
     intervals = {
         f"{row['policy']}: {float(row['signed_order']):z.2f}": _interval(row, "score", "score_")
-        for row in found
+        for row in scores
     }
-    own = float(found[0]["signed_order"]) - float(found[0]["score"])
+    tuned_law = float(scores[0]["signed_order"]) - float(scores[0]["score"])
     words = WORDS["suite"].substitute(task=task)
-    label = f"signed order minus the tuned law's {own:.2f}"
+    label = f"signed order minus the tuned law's {tuned_law:.2f}"
     return _plot([SCORES], intervals, label, 0.0), words
 
 
 def _level(level: str) -> tuple[Plot, str]:
     file = STUDIES / "levels" / "results" / "laws.csv"
-    found = rows(file, level=level)
-    words = WORDS["level"].substitute(level=level, flocks=found[0]["flocks"])
-    return _plot([file], {row["policy"]: _interval(row, "signed_order") for row in found}), words
+    orders = rows(file, level=level)
+    words = WORDS["level"].substitute(level=level, flocks=orders[0]["flocks"])
+    return _plot([file], {row["policy"]: _interval(row, "signed_order") for row in orders}), words
 
 
 AT_THREE = {"case": "wide-bw-0.31", "leaders": "3"}
 
 
 def _leaders() -> tuple[Plot, str]:
-    found = {
+    by_policy = {
         row["policy"]: _interval(row, "signed_order", "signed_order_")
         for row in rows(MEANS, **AT_THREE)
     }
-    intervals = dict(sorted(found.items(), key=lambda named: named[1], reverse=True))
+    intervals = dict(sorted(by_policy.items(), key=lambda item: item[1], reverse=True))
     return _plot([MEANS], intervals), WORDS["leaders"].substitute()
 
 
 def _easy() -> tuple[Plot, str]:
     file = STUDIES / "easy" / "results" / "curve.csv"
-    found = [row for row in rows(file) if "minus" not in row["policy"]]
-    trained = max(int(row["samples"] or 0) for row in found)
-    most_s = max(float(row["cpu_s"] or 0.0) for row in found)
+    orders = [row for row in rows(file) if "minus" not in row["policy"]]
+    most_samples = max(int(row["samples"] or 0) for row in orders)
+    most_s = max(float(row["cpu_s"] or 0.0) for row in orders)
     intervals = {
         f"{row['policy']}, seed {row['seed']}" if row["seed"] else row["policy"]: _interval(
             row, "signed_order"
         )
-        for row in sorted(found, key=lambda row: not row["seed"])
-        if row["samples"] in ("", str(trained))
+        for row in sorted(orders, key=lambda row: not row["seed"])
+        if row["samples"] in ("", str(most_samples))
     }
-    words = WORDS["easy"].substitute(millions=f"{trained / 1e6:.1f}", most_s=f"{most_s:.0f}")
+    words = WORDS["easy"].substitute(millions=f"{most_samples / 1e6:.1f}", most_s=f"{most_s:.0f}")
     return _plot([file], intervals), words
 
 

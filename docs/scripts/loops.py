@@ -1,4 +1,4 @@
-"""The moving pictures of the pages: drawn when pages are built, and kept until they would differ.
+"""Draw the moving pictures of the pages when pages are built, and again if they would differ.
 
 A picture depends on the package and on the commands or the code that draw it. It lies below
 docs/_build, beside a still for readers whose system asks for less motion.
@@ -20,7 +20,7 @@ import flockenv
 from docs.scripts.plots import DOCS
 
 SHOWN = DOCS / "_build" / "shown" / "loops"
-"""Folder in which a page finds them: conf.py copies _build/shown."""
+"""Folder of the pictures: conf.py copies _build/shown to the site."""
 
 _KEYS = DOCS / "_build" / "loops"
 HEIGHT = 360
@@ -32,15 +32,15 @@ Frames = Iterable[Image.Image]
 
 
 class LoopError(Exception):
-    """A command of a page that fails, or that does not write the picture it should."""
+    """A command of a page that fails, or that does not write its picture."""
 
 
-def draw(name: str, make: Callable[[], Frames], *made_of: str) -> None:
-    """Draw NAME.webp and its still, unless they are there and made of the same."""
-    key = hashlib.sha256("\0".join((_package(), *made_of)).encode()).hexdigest()
+def draw(name: str, make: Callable[[], Frames], *sources: str) -> None:
+    """Draw NAME.webp and its still, unless they exist and package and sources are unchanged."""
+    key = hashlib.sha256("\0".join((_package(), *sources)).encode()).hexdigest()
     files = [SHOWN / f"{name}.webp", SHOWN / f"{name}-still.webp"]
-    kept = _KEYS / f"{name}.key"
-    if kept.is_file() and kept.read_text() == key and all(map(Path.is_file, files)):
+    key_file = _KEYS / f"{name}.key"
+    if key_file.is_file() and key_file.read_text() == key and all(map(Path.is_file, files)):
         return
     frames = list(make())
     for folder in (SHOWN, _KEYS):
@@ -48,7 +48,7 @@ def draw(name: str, make: Callable[[], Frames], *made_of: str) -> None:
     moving = {"save_all": True, "append_images": frames[1:], "duration": round(1000 / _FPS)}
     frames[0].save(files[0], loop=0, quality=35, method=4, **moving)
     frames[len(frames) // 2].save(files[1], quality=70)
-    kept.write_text(key)
+    key_file.write_text(key)
 
 
 @cache
@@ -61,11 +61,11 @@ def _package() -> str:
 
 
 def draw_commands(name: str, commands: str) -> None:
-    """Draw a picture by the commands of a page, which write NAME.gif."""
-    draw(name, lambda: _of_commands(name, commands), commands)
+    """Draw a picture by running the commands of a page, which write NAME.gif."""
+    draw(name, lambda: _frames_from_commands(name, commands), commands)
 
 
-def _of_commands(name: str, commands: str) -> Frames:
+def _frames_from_commands(name: str, commands: str) -> Frames:
     with TemporaryDirectory() as folder:
         for line in re.sub(r"\\\n\s*", " ", commands).splitlines():
             program, *words = shlex.split(line)
@@ -81,13 +81,13 @@ def _of_commands(name: str, commands: str) -> Frames:
         with Image.open(picture) as frames:
             width = round(HEIGHT * frames.width / frames.height)
             return [
-                each.convert("RGB").resize((width, HEIGHT), Image.Resampling.LANCZOS)
-                for each in ImageSequence.Iterator(frames)
+                frame.convert("RGB").resize((width, HEIGHT), Image.Resampling.LANCZOS)
+                for frame in ImageSequence.Iterator(frames)
             ]
 
 
 def shown(name: str, alt: str, above: str = "", width: int = HEIGHT) -> str:
-    """Return HTML that shows a picture on a page; `above` leads from there to the first page."""
+    """Return HTML that shows a picture; `above` is the path from its page to the site's root."""
     file = f"{above}loops/{name}"
     return (
         f'<picture class="loop">'

@@ -1,4 +1,4 @@
-"""Tables in Markdown, and pages that hold some between two comments."""
+"""Write tables in Markdown, and fill in the sections of pages."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -16,7 +16,7 @@ def filled(page: str, **sections: str) -> str:
     """Return a page with new text between ``<!-- NAME -->`` and ``<!-- end -->``."""
     for name, text in sections.items():
         between = rf"(?<=<!-- {name} -->\n\n).*?(?=\n\n<!-- end -->)"
-        page, found = re.subn(between, lambda _, text=text: text, page, flags=re.DOTALL)
-        if found != 1:
-            raise ValueError(f"a page has {found} comments <!-- {name} -->, and needs one")
+        page, count = re.subn(between, lambda _, text=text: text, page, flags=re.DOTALL)
+        if count != 1:
+            raise ValueError(f"a page has {count} comments <!-- {name} -->, and needs one")
     return page

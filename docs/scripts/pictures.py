@@ -27,11 +27,11 @@ SHOWN = {
     "MuJoCo": "MuJoCo Newton",
     "Drake": "Drake SAP",
 }
-OURS, OURS_TOO, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
+OURS, OURS_CONTROLLED, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
 N_OURS = 6
 WORKERS = {
     "fixed step": ("flockenv", "leapfrog", OURS, "o"),
-    "controlled step": ("flockenv", "controlled", OURS_TOO, "s"),
+    "controlled step": ("flockenv", "controlled", OURS_CONTROLLED, "s"),
     "rapier": ("rapier2d-f64", "4 iterations", THEIRS, "D"),
     "Box2D": ("Box2D (f32)", "4 substeps", "black", "v"),
     "Drake": ("Drake", "SAP", OKABE_ITO["orange"], "p"),
@@ -44,8 +44,8 @@ WORKERS = {
 def engines(figure: Figure) -> None:
     """Draw the cost of a step and two errors, a line for each engine."""
     panels = figure.subplots(1, 3, sharey=True)
-    found = {row["engine, setting"]: row for row in rows(ENGINES)}
-    lines = [found[name] for name in SHOWN.values()]
+    by_setting = {row["engine, setting"]: row for row in rows(ENGINES)}
+    lines = [by_setting[name] for name in SHOWN.values()]
     for axes, columns, label in zip(
         panels,
         ({"jam": "jam, µs", "moving": "cycle, µs"}, {"": "jam overlap, cm"}, {"": "slide, cm"}),
@@ -62,7 +62,7 @@ def engines(figure: Figure) -> None:
 
 
 def _points(axes: Axes, values: list[float], name: str) -> None:
-    """Draw a point on each line, ours in color; a hollow one for flocks that move."""
+    """Draw a point for each engine, ours in color, and hollow for flocks that move."""
     colors = [OURS] * N_OURS + [THEIRS] * (len(values) - N_OURS)
     faces = colors if name != "moving" else ["white"] * len(values)
     axes.scatter(
@@ -75,7 +75,7 @@ def impact(figure: Figure) -> None:
     axes = figure.subplots()
     for row, color, marker in zip(
         (row for row in rows(IMPACT) if row["scheme"] != "leapfrog / 1e-9 cm"),
-        (OURS, OURS_TOO),
+        (OURS, OURS_CONTROLLED),
         "os",
         strict=True,
     ):
@@ -95,10 +95,10 @@ def step_control(figure: Figure) -> None:
     """Draw the error against the substeps taken, with a fixed and with a controlled step."""
     panels = figure.subplots(2, 2)
     for axes, scene in zip(panels.flat, ("slide", "impact", "jam", "cycle"), strict=True):
-        for step, color, marker in (("fixed", OURS, "o"), ("controlled", OURS_TOO, "s")):
-            found = rows(STEP_CONTROL, scene=scene, step=step)
+        for step, color, marker in (("fixed", OURS, "o"), ("controlled", OURS_CONTROLLED, "s")):
+            measured = rows(STEP_CONTROL, scene=scene, step=step)
             substeps, errors = (
-                [float(row[column]) for row in found] for column in ("substeps", "error_cm")
+                [float(row[column]) for row in measured] for column in ("substeps", "error_cm")
             )
             axes.plot(substeps, errors, marker + "-", color=color, label=f"{step} step")
         axes.set(xscale="log", yscale="log", title=scene)
@@ -114,10 +114,10 @@ def work(figure: Figure) -> None:
     panels = figure.subplots(1, 3)
     for axes, scene in zip(panels, ("slide", "jam", "cycle"), strict=True):
         for name, (engine, setting, color, marker) in WORKERS.items():
-            is_here = name in [*WORKERS][:4]
-            found = _runs(scene, engine, setting) if is_here else _peers(scene, engine, setting)
-            if found:
-                times, errors = zip(*found, strict=True)
+            # The first four engines are timed in the runs whose errors are measured.
+            read = _runs if name in [*WORKERS][:4] else _peers
+            if points := read(scene, engine, setting):
+                times, errors = zip(*points, strict=True)
                 axes.plot(times, errors, marker + "-", color=color, label=name, markersize=5)
         axes.set(xscale="log", yscale="log", title=scene, xlabel="computing for 1 s [ms]")
     panels[0].set_ylabel("error [cm]")
@@ -126,7 +126,10 @@ def work(figure: Figure) -> None:
 
 
 def _runs(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
-    """Return time in ms and error in cm of the very runs, step by step; step calls if known."""
+    """Return the time in ms per second and the error in cm of each step size of an engine.
+
+    The time is that of the engine's step calls if it is known.
+    """
     return [
         (
             float(row["call_us_per_s"] or row["us_per_s"]) / 1000,
@@ -138,20 +141,23 @@ def _runs(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
 
 
 def _peers(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
-    """Return the same of another program, whose steps were timed with noise; no slides."""
+    """Return the same for an engine of another program; empty for slides.
+
+    The time is from runs with noise, and the error from runs without.
+    """
     if scene == "slide":
         return []
-    who = {"scene": scene, "engine": engine, "setting": setting}
-    found = []
-    for timed in rows(SPEED_PEERS, n="27", **who):
-        error = one(HORIZON_PEERS, horizon_s="0.5", dt_s=timed["dt_s"], **who)
+    key = {"scene": scene, "engine": engine, "setting": setting}
+    points = []
+    for timed in rows(SPEED_PEERS, n="27", **key):
+        error = one(HORIZON_PEERS, horizon_s="0.5", dt_s=timed["dt_s"], **key)
         cost = float(timed["us_per_step"]) / float(timed["dt_s"]) / 1000
-        found.append((cost, float(error["horizon_median_cm"])))
-    return found
+        points.append((cost, float(error["horizon_median_cm"])))
+    return points
 
 
 def learners(figure: Figure) -> None:
-    """Draw the samples per second of each interface over the batch that it steps."""
+    """Draw the samples per second of each interface, relative to the batch that it steps."""
     columns = ("median of the batch", "least of the batch", "most of the batch")
     shares = {
         row["interface"]: (float(row[columns[0]]), float(row[columns[1]]), float(row[columns[2]]))
@@ -165,16 +171,16 @@ def learners(figure: Figure) -> None:
 def many_agents(figure: Figure) -> None:
     """Draw the steps per second of each environment, a point for each size of a batch."""
     axes = figure.subplots()
-    found = rows(MANY_AGENTS)
-    lines = [*dict.fromkeys(row["environment"] for row in found)]
+    measured = rows(MANY_AGENTS)
+    lines = [*dict.fromkeys(row["environment"] for row in measured)]
     for environments, marker in (("64", "o"), ("1024", "s"), ("8192", "^")):
-        batches = [row for row in found if row["environments"] == environments]
-        at = [lines.index(row["environment"]) for row in batches]
+        batches = [row for row in measured if row["environments"] == environments]
+        heights = [lines.index(row["environment"]) for row in batches]
         axes.scatter(
             [float(row["steps per second of one core"]) for row in batches],
-            at,
+            heights,
             45,
-            color=[OURS if line == 0 else THEIRS for line in at],
+            color=[OURS if line == 0 else THEIRS for line in heights],
             marker=marker,
             zorder=3,
         )

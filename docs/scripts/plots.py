@@ -32,13 +32,13 @@ Interval = tuple[float, float, float]
 """A mean and the ends of its interval."""
 
 DATA = "Data"
-"""The key of a picture's metadata that holds the digest of what it was drawn from."""
+"""The key of a picture's metadata for the digest of its data."""
 
 LETTERS = "Letters"
-"""The key of a picture's metadata that holds the size of its smallest letters in pixels."""
+"""The key of a picture's metadata for the size of its smallest letters in pixels."""
 
 LEAST_LETTERS_PX = 9.0
-"""Least size in pixels of a picture's letters, as a page shows it."""
+"""Least size in pixels of a picture's letters on a page."""
 DESK_PX, PHONE_PX, SCROLLED_PX = 736, 358, 544
 """Widths of the site's pictures on a desk, on a phone of 390 pixels, and of those that a phone
 scrolls (`docs/static/phones.css`)."""
@@ -67,9 +67,9 @@ def page_style(letters_pt: float = 11.0) -> dict[str, Any]:
 
 
 def write_png(figure: Figure, file: Path | IO[bytes], dpi: float, **stamp: str) -> None:
-    """Write a picture that carries the size of its smallest letters, and what it was drawn from."""
-    own = {"Software": None, LETTERS: smallest_letters(figure, dpi), **stamp}
-    figure.savefig(file, format="png", dpi=dpi, metadata=own)
+    """Write a picture with the size of its smallest letters and `stamp` as its metadata."""
+    metadata = {"Software": None, LETTERS: smallest_letters(figure, dpi), **stamp}
+    figure.savefig(file, format="png", dpi=dpi, metadata=metadata)
 
 
 def letters_px(path: Path, shown_px: float) -> float:
@@ -79,7 +79,7 @@ def letters_px(path: Path, shown_px: float) -> float:
 
 
 def is_scrolled(path: Path) -> bool:
-    """Return whether a phone scrolls a picture, since it could not show its letters otherwise."""
+    """Return whether a picture would have too small letters on a phone, which then scrolls it."""
     return letters_px(path, PHONE_PX) < LEAST_LETTERS_PX
 
 
@@ -88,28 +88,30 @@ def smallest_letters(figure: Figure, dpi: float) -> str:
 
     Infinite without letters.
     """
-    figure.draw_without_rendering()  # Ticks have no text before.
-    texts = figure.findobj(lambda each: isinstance(each, Text) and bool(each.get_text().strip()))
-    sizes = (each.get_fontsize() for each in texts)
+    figure.draw_without_rendering()  # It gives ticks their text.
+    texts = figure.findobj(
+        lambda artist: isinstance(artist, Text) and bool(artist.get_text().strip())
+    )
+    sizes = (text.get_fontsize() for text in texts)
     return f"{min(sizes, default=math.inf) * dpi / 72:.1f}"
 
 
 class TableError(Exception):
-    """A committed table that is missing, or lacks the rows that were asked for."""
+    """A committed table that is missing, or lacks the requested rows."""
 
 
 def rows(file: Path, **wanted: str) -> list[Row]:
     """Return the rows of a CSV file that have these values; TableError if there are none."""
     _check_exists(file)
     with file.open(encoding="utf-8", newline="") as lines:
-        found = [
+        matching = [
             row
             for row in csv.DictReader(lines)
             if all(row[name] == value for name, value in wanted.items())
         ]
-    if not found:
+    if not matching:
         raise TableError(f"{file} holds no row with {wanted}")
-    return found
+    return matching
 
 
 def _check_exists(file: Path) -> None:
@@ -130,7 +132,7 @@ class Plot:
     Attributes
     ----------
     data
-        CSV files that it is drawn from.
+        CSV files from which it is drawn.
     draw
         Draws into an empty figure.
     size
@@ -142,13 +144,13 @@ class Plot:
     size: tuple[float, float] | Callable[[], tuple[float, float]] = (6.8, 4.2)
 
     def digest(self) -> str:
-        """Return the SHA-256 of the data; TableError if a file of it is missing."""
+        """Return the SHA-256 of the data; TableError if a file is missing."""
         for file in self.data:
             _check_exists(file)
         return hashlib.sha256(b"".join(file.read_bytes() for file in self.data)).hexdigest()
 
     def is_drawn(self, path: Path) -> bool:
-        """Return whether a picture was drawn from the data that are there."""
+        """Return whether a picture was drawn from the present data."""
         if not path.is_file():
             return False
         with Image.open(path) as picture:
@@ -157,7 +159,7 @@ class Plot:
     def save(self, path: Path) -> None:
         """Draw into a file."""
         with mpl.rc_context(page_style()):
-            digest = self.digest()  # Before a folder is made: it names a table that is missing.
+            digest = self.digest()  # Fails first if a table is missing.
             size = self.size() if callable(self.size) else self.size
             figure = Figure(figsize=size, layout="constrained")
             self.draw(figure)
@@ -202,7 +204,7 @@ def name_heights(axes: Axes, names: Iterable[str]) -> None:
 def bar_lengths(
     mean: Sequence[float], low: Sequence[float], high: Sequence[float]
 ) -> tuple[list[float], list[float]]:
-    """Return how far intervals reach below and above their means, as Matplotlib takes them."""
+    """Return the lengths of intervals below and above their means, as Matplotlib takes them."""
     below = [middle - end for middle, end in zip(mean, low, strict=True)]
     above = [end - middle for middle, end in zip(mean, high, strict=True)]
     return below, above

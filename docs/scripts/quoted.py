@@ -1,4 +1,4 @@
-"""Numbers that a page quotes from committed data, and sentences that several pages quote.
+"""Numbers that a page quotes from committed data, and claims that several pages quote.
 
 The tests of numbers, of the product and of the studies, compare what a page says with its data.
 """
@@ -34,15 +34,15 @@ class Number:
     page
         File of the page.
     words
-        What stands around it: ``{}`` is the number, ``#`` another one.
+        The words around the number: ``{}`` is the number, ``#`` another number.
     file
-        Table that it is from.
+        Table with the number.
     row
-        Values by which its row is found.
+        Values of the row's columns.
     column
         Column of the number, or a function of the rows that gives it.
     form
-        How it is written.
+        Format in which the page writes it.
     """
 
     page: str
@@ -57,12 +57,12 @@ class Number:
         return (REPOSITORY / self.page).read_text(encoding="utf-8")
 
     def shown(self, text: str) -> list[str]:
-        """Find every number of a text that stands between the words."""
+        """Return every number in a text that stands between the words."""
         pattern = re.escape(self.words).replace(r"\{\}", f"({DIGITS})").replace(r"\#", DIGITS)
         return re.findall(pattern, " ".join(text.split()))
 
     def expected(self) -> str:
-        """Take the number from the data, as a page writes it."""
+        """Return the number from the data, as the page writes it."""
         table = pd.read_csv(REPOSITORY / self.file)
         for name, value in self.row.items():
             table = table[table[name] == value]
@@ -75,24 +75,24 @@ class Number:
 
 
 def mean(column: str) -> Callable[[Any], float]:
-    """Average a column over the rows."""
+    """Return a function that averages a column over the rows."""
     return lambda rows: rows[column].mean()
 
 
-def gain_of(place: int) -> Callable[[Any], float]:
-    """Take the mean gain of the states (0), or the low (1) or high (2) end of its interval."""
-    return lambda rows: mean_interval(rows["gain"])[place]
+def gain_of(index: int) -> Callable[[Any], float]:
+    """Return a function for the mean gain of the states (0), or the low (1) or high (2) end."""
+    return lambda rows: mean_interval(rows["gain"])[index]
 
 
-def gain_of_plan(rows: Any, place: int = 0) -> float:
-    """Take the mean difference of the flocks (0), or half the width of its interval (1)."""
+def gain_of_plan(rows: Any, index: int = 0) -> float:
+    """Return the mean difference of the flocks (0), or half the width of its interval (1)."""
     gain, low, high = student_interval(rows["planned"] - rows["learned"])
-    return (gain, (high - low) / 2)[place]
+    return (gain, (high - low) / 2)[index]
 
 
 def plans(page: str) -> list[Number]:
     """List what planning ahead adds."""
-    known, fresh = (f"studies/planning/results/plan_{each}.csv" for each in ("known", "fresh"))
+    known, fresh = (f"studies/planning/results/plan_{noise}.csv" for noise in ("known", "fresh"))
     return [
         Number(
             page, "reaches a signed order of {}, and the learned", known, column=mean("planned")
@@ -120,12 +120,12 @@ def interval(
 ) -> list[Number]:
     """List a number, with its unit, and the ends of its interval, which follow in parentheses.
 
-    ``{}`` in the words is all three of them.
+    ``{}`` in the words stands for all three.
     """
     shown = (f"{{}}{unit} (# to #)", f"#{unit} ({{}} to #)", f"#{unit} (# to {{}})")
     return [
-        Number(page, words.replace("{}", each), file, row or {}, column, form)
-        for each, column in zip(shown, columns, strict=True)
+        Number(page, words.replace("{}", part), file, row or {}, column, form)
+        for part, column in zip(shown, columns, strict=True)
     ]
 
 

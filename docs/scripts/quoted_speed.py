@@ -48,7 +48,7 @@ def throughput() -> list[Number]:
 
 
 def box2d(rows: Any) -> float:
-    """Time of Box2D's step over ours."""
+    """Return the time of Box2D's step over ours."""
     theirs, ours = (
         rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["us_per_step"].item()
         for row in (BOX2D, OURS)
@@ -57,17 +57,17 @@ def box2d(rows: Any) -> float:
 
 
 def two_digits(value: float) -> float:
-    """Round to two digits that mean something."""
+    """Round to two significant digits."""
     return float(f"{value:.2g}")
 
 
-def deeper(than: dict[str, Any], digits: Callable[[float], float] = two_digits) -> Any:
-    """Take how many times as deep the overlaps of other hulls are as ours."""
+def deeper(engine: dict[str, Any], digits: Callable[[float], float] = two_digits) -> Any:
+    """Return a function for the ratio of another engine's mean overlap to ours."""
 
     def times(rows: Any) -> float:
         theirs, ours = (
             rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["overlap_mean_cm"].mean()
-            for row in (than, OURS)
+            for row in (engine, OURS)
         )
         return digits(theirs / ours)
 
@@ -77,7 +77,7 @@ def deeper(than: dict[str, Any], digits: Callable[[float], float] = two_digits) 
 def speed() -> list[Number]:
     """List our times and memory, and how other engines compare."""
     page, table, threads = PAGE, f"{SPEED}speed.csv", f"{SPEED}threads.csv"
-    found = [
+    numbers = [
         Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
         Number(page, "and {} µs if they move", table, CYCLE, "us_per_step", ".1f"),
         Number(page, "rapier needs {} and # times", table, JAM, "faster", ".1f"),
@@ -103,12 +103,12 @@ def speed() -> list[Number]:
     cells = ("{} | # | #", "# | {} | #", "# | # | {}")
     for cell, (scene, n, form) in zip(cells, scenes, strict=True):
         row = {"scene": scene, "n": n}
-        found += [
+        numbers += [
             Number(page, f"| rapier2d-f64 | 1 | {cell} |", table, row | OURS, "faster", form),
             Number(page, f"| Box2D | 1 | {cell} |", table, row, box2d, form),
         ]
     drake = {"engine, setting": "Drake SAP"}
-    found += [
+    numbers += [
         Number(page, words, f"{SPEED}short_engines.csv", drake, column, "g")
         for words, column in (
             ("takes them: a step takes {} µs", "jam, µs"),
@@ -119,11 +119,11 @@ def speed() -> list[Number]:
     for words, engine in engines.items():
         for cell, (scene, n, form) in zip(cells, scenes, strict=True):
             row = {"engine": engine, "scene": scene, "n": n}
-            words_of = f"| {words} | 2 | {cell} |"
-            found.append(Number(page, words_of, threads, row, "times_as_long", form))
+            row_words = f"| {words} | 2 | {cell} |"
+            numbers.append(Number(page, row_words, threads, row, "times_as_long", form))
     paper = "docs/software/paper.md"
     return [
-        *found,
+        *numbers,
         Number(paper, "27 jammed boats take {} µs per step", table, JAM, "us_per_step", ".1f"),
         Number(paper, "and {} times as long in rapier", table, JAM, "faster", ".1f"),
         *(
@@ -138,7 +138,7 @@ def speed() -> list[Number]:
 
 
 def overlap_rates() -> list[Number]:
-    """List in how many runs overlaps are deep, by a tolerance and without one."""
+    """List in how many runs overlaps are deep, with a tolerance and without one."""
     page, table = PAGE, f"{SPEED}overlap_rates.csv"
     scenes = {
         "cycle": "| cycle with bw = # s, a minute |",
@@ -154,31 +154,31 @@ def overlap_rates() -> list[Number]:
     cells = ((1e-4, "beyond_0.0001_cm", "d"), (1e-4, "deepest_cm", "g"))
     cells += ((math.inf, "beyond_0.1_cm", "d"), (math.inf, "deepest_cm", "g"))
     return [
-        Number(page, f"{words} {place} |", table, row | {"tolerance_cm": cm}, column, form)
+        Number(page, f"{words} {cell} |", table, row | {"tolerance_cm": cm}, column, form)
         for scene, words in scenes.items()
         for row in ({"scene": scene, "scheme": "leapfrog"},)
-        for place, (cm, column, form) in zip(shown, cells, strict=True)
+        for cell, (cm, column, form) in zip(shown, cells, strict=True)
     ]
 
 
 def steps() -> list[Number]:
-    """List what a step of 0.1 s changes, by the study of the step."""
+    """List what a step of 0.1 s changes, from the study of step sizes."""
     page, table = PAGE, "studies/step_size/claims.csv"
     at = "at dt = 0.1 s minus that at 0.005 s"
     alone = {"reading": "20 boats in wide, no leaders, physics training", "quantity": f"Ψ_o {at}"}
 
-    def farthest(rows: Any) -> float:
+    def largest_shift(rows: Any) -> float:
         shifts = rows[rows["quantity"].str.startswith("noise of the same")]
         return shifts[["low", "high"]].abs().max(axis=None)
 
     return [
         *interval(page, "8 minutes show a change of {} at 0.1 s", table, alone, form=".3f"),
-        Number(page, "order is lost by at most {} s", table, {}, farthest),
+        Number(page, "order is lost by at most {} s", table, {}, largest_shift),
     ]
 
 
 def other_engines() -> list[Number]:
-    """List overlaps of other engines over ours, and the spread of rapier's times."""
+    """List overlaps of other engines relative to ours, and the spread of rapier's times."""
     table, jam = f"{SPEED}overlap.csv.gz", {"scene": "jam", "n": 27}
     own_unit = RAPIER | {"setting": "4 iterations / unit 1 cm"}
 
@@ -246,22 +246,22 @@ def other_engines() -> list[Number]:
 
 
 def our_settings() -> list[Number]:
-    """List what our steps and tolerances cost, and how errors fall."""
+    """List what our steps and tolerances cost, and how errors fall with the step."""
     training = {"engine, setting": "leapfrog / exact / 1e-4 cm", "dt, s": 0.1}
     steps, falls = f"{SPEED}short_steps.csv", f"{SPEED}short_exponents.csv"
     changes = f"{SPEED}short_order_errors.csv"
 
-    def of_contacts(rows: Any) -> Any:
-        kept = rows[rows["scheme"].isin(["leapfrog", "moreau"])]
-        return kept[["0.5 s of the jam", "0.5 s of the cycle"]]
+    def contact_exponents(rows: Any) -> Any:
+        both = rows[rows["scheme"].isin(["leapfrog", "moreau"])]
+        return both[["0.5 s of the jam", "0.5 s of the cycle"]]
 
-    def of_impacts(rows: Any) -> Any:
+    def impact_ratios(rows: Any) -> Any:
         by_scheme = rows.set_index("scheme")
         return by_scheme.loc["leapfrog / linear"] / by_scheme.loc["moreau / linear"]
 
     def per_boat(rows: Any) -> float:
-        own = rows.set_index("n")["us_per_step"]
-        return own[1000] / 1000 / (own[27] / 27)
+        us_per_step = rows.set_index("n")["us_per_step"]
+        return us_per_step[1000] / 1000 / (us_per_step[27] / 27)
 
     rise, width = "error of Ψ_o", "± (Ψ_o)"
     return [
@@ -272,7 +272,7 @@ def our_settings() -> list[Number]:
             "the exponents are {} to #.",
             falls,
             {},
-            lambda rows: of_contacts(rows).min(axis=None),
+            lambda rows: contact_exponents(rows).min(axis=None),
             ".1f",
         ),
         Number(
@@ -280,7 +280,7 @@ def our_settings() -> list[Number]:
             "the exponents are # to {}.",
             falls,
             {},
-            lambda rows: of_contacts(rows).max(axis=None),
+            lambda rows: contact_exponents(rows).max(axis=None),
             ".1f",
         ),
         Number(
@@ -288,7 +288,7 @@ def our_settings() -> list[Number]:
             "`leapfrog` errs {} to # times",
             f"{SPEED}impact.csv",
             {},
-            lambda rows: of_impacts(rows).min(),
+            lambda rows: impact_ratios(rows).min(),
             ".1f",
         ),
         Number(
@@ -296,7 +296,7 @@ def our_settings() -> list[Number]:
             "`leapfrog` errs # to {} times",
             f"{SPEED}impact.csv",
             {},
-            lambda rows: of_impacts(rows).max(),
+            lambda rows: impact_ratios(rows).max(),
             ".0f",
         ),
         Number(
@@ -339,12 +339,12 @@ def our_settings() -> list[Number]:
 
 
 def least(column: str) -> Callable[[Any], float]:
-    """Take the least number of a column."""
+    """Return a function for the least number of a column."""
     return lambda rows: rows[column].min()
 
 
 def most(column: str) -> Callable[[Any], float]:
-    """Take the largest number of a column."""
+    """Return a function for the largest number of a column."""
     return lambda rows: rows[column].max()
 
 
@@ -352,20 +352,30 @@ def controlled_steps() -> list[Number]:
     """List what a step that follows its error saves and costs."""
     table = f"{SPEED}step_control.csv"
 
-    def extra(rows: Any) -> Any:
+    def substep_ratios(rows: Any) -> Any:
         """Return the ratio of the substeps of controlled steps to those of fixed ones, by setting.
 
         Both have the same error, interpolated between fixed steps. A setting with a smaller error
         than every fixed step is left out.
         """
         fixed = rows[rows["step"] == "fixed"].sort_values("error_cm")
-        own = rows[rows["step"] == "controlled"]
-        own = own[own["error_cm"].between(fixed["error_cm"].min(), fixed["error_cm"].max())]
+        controlled = rows[rows["step"] == "controlled"]
+        is_covered = controlled["error_cm"].between(
+            fixed["error_cm"].min(), fixed["error_cm"].max()
+        )
+        controlled = controlled[is_covered]
         error, substeps = np.log(fixed[["error_cm", "substeps"]].to_numpy().T)
-        return own["substeps"] / np.exp(np.interp(np.log(own["error_cm"]), error, substeps))
+        fixed_substeps = np.exp(np.interp(np.log(controlled["error_cm"]), error, substeps))
+        return controlled["substeps"] / fixed_substeps
 
     def in_a_flock(rows: Any) -> Any:
-        return pd.concat([extra(own) for scene, own in rows.groupby("scene") if scene != "impact"])
+        return pd.concat(
+            [
+                substep_ratios(scene_rows)
+                for scene, scene_rows in rows.groupby("scene")
+                if scene != "impact"
+            ]
+        )
 
     impact = {"scene": "impact"}
     return [
@@ -390,7 +400,7 @@ def controlled_steps() -> list[Number]:
             "0.001 cm or less: {} times the substeps",
             table,
             impact,
-            lambda rows: extra(rows).min(),
+            lambda rows: substep_ratios(rows).min(),
             ".1f",
         ),
         Number(
@@ -411,18 +421,20 @@ def controlled_times() -> list[Number]:
     def longer(column: str) -> Callable[[Any], Any]:
         """Return a function for the ratio of controlled to fixed times at the same error."""
 
-        def of(rows: Any) -> Any:
-            found = []
-            for _, own in rows[rows["engine"] == "flockenv"].groupby("scene"):
-                is_controlled = own["setting"].str.startswith("controlled")
-                fixed = own[~is_controlled].sort_values("error_median_cm")
+        def ratios(rows: Any) -> Any:
+            by_scene = []
+            for _, scene_rows in rows[rows["engine"] == "flockenv"].groupby("scene"):
+                is_controlled = scene_rows["setting"].str.startswith("controlled")
+                controlled = scene_rows[is_controlled]
+                fixed = scene_rows[~is_controlled].sort_values("error_median_cm")
                 error, time = np.log(fixed[["error_median_cm", "us_per_s"]].to_numpy().T)
-                at = np.log(own[is_controlled]["error_median_cm"])
-                assert at.between(error.min(), error.max()).all()
-                found.append(own[is_controlled][column] / np.exp(np.interp(at, error, time)))
-            return pd.concat(found)
+                controlled_error = np.log(controlled["error_median_cm"])
+                assert controlled_error.between(error.min(), error.max()).all()
+                fixed_time = np.exp(np.interp(controlled_error, error, time))
+                by_scene.append(controlled[column] / fixed_time)
+            return pd.concat(by_scene)
 
-        return of
+        return ratios
 
     calls, whole = longer("call_us_per_s"), longer("us_per_s")
     words, tried = "a controlled step takes {} times as long", "as we tried it, it takes {} times"
@@ -442,11 +454,11 @@ def learners() -> list[Number]:
         return rows.groupby("environment")["steps per second of one core"].max()
 
     def times(theirs: str, *, faster: bool) -> Callable[[Any], float]:
-        def of(rows: Any) -> float:
+        def ratio_to_ours(rows: Any) -> float:
             ratio = best(rows)[theirs] / best(rows)["flockenv, hulls with exact contacts"]
             return ratio if faster else 1 / ratio
 
-        return of
+        return ratio_to_ours
 
     boids, dropout = "PufferLib boids in C, no collisions", "VMAS dropout, no collisions"
     return [
@@ -486,7 +498,7 @@ def learners() -> list[Number]:
 
 
 def every() -> list[Number]:
-    """List all of them."""
+    """List the numbers of all functions above."""
     return [
         *speed(),
         *other_engines(),

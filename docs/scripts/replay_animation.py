@@ -1,4 +1,4 @@
-"""Writes docs/replay.webp and its still: the replay page, photographed in headless Chromium."""
+"""Write docs/replay.webp and its still: pictures of the replay page in headless Chromium."""
 
 import io
 import os
@@ -19,7 +19,7 @@ PARAMETERS = flockenv.FlockParameters(n_boats=27, n_leaders=4, pool="wide", bw_s
 SEED, DURATION_S = 7, 480.0
 POLICIES = {"paper's law": None, "learned": "learned"}
 SIZE = (1160, 960)
-# The flocks and their order: no controls, no charts, no small print.
+# The part of the page with the flocks and their order, without controls and charts.
 CROP = (0, 0, 1160, 604)
 STYLE = """
     #watch, .origin, .corner.top, .corner.bottom.left { display: none }
@@ -32,7 +32,7 @@ START_S, STEP_S, FRAMES, FPS = 150.0, 0.4, 60, 10.0
 
 
 def main() -> None:
-    """Record, write the page, and photograph it."""
+    """Record the runs, write the page, and take pictures of it."""
     runs = {
         name: flockenv.simulate(PARAMETERS, SEED, DURATION_S, policy=policy, contacts=True)
         for name, policy in POLICIES.items()
@@ -51,7 +51,7 @@ def main() -> None:
         quality=50,
         method=6,
     )
-    # For those whose system asks for less motion.
+    # The still is for systems that ask for less motion.
     others[-1].save(folder / "replay-still.webp", quality=70)
 
 
@@ -69,7 +69,6 @@ def frames(page: Path) -> Iterator[Image.Image]:
             "document.adoptedStyleSheets = [style];",
             STYLE,
         )
-        # The frames together.
         Select(driver.find_element("id", "speed")).select_by_value(f"{STEP_S * FPS:g}")
         Select(driver.find_element("id", "trails")).select_by_value("5")
         # The page plays in real time, but these frames are taken at fixed times of the recording.
@@ -105,7 +104,7 @@ def chromium() -> webdriver.Chrome:
 
 
 def program(variable: str, name: str) -> str:
-    """Return a program's path; `tests/browser/need_chromium.sh` has seen that it is there."""
+    """Return a program's path; `tests/browser/need_chromium.sh` checks that it is installed."""
     return shutil.which(os.environ.get(variable, name)) or name
 
 
