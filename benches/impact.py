@@ -1,9 +1,9 @@
-"""The error of a boat that hits the wall within the window: the time of the impact sets it.
+"""Measure the error of a boat that hits the wall, which comes from the time of the impact.
 
-`python benches/impact.py` writes docs/speed_vs_error/impact.csv, or into another folder that is
-named. Forty boats, each alone, start 4 to 12 cm away from the outer wall of `narrow` at their full
-speed and slide along it after the impact, as in the bench of sliding for 2 s; the error is the
-distance from steps of 1e-4 s.
+`python benches/impact.py [FOLDER]` writes impact.csv, by default to docs/speed_vs_error. Forty
+boats, each alone, start 4 to 12 cm from the outer wall of `narrow` at full speed, and slide along
+it after the impact. The run lasts 2 s. The error is the distance from the end of a run with steps
+of 1e-4 s.
 """
 
 import csv
@@ -37,10 +37,10 @@ def parameters(scheme: str, dt_s: float, tolerance_cm: float) -> flockenv.FlockP
 
 
 def ends(p: flockenv.FlockParameters) -> np.ndarray:
-    """Return where the boats end, shape (starts, 3)."""
-    found = []
-    for place in range(STARTS):
-        outward, away_cm = 0.45 + 0.1 * (place % 8), 4.0 + 8.0 * place / STARTS
+    """Return the final poses of the boats, shape (starts, 3)."""
+    poses = []
+    for start in range(STARTS):
+        outward, away_cm = 0.45 + 0.1 * (start % 8), 4.0 + 8.0 * start / STARTS
         heading = math.pi / 2.0 - outward  # At the polar angle 0, where the tangent is pi/2.
         half_cm = p.boat_radius_cm * p.boat_shape
         bow_cm = 90.0 - p.boat_radius_cm - away_cm
@@ -53,8 +53,8 @@ def ends(p: flockenv.FlockParameters) -> np.ndarray:
         boat = flockenv.Flock(p, 1)
         boat.set_state(np.array([pose]), np.array([velocity]))
         boat.advance(TIME_S)
-        found.append(boat.pose[0])
-    return np.array(found)
+        poses.append(boat.pose[0])
+    return np.array(poses)
 
 
 def main() -> None:
@@ -67,9 +67,10 @@ def main() -> None:
         line: dict[str, object] = {"scheme": f"{scheme} / {gaps}"}
         for dt_s in STEPS_S:
             p = parameters(scheme, dt_s, tolerance_cm)
-            away = ends(p) - reference
-            away[:, 2] *= p.gyration_radius_cm
-            line[f"dt = {dt_s:g} s"] = f"{np.median(np.linalg.norm(away, axis=1)):.2g}"
+            differences = ends(p) - reference
+            differences[:, 2] *= p.gyration_radius_cm
+            errors_cm = np.linalg.norm(differences, axis=1)
+            line[f"dt = {dt_s:g} s"] = f"{np.median(errors_cm):.2g}"
         lines.append(line)
     with (folder / "impact.csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, list(lines[0]), lineterminator="\n")

@@ -18,7 +18,7 @@ use std::process::{Command, ExitCode};
 use support::scene::Scene;
 use support::{control, environment, leaning, training, warm_batch};
 
-/// Part by which a count may differ from the one that is pinned: compilers, memcpy of other processors.
+/// Fraction by which a count may differ from the pinned one: compilers and processors' memcpy differ.
 const TOLERANCE: f64 = 0.03;
 const PINNED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.csv");
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/instructions");
@@ -30,15 +30,15 @@ type Failure = Box<dyn std::error::Error>;
 enum Work {
     Flock(FlockParameters),
     Environment(FlockParameters),
-    /// Leaders that lean once a second, in many flocks: what the training of `flockenv train` steps.
+    /// Control steps of many flocks whose leaders lean once a second, as in `flockenv train`.
     Leaning(FlockParameters),
 }
 
-/// How many flocks a seed stands for where leaders lean: a training's 128 in all.
+/// Number of flocks of one seed if leaders lean: the four seeds have the 128 flocks of a training.
 const LEANING_FLOCKS: u64 = 32;
 
-/// Work done in a measured stretch.
-struct Done {
+/// The work that was counted.
+struct Counted {
     steps: u64,
     boats: u64,
     statistics: Statistics,
@@ -119,11 +119,11 @@ const SCENES: [&str; 17] = [
     "training of leans in narrow",
 ];
 
-/// Seeds that a count is the mean of.
+/// Number of seeds over which counts are averaged.
 const SEEDS: u64 = 4;
 
 impl Work {
-    /// States after 20 s, one a seed: what callgrind would take minutes for.
+    /// The state of a seed after 20 s, which would take minutes in callgrind.
     fn warmed_up(&self, seed: u64) -> Result<Vec<u8>, Failure> {
         match self {
             Self::Flock(parameters) => {
@@ -142,8 +142,8 @@ impl Work {
         }
     }
 
-    /// Continues from a state: a little uncounted, then one cycle of phases (in a large flock half a second).
-    fn count(&self, state: &[u8]) -> Result<Done, Failure> {
+    /// Continues from a state: a short time uncounted, then a cycle of phases (half a second for a large flock) counted.
+    fn count(&self, state: &[u8]) -> Result<Counted, Failure> {
         match self {
             Self::Flock(parameters) => {
                 let mut flock = Flock::from_snapshot(state, None)?;
@@ -152,7 +152,7 @@ impl Work {
                 let duration_s = if parameters.n_boats > 100 { 0.5 } else { 6.0 };
                 counted(|| flock.advance(black_box(duration_s), None))?;
                 let statistics = difference(flock.statistics(), &before);
-                Ok(Done {
+                Ok(Counted {
                     steps: statistics.substeps,
                     boats: parameters.n_boats as u64,
                     statistics,
@@ -168,7 +168,7 @@ impl Work {
                     parameters.fw_s + parameters.nop1_s + parameters.bw_s + parameters.nop2_s;
                 let decisions = (cycle_s * hz / f64::from(period)).round() as u64;
                 counted(|| control(&mut batch, decisions))?;
-                Ok(Done {
+                Ok(Counted {
                     steps: decisions * u64::from(period) * batch.envs().len() as u64,
                     boats: parameters.n_boats as u64,
                     statistics: difference(&statistics(&batch), &before),
@@ -184,10 +184,10 @@ fn statistics(batch: &EnvBatch) -> Statistics {
     episodes
         .map(Episode::flock)
         .fold(Statistics::default(), |sum, flock| {
-            let own = flock.statistics();
+            let statistics = flock.statistics();
             Statistics {
-                substeps: sum.substeps + own.substeps,
-                contacts: sum.contacts + own.contacts,
+                substeps: sum.substeps + statistics.substeps,
+                contacts: sum.contacts + statistics.contacts,
                 ..sum
             }
         })
@@ -201,13 +201,13 @@ fn difference(now: &Statistics, before: &Statistics) -> Statistics {
     }
 }
 
-/// Callgrind counts what happens in here, and nothing else.
+/// Callgrind counts only instructions within this function.
 #[inline(never)]
 fn counted<R>(work: impl FnOnce() -> R) -> R {
     black_box(work())
 }
 
-/// Instructions and what they did, summed over the seeds of a scene.
+/// A scene's row of the table: instructions per step, per boat and substep, and per contact and substep.
 fn measure(name: &str) -> Result<String, Failure> {
     let (mut instructions, mut sums) = (0, [0; 4]);
     for seed in 1..=SEEDS {
@@ -246,7 +246,7 @@ fn measure(name: &str) -> Result<String, Failure> {
     ))
 }
 
-/// The whole count of a callgrind file.
+/// The number of instructions in a callgrind file.
 fn total(profile: &Path) -> Result<u64, Failure> {
     let text = fs::read_to_string(profile)?;
     let mut lines = text.lines();
@@ -284,7 +284,7 @@ fn row(line: &str) -> Option<(&str, f64)> {
     Some((name, numbers.split(',').next()?.parse().ok()?))
 }
 
-/// How a row differs from the pinned one; `None` where it does not.
+/// A sentence on how a row differs from the pinned one; `None` if it is within the tolerance.
 fn mismatch(line: &str, pinned: &str) -> Option<String> {
     let (name, now) = row(line)?;
     let Some((_, then)) = pinned

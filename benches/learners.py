@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import tomli_w
-from throughput import POOLS, ROOT, SCENE, made
+from throughput import POOLS, ROOT, SCENE, provenance
 
 FLOCKS = 64
 OUT = ROOT / "docs" / "throughput"
@@ -27,7 +27,7 @@ LEADERS = FLOCK["n_leaders"]
 
 
 def rate(step: Callable[[], object], samples: int, seconds: float) -> float:
-    """Return samples per second of a step that takes so many, after some steps to start with."""
+    """Return samples per second of a step that takes `samples`, after 20 steps of warm-up."""
     for _ in range(20):
         step()
     steps, start = 0, time.perf_counter()
@@ -38,7 +38,7 @@ def rate(step: Callable[[], object], samples: int, seconds: float) -> float:
 
 
 def rudders() -> np.ndarray:
-    """Return one rudder per leader."""
+    """Return random rudders, shape (flocks, leaders)."""
     return np.random.default_rng(0).uniform(-1, 1, (FLOCKS, LEADERS)).astype(np.float32)
 
 
@@ -72,14 +72,15 @@ def sb3(seconds: float) -> float:
 
 
 def torchrl_steps(env, action, seconds: float) -> float:
-    """Return samples per second of TorchRL's own loop, which resets what has ended."""
+    """Return samples per second of TorchRL's own loop, which resets episodes that have ended."""
     import torch
 
     env.set_seed(0)
-    now = [env.reset()]
+    data = env.reset()
 
     def step() -> None:
-        _, now[0] = env.step_and_maybe_reset(now[0].update(action))
+        nonlocal data
+        _, data = env.step_and_maybe_reset(data.update(action))
 
     with torch.no_grad():
         return rate(step, FLOCKS * LEADERS, seconds)
@@ -114,7 +115,7 @@ def gym_wrapper(seconds: float) -> float:
 
 
 def benchmarl(seconds: float) -> float:
-    """Return the rate of a task with what BenchMARL puts around it."""
+    """Return samples per second of a task with the transforms that BenchMARL adds."""
     from torchrl.envs import TransformedEnv
 
     from flockenv.benchmarl import LeadersTask
@@ -126,14 +127,14 @@ def benchmarl(seconds: float) -> float:
 
 
 def rllib_samples(config, runner, seconds: float, samples: int) -> float:
-    """Return the rate of RLlib's environment runner with random actions."""
+    """Return samples per second of RLlib's environment runner with random actions."""
     sampler = runner(config=config)
     steps, start = 0, None
     sampler.sample(num_timesteps=FLOCKS, random_actions=True)
     start = time.perf_counter()
     while time.perf_counter() - start < seconds:
         episodes = sampler.sample(num_timesteps=20 * FLOCKS, random_actions=True)
-        steps += sum(len(each) for each in episodes)
+        steps += sum(len(episode) for episode in episodes)
     return steps * samples / (time.perf_counter() - start)
 
 
@@ -172,7 +173,7 @@ def rllib_agents(seconds: float) -> float:
     return rllib_samples(config, MultiAgentEnvRunner, seconds, LEADERS)
 
 
-#: Rows: what each is called, how it is measured, and the environment whose Python it needs.
+#: Rows: name in the table, function that measures, and the environment whose Python it needs.
 ROWS: dict[str, tuple[str, Callable[[float], float], str]] = {
     "batch": ("the batch itself", batch, ".venv"),
     "vector": ("LeadersVectorEnv, in the file of PPO", vector, ".venv"),
@@ -229,13 +230,12 @@ def versions() -> str:
     """Return the versions of the libraries, each in its environment."""
     code = "import sys; from importlib.metadata import version as v; print([v(n) for n in {!r}])"
     parts = []
-    for place, names in PACKAGES.items():
-        python = ROOT / place / "bin" / "python"
+    for environment, names in PACKAGES.items():
+        python = ROOT / environment / "bin" / "python"
         out = subprocess.check_output([python, "-c", code.format(names)], text=True)
-        found = json.loads(out.replace("'", '"'))
-        parts.append(
-            " and ".join(f"{name} {each}" for name, each in zip(names, found, strict=True))
-        )
+        versions = json.loads(out.replace("'", '"'))
+        named = zip(names, versions, strict=True)
+        parts.append(" and ".join(f"{name} {version}" for name, version in named))
     return "; ".join(parts)
 
 
@@ -248,9 +248,9 @@ def main() -> None:
     if options.row:
         print(json.dumps({"value": ROWS[options.row][1](options.seconds)}))
         return
-    found: dict[str, list[float]] = {row: [] for row in ROWS}
+    measured: dict[str, list[float]] = {row: [] for row in ROWS}
     for _ in range(options.rounds):
-        for row, rates in found.items():
+        for row, rates in measured.items():
             rates.append(measure(row, options.seconds))
             print(f"{row:>20}: {rates[-1]:,.4g} samples/s", flush=True)
     OUT.mkdir(parents=True, exist_ok=True)
@@ -258,21 +258,24 @@ def main() -> None:
         table = csv.writer(file, lineterminator="\n")
         columns = ["interface", "samples/s", "least", "most"]
         table.writerow(
-            [*columns, *(f"{each} of the batch" for each in ("median", "least", "most"))]
+            [*columns, *(f"{name} of the batch" for name in ("median", "least", "most"))]
         )
-        for row, rates in found.items():
-            ratios = [each / own for each, own in zip(rates, found["batch"], strict=True)]
+        for row, rates in measured.items():
+            ratios = [rate / batch for rate, batch in zip(rates, measured["batch"], strict=True)]
             table.writerow(
                 [
                     ROWS[row][0],
-                    *(f"{each:.0f}" for each in (statistics.median(rates), min(rates), max(rates))),
                     *(
-                        f"{each:.3f}"
-                        for each in (statistics.median(ratios), min(ratios), max(ratios))
+                        f"{number:.0f}"
+                        for number in (statistics.median(rates), min(rates), max(rates))
+                    ),
+                    *(
+                        f"{ratio:.3f}"
+                        for ratio in (statistics.median(ratios), min(ratios), max(ratios))
                     ),
                 ]
             )
-    written = {**made(options.rounds, options.seconds), "libraries": versions()}
+    written = {**provenance(options.rounds, options.seconds), "libraries": versions()}
     (OUT / "learners.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
 
 

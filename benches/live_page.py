@@ -25,9 +25,9 @@ SECONDS = 15.0
 DONE = ("simulating", "drawing")
 FLOCK = "#n_leaders=4&bw_s=0.3&seed=7"
 LESSONS = ("noise", "leaders", "learned", "forces", "opposed")
-# What the long run goes through, a minute each, again and again.
+# Scenes of the long run, a minute each, repeated.
 SCENES = (*LESSONS, f"{FLOCK}&n_boats=27&leaders=you&speed=8", f"{FLOCK}&n_boats=300&speed=max")
-# Notes when the first picture with a flock has been drawn, in ms since the page was asked for.
+# Stores when the first picture with a flock was drawn, in ms since the page was requested.
 WATCH = """
     const watch = new MutationObserver(() => {
       if (document.body?.dataset.ready) {
@@ -70,29 +70,29 @@ def until(driver: webdriver.Chrome, source: str) -> Any:
 
 
 def starts(driver: webdriver.Chrome, address: str) -> list[float]:
-    """Return for some loads how many ms pass until the first flock is on the screen."""
+    """Return the time in ms from the request to the first flock on the screen, for each load."""
     watch = driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": WATCH})
     driver.execute_cdp_cmd("Network.setCacheDisabled", {"cacheDisabled": True})
-    found = []
+    times_ms = []
     for _ in range(LOADS):
         driver.get("about:blank")
         driver.get(address)
-        found.append(float(until(driver, "return window.shownAt")))
+        times_ms.append(float(until(driver, "return window.shownAt")))
     driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", watch)
-    return found
+    return times_ms
 
 
 def processor_ms(driver: webdriver.Chrome) -> dict[str, float]:
-    """Return how long the browser's threads have computed: a busy machine alters it least."""
+    """Return the processor time in ms of the browser's threads, by what they do."""
     tick_ms = 1000 / os.sysconf("SC_CLK_TCK")
     parents, spent = {}, dict.fromkeys(("simulating", "drawing", "painting"), 0.0)
-    for each in Path("/proc").glob("[0-9]*/stat"):
+    for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
-            parents[int(each.parent.name)] = int(each.read_text().rsplit(")", 1)[1].split()[1])
-    mine = {driver.service.process.pid}
-    while more := {child for child, parent in parents.items() if parent in mine} - mine:
-        mine |= more
-    for thread in (each for pid in mine for each in Path(f"/proc/{pid}/task").glob("*/stat")):
+            parents[int(stat.parent.name)] = int(stat.read_text().rsplit(")", 1)[1].split()[1])
+    processes = {driver.service.process.pid}
+    while children := {c for c, parent in parents.items() if parent in processes} - processes:
+        processes |= children
+    for thread in (stat for pid in processes for stat in Path(f"/proc/{pid}/task").glob("*/stat")):
         with suppress(OSError):
             name, numbers = thread.read_text().split("(", 1)[1].rsplit(")", 1)
             pid, number = thread.parts[2], thread.parts[4]
@@ -105,7 +105,7 @@ def processor_ms(driver: webdriver.Chrome) -> dict[str, float]:
 
 
 def frames(driver: webdriver.Chrome, address: str, boats: int) -> dict[str, float]:
-    """Return what frames of so many boats at eight times real time cost."""
+    """Return rates and costs of frames with this number of boats at eight times real time."""
     driver.get("about:blank")
     driver.get(f"{address}{FLOCK}&n_boats={boats}&speed=8")
     until(driver, "return document.body.dataset.ready && page.time > 4")
@@ -115,29 +115,29 @@ def frames(driver: webdriver.Chrome, address: str, boats: int) -> dict[str, floa
     )
     spent = processor_ms(driver)
     time.sleep(SECONDS)
-    more = processor_ms(driver)
+    spent_later = processor_ms(driver)
     after, time_after, costs = driver.execute_script(note)
     return {
         "frames per second": 1000 * costs["frames"] / (after - before),
         "times real time": 1000 * (time_after - time_before) / (after - before),
         **{f"ms of {kind} per frame": costs[kind] / costs["frames"] for kind in DONE},
         **{
-            f"processor's ms of {kind}": (more[kind] - spent[kind]) / costs["frames"]
+            f"processor's ms of {kind}": (spent_later[kind] - spent[kind]) / costs["frames"]
             for kind in spent
         },
     }
 
 
 def memory(driver: webdriver.Chrome) -> tuple[float, float]:
-    """Return the MB of the page's objects, of which none is garbage, and of the simulator."""
+    """Return the memory in MB of the page's objects, without garbage, and of the simulator."""
     driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
     metrics = driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
-    used = next(each["value"] for each in metrics if each["name"] == "JSHeapUsedSize")
+    used = next(metric["value"] for metric in metrics if metric["name"] == "JSHeapUsedSize")
     return used / 1e6, driver.execute_script("return page.playback.costs.memory") / 1e6
 
 
 def soak(driver: webdriver.Chrome, address: str, minutes: int) -> None:
-    """Let the page run, another scene each minute, and print its memory; stop at a complaint."""
+    """Run the page, with another scene each minute, and print its memory; stop at an error."""
     driver.execute_cdp_cmd("Performance.enable", {})
     driver.get("about:blank")
     driver.get(address)
@@ -184,8 +184,8 @@ def main() -> None:
             f"({min(shown):.0f} to {max(shown):.0f})\n"
         )
         for boats in (27, 300):
-            found = frames(driver, address, boats)
-            words = ", ".join(f"{value:.1f} {name}" for name, value in found.items())
+            costs = frames(driver, address, boats)
+            words = ", ".join(f"{value:.1f} {name}" for name, value in costs.items())
             sys.stdout.write(f"{boats} boats: {words}\n")
         soak(driver, address, minutes) if minutes else None
     finally:

@@ -20,7 +20,7 @@ SECONDS = 3.0
 
 
 def rate(step: Callable[[], object], steps_each: int) -> float:
-    """Return environment steps per second of processor time, after one that is not counted."""
+    """Return environment steps per second of processor time, after one step of warm-up."""
     step()
     done, start = 0, time.process_time()
     while (taken := time.process_time() - start) < SECONDS:
@@ -74,14 +74,14 @@ def jaxmarl(envs: int) -> float:
     states = [jax.vmap(env.reset)(jax.random.split(key, envs))[1]]
 
     def advance() -> None:
-        states[0], *seen = step(states[0], key)
-        jax.block_until_ready(seen)
+        states[0], *outputs = step(states[0], key)
+        jax.block_until_ready(outputs)
 
     return rate(advance, envs)
 
 
 if __name__ == "__main__":
     name, number = sys.argv[1], int(sys.argv[2])
-    own = {"flockenv": flockenv, "simple_spread": jaxmarl}
-    found = own[name](number) if name in own else vmas(name, number)
-    print(f"{name}, {number} environments: {found:.0f} steps per second of one core")
+    measures = {"flockenv": flockenv, "simple_spread": jaxmarl}
+    speed = measures[name](number) if name in measures else vmas(name, number)
+    print(f"{name}, {number} environments: {speed:.0f} steps per second of one core")

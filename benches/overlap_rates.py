@@ -1,7 +1,7 @@
-"""In how many runs of 27 boats overlaps are deep: ``python benches/overlap_rates.py``.
+"""Count the runs of 27 boats with deep overlaps: ``python benches/overlap_rates.py [FOLDER]``.
 
 Three scenes at dt = 0.1 s, 200 seeds each, with the default tolerance and with gaps that are solved
-once. The rates go to docs/speed_vs_error/overlap_rates.csv, or into another folder that is named.
+once. The rates go to overlap_rates.csv, by default in docs/speed_vs_error.
 """
 
 import csv
@@ -38,21 +38,21 @@ def rows() -> Iterator[dict[str, object]]:
                     dt_s=0.1,
                     tolerance_cm=tolerance_cm,
                 )
-                found = [statistics(p, seed, seconds) for seed in SEEDS]
-                deepest = [each.worst_overlap_cm for each in found]
+                runs = [statistics(p, seed, seconds) for seed in SEEDS]
+                deepest = [run.worst_overlap_cm for run in runs]
                 yield (
                     {"scene": scene, "scheme": scheme, "tolerance_cm": tolerance_cm}
-                    | {"seconds": seconds, "bw_s": bw_s, "runs": len(found)}
+                    | {"seconds": seconds, "bw_s": bw_s, "runs": len(runs)}
                     | {f"beyond_{cm:g}_cm": sum(d > cm for d in deepest) for cm in DEPTHS_CM}
                     | {"deepest_cm": f"{max(deepest):.3g}"}
-                    | {"unsolved": sum(each.unsolved for each in found)}
-                    | {"halved_substeps": sum(each.halved_substeps for each in found)}
-                    | {"substeps": sum(each.substeps for each in found)}
+                    | {"unsolved": sum(run.unsolved for run in runs)}
+                    | {"halved_substeps": sum(run.halved_substeps for run in runs)}
+                    | {"substeps": sum(run.substeps for run in runs)}
                 )
 
 
 def statistics(p: flockenv.FlockParameters, seed: int, seconds: float) -> flockenv.Statistics:
-    """Return what a run did."""
+    """Return the statistics of a run."""
     flock = flockenv.Flock(p, seed)
     flock.advance(seconds)
     return flock.statistics
@@ -62,10 +62,10 @@ def main() -> None:
     """Measure, print and write."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUT
     text = io.StringIO()
-    found = list(rows())
-    writer = csv.DictWriter(text, list(found[0]), lineterminator="\n")
+    table = list(rows())
+    writer = csv.DictWriter(text, list(table[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(found)
+    writer.writerows(table)
     write_text(folder / "overlap_rates.csv", text.getvalue())
     print(text.getvalue(), end="")
 

@@ -24,7 +24,7 @@ POOLS = ("wide", "narrow")
 PHYSICS = ("training", "default", "publication")
 SPEEDS_CM_S = (5.0, 20.0, 60.0)
 FLOCKS = 8
-#: Repetitions of one stretch of rounds, of which the last half tells of leaks.
+#: Repetitions of the same rounds, whose last half shows leaks, and their number of rounds.
 REPEATS, STRETCH = 16, 300
 #: Rounds between two round trips through bytes, and steps until an average leader moves its rudder.
 STORED_EVERY, RUDDER_HELD = 1000, 5
@@ -58,9 +58,9 @@ class Batch:
         return f"{self.pool}, {self.physics}, {self.speed_cm_s:g} cm/s"
 
     def step(self, random: np.random.Generator) -> None:
-        moved = random.random(self.rudders.shape) < 1 / RUDDER_HELD
+        is_moved = random.random(self.rudders.shape) < 1 / RUDDER_HELD
         drawn = random.uniform(-1.2, 1.2, self.rudders.shape)
-        self.rudders = np.where(moved, drawn, self.rudders)
+        self.rudders = np.where(is_moved, drawn, self.rudders)
         try:
             observations, rewards, _, truncated, _ = self.env.step(self.rudders)
         except flockenv.SolverError:
@@ -74,25 +74,26 @@ class Batch:
         self.control_steps += int((~self.ended).sum())
         self.ended = truncated
         for flock in np.flatnonzero(truncated).tolist():
-            self.note(flock)
+            self.add_episode(flock)
 
-    def note(self, flock: int) -> None:
+    def add_episode(self, flock: int) -> None:
+        """Check the last state of an episode, and add its statistics."""
         ended = self.env._batch.flock(flock)
         if not (np.isfinite(ended.pose).all() and np.isfinite(ended.velocity).all()):
             raise SystemExit(f"{self.name}: NaN in a state after {self.control_steps} steps")
-        p, found = ended.parameters, ended.statistics
+        p, statistics = ended.parameters, ended.statistics
         outer_cm, inner_cm = p.pool_radii_cm
         distance_cm = np.hypot(*ended.pose[:, :2].T)
         if not ((inner_cm <= distance_cm) & (distance_cm <= outer_cm)).all():
             raise SystemExit(f"{self.name}: a boat is outside the water")
         self.tolerance_cm = p.tolerance_cm
         self.episodes += 1
-        self.substeps += found.substeps
-        self.halved_substeps += found.halved_substeps
-        self.contacts += found.contacts
-        self.unsolved += found.unsolved
-        self.worst_residual_cm_s = max(self.worst_residual_cm_s, found.worst_residual_cm_s)
-        self.worst_overlap_cm = max(self.worst_overlap_cm, found.worst_overlap_cm)
+        self.substeps += statistics.substeps
+        self.halved_substeps += statistics.halved_substeps
+        self.contacts += statistics.contacts
+        self.unsolved += statistics.unsolved
+        self.worst_residual_cm_s = max(self.worst_residual_cm_s, statistics.worst_residual_cm_s)
+        self.worst_overlap_cm = max(self.worst_overlap_cm, statistics.worst_overlap_cm)
 
 
 def make(pool: str, physics: str, speed_cm_s: float, seed: int) -> Batch:
@@ -112,10 +113,10 @@ def resident_kib() -> float:
 
 
 def soak(total: int, seed: int) -> tuple[list[Batch], list[float]]:
-    """Step until `total` control steps; return the batches and what `repeated` reads then."""
+    """Make `total` control steps; return the batches and the readings of `repeated` after them."""
     random = np.random.default_rng(seed)
     kinds = enumerate(product(POOLS, PHYSICS, SPEEDS_CM_S))
-    batches = [make(*kind, seed + 1000 * place) for place, kind in kinds]
+    batches = [make(*kind, seed + 1000 * number) for number, kind in kinds]
     rounds = 0
     with Progress() as progress:
         task = progress.add_task("control steps", total=total)
@@ -131,21 +132,21 @@ def soak(total: int, seed: int) -> tuple[list[Batch], list[float]]:
 
 
 def repeated(batches: list[Batch], seed: int) -> list[float]:
-    """Return the resident memory in KiB after each repetition of one stretch of rounds.
+    """Return the resident memory in KiB after each repetition of the same rounds.
 
-    New states need more memory now and then, the same ones again and again do not: then what grows
-    is a leak.
+    New states may need more memory. Repeated states do not, so that memory that still grows is
+    leaked.
     """
     starts = [(batch.env.get_state(), batch.rudders, batch.ended) for batch in batches]
     readings = []
     for _ in range(REPEATS):
         random = np.random.default_rng(seed)
-        again = [replace(batch) for batch in batches]
-        for batch, (state, rudders, ended) in zip(again, starts, strict=True):
+        copies = [replace(batch) for batch in batches]
+        for batch, (state, rudders, ended) in zip(copies, starts, strict=True):
             batch.env.set_state(state)
             batch.rudders, batch.ended = rudders.copy(), ended.copy()
         for _ in range(STRETCH):
-            for batch in again:
+            for batch in copies:
                 batch.step(random)
         readings.append(resident_kib())
     return readings
@@ -158,17 +159,17 @@ def growth(readings: list[float]) -> float:
 
 def failures(batches: list[Batch], readings: list[float]) -> list[str]:
     grown = growth(readings)
-    found = [f"memory leaked {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
+    failed = [f"memory leaked {grown:.0f} KiB"] if grown > MOST_GROWTH_KIB else []
     for batch in batches:
         if batch.unsolved:
-            found.append(f"{batch.name}: {batch.unsolved} substeps were not solved")
+            failed.append(f"{batch.name}: {batch.unsolved} substeps were not solved")
         for name, bound in (
             ("worst_residual_cm_s", WORST_RESIDUAL_CM_S),
             ("worst_overlap_cm", batch.tolerance_cm),
         ):
             if not getattr(batch, name) <= bound * (1 + 1e-6):
-                found.append(f"{batch.name}: {name} = {getattr(batch, name):.2g}, above {bound:g}")
-    return found
+                failed.append(f"{batch.name}: {name} = {getattr(batch, name):.2g}, above {bound:g}")
+    return failed
 
 
 COLUMNS = (
@@ -189,7 +190,7 @@ COLUMNS = (
 
 
 def table(batches: list[Batch]) -> str:
-    """Return what each batch saw, a row each, as CSV."""
+    """Return the statistics of the batches as CSV, a row for each."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -214,8 +215,8 @@ def main() -> None:
         f"Resident memory, {readings[-1]:.0f} KiB at the end, grew by {growth(readings):+.0f} KiB "
         f"in the last half of {REPEATS} times the same {steps} control steps"
     )
-    if found := failures(batches, readings):
-        raise SystemExit("\n".join(found))
+    if failed := failures(batches, readings):
+        raise SystemExit("\n".join(failed))
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
-"""Whether a step that follows its error pays: work against error of fixed and controlled steps.
+"""Compare fixed steps with steps that follow their error: substeps against error.
 
-`python benches/step_control.py` writes docs/speed_vs_error/step_control.csv, or into another folder
-that is named. A boat slides along the wall, a boat hits it, and 27 boats with noise move for half a
-second in a jam and in a cycle: 40 starts each, in `narrow`. All steps of a start meet the same
-noise. The error is the distance from steps of 1e-4 s, its median over the starts, and the work the
-mean number of substeps.
+`python benches/step_control.py [FOLDER]` writes step_control.csv, by default to
+docs/speed_vs_error. A boat slides along the wall, a boat hits it, and 27 boats with noise move for
+half a second in a jam and in a cycle: 40 starts each, in `narrow`. Runs of a start have the same
+noise for all steps. The error is the median distance from runs with steps of 1e-4 s, and the work
+is the mean number of substeps.
 
 A controlled step is compared with its two halves. If they differ by more than is accepted, the
-halves are tried apart, and so on; halves that are accepted stand. If they differ by less than a
-tenth of that, the next step is twice as long, at most 0.1 s.
+first half is tried as a step, and so on. Accepted halves are kept. If they differ by less than a
+tenth of the accepted error, the next step is twice as long, at most 0.1 s.
 """
 
 import copy
@@ -28,7 +28,7 @@ LONGEST_S, EXACT_S, STARTS = 0.1, 1e-4, 40
 HALVINGS = range(8)
 ACCEPTED_CM = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
 GROWS_BELOW = 0.1
-#: The longest step in the shortest half of one: whole nanoseconds, so that halves meet.
+#: Number of shortest half steps in the longest step; all times are whole nanoseconds.
 PARTS = 2**8
 OUT = Path(__file__).parents[1] / "docs" / "speed_vs_error"
 
@@ -56,13 +56,13 @@ def alone(away_cm: float, outward: float, spin: float) -> flockenv.Flock:
 
 
 def parameters(**fields: object) -> flockenv.FlockParameters:
-    """Return the preset with these fields and the longest step."""
-    own = {"pool": "narrow", "dt_s": LONGEST_S, "tolerance_cm": 1e-6}
-    return flockenv.FlockParameters.preset("simulation").replace(**own | fields)
+    """Return the default parameters in `narrow` with the longest step and these fields."""
+    common = {"pool": "narrow", "dt_s": LONGEST_S, "tolerance_cm": 1e-6}
+    return flockenv.FlockParameters.preset("simulation").replace(**common | fields)
 
 
 def crowd(seed: int, drift_s: float) -> flockenv.Flock:
-    """Return 27 boats after 18 s and a share of the cycle, without overlap."""
+    """Return 27 boats after 18 s and a fraction of the cycle, without overlap."""
     p = parameters(n_boats=27, nop1_s=drift_s, bw_s=2.0 * drift_s, nop2_s=drift_s)
     flock = flockenv.Flock(p.replace(dt_s=0.01, tolerance_cm=1e-9), seed)
     flock.advance(18.0 + round(0.3 * drift_s * (seed % 20), 1))
@@ -70,7 +70,7 @@ def crowd(seed: int, drift_s: float) -> flockenv.Flock:
 
 
 def scenes() -> Iterator[tuple[str, list[Start]]]:
-    """Return the starts of each scene, and how long they are followed."""
+    """Yield each scene's name with its starts and their durations in s."""
     ks = range(STARTS)
     yield "slide", [(alone(0.0, 0.45 + 0.0175 * k, 0.12), 2.0) for k in ks]
     yield "impact", [(alone(4.0 + 0.2 * k, 0.45 + 0.1 * (k % 8), 0.0), 2.0) for k in ks]
@@ -80,13 +80,13 @@ def scenes() -> Iterator[tuple[str, list[Start]]]:
 
 def distance_cm(flock: flockenv.Flock, pose: NDArray[np.float64]) -> float:
     """Return the root mean square over boats of |Δx|² + ρ²Δα²."""
-    away = flock.pose - pose
-    away[:, 2] *= flock.parameters.gyration_radius_cm
-    return math.sqrt((away**2).sum() / len(away))
+    differences = flock.pose - pose
+    differences[:, 2] *= flock.parameters.gyration_radius_cm
+    return math.sqrt((differences**2).sum() / len(differences))
 
 
 def fixed(flock: flockenv.Flock, seconds: float, dt_s: float) -> tuple[flockenv.Flock, int]:
-    """Return a copy after some time with a fixed step, and the substeps that it took."""
+    """Return a copy after some time with a fixed step, and its number of substeps."""
     moved = copy.copy(flock)
     moved.set_step(dt_s)
     moved.advance(seconds)

@@ -1,4 +1,4 @@
-//! Quick looks while developing: `cargo bench`. What is published comes from `make speed-vs-error`.
+//! Times of steps for developers: `cargo bench`. Published numbers come from `make speed-vs-error`.
 
 mod support;
 

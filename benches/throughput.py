@@ -52,8 +52,8 @@ def control_step_us(pool: str, seconds: float) -> float:
 def single_step_ratio(pool: str, seconds: float) -> float:
     """Return the time of a step of single environments over that of a flock in a batch of 64.
 
-    Both take turns on one thread, from 30 s into their episodes on. Processor time, which others
-    on the machine do not add to.
+    Both take turns on one thread, from 30 s into their episodes on. The time is processor time, to
+    which other programs on the machine do not add.
     """
     import flockenv
 
@@ -91,7 +91,7 @@ def batch_steps_per_s(pool: str, seconds: float) -> float:
 
 
 class Canned:
-    """A core that returns one stored result, which leaves the time of the interface around it."""
+    """A core that returns one stored result, so that only the interface around it takes time."""
 
     def __init__(self, core, rows: int) -> None:
         self.core = core
@@ -164,7 +164,7 @@ OWN: dict[str, tuple[Callable[[float], float], str | None]] = {
 }
 
 
-#: What each row is called, and its unit.
+#: Name of each row in the table, and its unit.
 NAMES = {
     "step wide": ("control step of a flock, one core, wide, bw 0.3 s", "µs"),
     "step narrow": ("control step of a flock, one core, narrow, bw 0.4 s", "µs"),
@@ -211,8 +211,8 @@ def processor() -> str:
     return named[0] if named else platform.processor()
 
 
-def made(rounds: int, seconds: float) -> dict[str, Any]:
-    """Return when, where and with what the numbers were measured."""
+def provenance(rounds: int, seconds: float) -> dict[str, Any]:
+    """Return the date, the machine and the settings of a measurement."""
     from flockenv import _core
 
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
@@ -244,25 +244,28 @@ def main() -> None:
         print(json.dumps({"value": OWN[options.row][0](options.seconds)}))
         return
     rows = options.rows or list(NAMES)
-    found: dict[str, list[float]] = {row: [] for row in rows}
+    measured: dict[str, list[float]] = {row: [] for row in rows}
     for _ in range(options.rounds):
-        for row, values in found.items():
+        for row, values in measured.items():
             values.append(measure(row, options.seconds))
             print(f"{row:>18}: {values[-1]:,.4g}", flush=True)
     options.out.mkdir(parents=True, exist_ok=True)
-    write_table(options.out / "environments.csv", found)
+    write_table(options.out / "environments.csv", measured)
     if not options.rows:
-        written = {**made(options.rounds, options.seconds), **{n: peer_version(n) for n in PEERS}}
+        written = {
+            **provenance(options.rounds, options.seconds),
+            **{n: peer_version(n) for n in PEERS},
+        }
         (options.out / "environments.toml").write_text(tomli_w.dumps(written), encoding="utf-8")
 
 
-def write_table(path: Path, found: dict[str, list[float]]) -> None:
-    """Write the rows that were measured; others stay as they are."""
+def write_table(path: Path, measured: dict[str, list[float]]) -> None:
+    """Write the measured rows into the table; other rows stay as they are."""
     table = {}
     if path.exists():
         with path.open(encoding="utf-8", newline="") as file:
             table = {line[0]: line for line in csv.reader(file)}
-    for row, values in found.items():
+    for row, values in measured.items():
         numbers = (statistics.median(values), min(values), max(values))
         table[NAMES[row][0]] = [*NAMES[row], *map(four_digits, numbers)]
     with path.open("w", encoding="utf-8", newline="") as file:

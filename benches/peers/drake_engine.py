@@ -28,14 +28,14 @@ NAME = "Drake"
 SETTINGS = {"SAP": None}
 # Thickness of the wall's boxes and height of everything, in cm.
 WALL_CM, HEIGHT_CM = 10.0, 4.0
-# Length of a box over that of its chord: the rest lies behind others. Boats catch on shorter ones.
+# Length of a box over that of its chord: its ends lie behind others. Boats catch on shorter boxes.
 CHORDS_LONG = 3.0
-# With 1 kg a boat and centimeters for meters: beyond what SAP takes as rigid.
+# For boats of 1 kg and centimeters as meters, above the stiffness that SAP treats as rigid.
 STIFFNESS = 1e12
 
 
 class Engine:
-    """One run."""
+    """A run of a task."""
 
     def __init__(self, task: dict, start: dict, setting: str) -> None:
         del setting
@@ -97,13 +97,13 @@ class Engine:
         self.plant.AddJoint(PlanarJoint(f"joint {boat}", frame, body.body_frame()))
 
     def state(self) -> np.ndarray:
-        """(n, 6): x y heading vx vy omega."""
+        """Return x, y, heading, vx, vy and omega of each boat, shape (n, 6)."""
         pose = self.plant.GetPositions(self.context).reshape(-1, 3)
         velocity = self.plant.GetVelocities(self.context).reshape(-1, 3)
         return np.hstack((pose, velocity))
 
     def push(self) -> None:
-        """Applies the forces of the next step."""
+        """Apply the forces of the next step."""
         state = self.state()
         force, spin_up, increments = self.drive.push(state)
         pushed = np.column_stack((force, self.moment * spin_up))
@@ -113,12 +113,12 @@ class Engine:
             self.plant.SetVelocities(self.context, np.ravel(state[:, 3:]))
 
     def step(self) -> None:
-        """One step: what is timed."""
+        """Take one step; only this call is timed."""
         self.steps += 1
         self.simulator.AdvanceTo(self.steps * self.dt_s)
 
     def wall_force(self) -> float:
-        """What the outer wall carried in the last step along x, in cm/s^2."""
+        """Return the force on the outer wall along x in the last step, in cm/s^2."""
         results = self.plant.get_contact_results_output_port().Eval(self.context)
         world = self.plant.world_body().index()
         total = 0.0

@@ -1,4 +1,4 @@
-"""Eqs (8) and (9) as forces, and walls as chords, for engines that know neither."""
+"""Eqs (8) and (9) as forces, and walls as chords, for engines that have neither."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FlockDrive:
         self._noise = np.random.default_rng(task["seed"])
 
     def push(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forces (n, 2), angular accelerations (n,) and noise increments (n,) of the step."""
+        """Return forces (n, 2), angular accelerations (n,) and noise increments (n,) of a step."""
         elapsed = self._time % int(self._phase_ends[-1])
         phase = int(np.searchsorted(self._phase_ends, elapsed, side="right"))
         self._time += self._dt
@@ -39,6 +39,6 @@ class FlockDrive:
 
 
 def outer_corners(radius: float) -> np.ndarray:
-    """Corners (CHORDS, 2) of the polygon in the outer wall; a chord's middle is on the x axis."""
+    """Return the corners (CHORDS, 2) of the outer wall; a chord's middle is on the x axis."""
     angles = (2 * np.arange(CHORDS) + 1) * math.pi / CHORDS
     return radius * np.column_stack((np.cos(angles), np.sin(angles)))

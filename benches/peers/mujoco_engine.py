@@ -14,7 +14,7 @@ WALL_CM = 2.0
 
 
 class Engine:
-    """One run."""
+    """A run of a task."""
 
     def __init__(self, task: dict, start: dict, setting: str) -> None:
         del setting
@@ -27,11 +27,11 @@ class Engine:
         self.data.qvel[:] = np.ravel(start["velocities"])
 
     def state(self) -> np.ndarray:
-        """(n, 6): x y heading vx vy omega."""
+        """Return x, y, heading, vx, vy and omega of each boat, shape (n, 6)."""
         return np.hstack((self.data.qpos.reshape(-1, 3), self.data.qvel.reshape(-1, 3)))
 
     def push(self) -> None:
-        """Applies the forces of the next step."""
+        """Apply the forces of the next step."""
         force, spin_up, increments = self.drive.push(self.state())
         applied = self.data.qfrc_applied.reshape(-1, 3)
         applied[:, :2] = force
@@ -39,11 +39,11 @@ class Engine:
         self.data.qvel[2::3] += increments
 
     def step(self) -> None:
-        """One step: what is timed."""
+        """Take one step; only this call is timed."""
         mujoco.mj_step(self.model, self.data)
 
     def wall_force(self) -> float:
-        """What the outer wall carried in the last step, in cm/s^2."""
+        """Return the force on the outer wall in the last step, in cm/s^2."""
         total, force = 0.0, np.zeros(6)
         for k, contact in enumerate(self.data.contact):
             if 0 in self.model.geom_bodyid[contact.geom]:

@@ -21,7 +21,7 @@ PUSH = batch.BodyFields.ANGULAR_VELOCITY | batch.BodyFields.FORCE | batch.BodyFi
 
 
 class Engine:
-    """One run."""
+    """A run of a task."""
 
     def __init__(self, task: dict, start: dict, setting: str) -> None:
         self.space = pymunk.Space()
@@ -63,14 +63,14 @@ class Engine:
         return body
 
     def state(self) -> np.ndarray:
-        """(n, 6): x y heading vx vy omega."""
+        """Return x, y, heading, vx, vy and omega of each boat, shape (n, 6)."""
         self._read.clear()
         batch.get_space_bodies(self.space, STATE, self._read)
         # The walls' body comes after the boats.
         return np.frombuffer(self._read.float_buf()).reshape(-1, 6)[: len(self.boats)]
 
     def push(self) -> None:
-        """Applies the forces of the next step."""
+        """Apply the forces of the next step."""
         state = self.state()
         force, spin_up, increments = self.drive.push(state)
         # The buffer takes the layout of what was read into it last.
@@ -83,17 +83,17 @@ class Engine:
         batch.set_space_bodies(self.space, PUSH, self._write)
 
     def step(self) -> None:
-        """One step: what is timed."""
+        """Take one step; only this call is timed."""
         self.space.step(self.dt_s)
 
     def wall_force(self) -> float:
-        """What the outer wall carried in the last step along x, in cm/s^2."""
+        """Return the force on the outer wall along x in the last step, in cm/s^2."""
         impulses = []
 
-        def look(arbiter: pymunk.Arbiter) -> None:
+        def add_wall_impulse(arbiter: pymunk.Arbiter) -> None:
             if any(shape.body is self.space.static_body for shape in arbiter.shapes):
                 impulses.append(abs(arbiter.total_impulse.x))
 
         for boat in self.boats:
-            boat.each_arbiter(look)
+            boat.each_arbiter(add_wall_impulse)
         return sum(impulses) / self.dt_s

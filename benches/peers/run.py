@@ -1,8 +1,8 @@
-"""Lets Drake, pymunk and MuJoCo work off the tasks: ``run.py FILES YARDSTICK``.
+"""Run the tasks in Drake, pymunk and MuJoCo: ``run.py FILES YARDSTICK``.
 
 FILES is the folder of ``tasks.json``; ``results.json`` and the recorded states go there too.
-YARDSTICK is the program that times rapier2d-f64 after every timed run, so that ratios are taken
-close in time. Only the engines' step calls are timed, not the forces, which Python works out.
+YARDSTICK is the program that times rapier2d-f64 after every timed run, so that ratios compare times
+close to each other. Only the engines' step calls are timed, not the forces, which Python computes.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ import pymunk_engine
 
 ENGINES = {module.NAME: module for module in (pymunk_engine, mujoco_engine, drake_engine)}
 STEP_S = 0.01
-# Twelve seeds of twenty minutes are 1.4 million steps of a millisecond: longer than all the rest.
-LEAVES_ORDER_OUT = {drake_engine.NAME}
+# In Drake the order tasks take 1.4 million steps of about 1 ms, longer than all other tasks.
+SKIPS_ORDER = {drake_engine.NAME}
 
 
 def run(files: Path, job: tuple[str, str, int], task: dict) -> dict:
-    """One task by one engine: where its records are, how long steps took, what the wall carried."""
+    """Run a task in an engine; return its file of records, times of steps and mean wall force."""
     name, setting, number = job
     records, blocks, forces = [], [], []
     for start in task["starts"]:
@@ -39,9 +39,9 @@ def run(files: Path, job: tuple[str, str, int], task: dict) -> dict:
         spent = 0.0
         for step in range(1, task["steps"] + 1):
             engine.push()
-            called_s = time.perf_counter()
+            start_s = time.perf_counter()
             engine.step()
-            spent += time.perf_counter() - called_s
+            spent += time.perf_counter() - start_s
             if task["measure"] == "wall_push":
                 forces.append(engine.wall_force())
             if step % task["record_every"] == 0:
@@ -63,21 +63,21 @@ def run(files: Path, job: tuple[str, str, int], task: dict) -> dict:
 
 
 def jobs_of(tasks: list[dict]) -> list[tuple[str, str, int]]:
-    """Default settings work off everything, others those of the middle step."""
+    """Return the jobs: all tasks for default settings, short ones at `STEP_S` for others."""
     jobs = []
     for name, module in ENGINES.items():
-        for place, setting in enumerate(module.SETTINGS):
+        for index, setting in enumerate(module.SETTINGS):
             for number, task in enumerate(tasks):
-                if task["measure"] == "order" and name in LEAVES_ORDER_OUT:
+                if task["measure"] == "order" and name in SKIPS_ORDER:
                     continue
                 is_short = task["measure"] != "order" and task["dt_s"] == STEP_S
-                if place == 0 or is_short:
+                if index == 0 or is_short:
                     jobs.append((name, setting, number))
     return jobs
 
 
 def main() -> None:
-    """Timed tasks one after another, then the others on all cores."""
+    """Run the timed tasks one after another, then the others on all cores."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", type=Path)
     parser.add_argument("yardstick", type=Path)
@@ -95,10 +95,10 @@ def main() -> None:
             results.append(result)
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         # The longest first, so that no core waits at the end.
-        rest = [job for job in reversed(jobs) if not tasks[job[2]]["block_steps"]]
-        rest.sort(key=lambda job: tasks[job[2]]["measure"] != "order")
-        waiting = [pool.submit(run, arguments.files, job, tasks[job[2]]) for job in rest]
-        results.extend(future.result() for future in waiting)
+        untimed = [job for job in reversed(jobs) if not tasks[job[2]]["block_steps"]]
+        untimed.sort(key=lambda job: tasks[job[2]]["measure"] != "order")
+        futures = [pool.submit(run, arguments.files, job, tasks[job[2]]) for job in untimed]
+        results.extend(future.result() for future in futures)
     (arguments.files / "results.json").write_text(json.dumps(results))
     versions = {name: version(name) for name in ("pymunk", "mujoco", "drake", "numpy")}
     (arguments.files / "versions.json").write_text(json.dumps(versions))

@@ -1,9 +1,9 @@
 """Draw the figures and write the short tables of one run: ``python benches/report FOLDER [FILES]``.
 
-FOLDER has the tables of the run. The short ones, which docs/speed_vs_error.md shows, are written
-beside them. FILES is the folder with the peers' versions; after a measurement it is given. Then
-``made.toml`` stores the date, the machine and the versions, and ``processors`` gets a table of
-times that is named after the processor.
+FOLDER has the tables of the run. The short tables, which docs/speed_vs_error.md shows, are written
+beside them. FILES is the folder with the versions of other engines, and is given only after a
+measurement. Then ``made.toml`` stores the date, the machine and the versions, and the folder
+``processors`` gets a table of times named after the processor.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main() -> None:
 
 
 def write_processor(m: Measurements, folder: Path) -> None:
-    """Write the times of this processor; those of others stay beside them."""
+    """Write the times of this processor, beside those of other processors."""
     columns = ["scene", "n", "engine", "setting", "dt_s", "us_per_step", "us_q1", "us_q3", "faster"]
     rows = m.speed[m.speed.n.isin([27, 1000])].dropna(subset=["us_per_step"])
     path = folder / "processors" / f"{processor()}.csv"
@@ -71,43 +71,43 @@ def write_processor(m: Measurements, folder: Path) -> None:
 
 
 def two_digits(value: float) -> str:
-    """Round to two digits that mean something, without an exponent for everyday sizes."""
+    """Format with two significant digits, without an exponent for everyday sizes."""
     return f"{float(f'{value:.2g}'):g}"
 
 
 def engines(m: Measurements) -> pd.DataFrame:
-    """Return every engine and setting with 27 boats at the reference step, flockenv first."""
+    """Return a row for each engine and setting, with 27 boats at `STEP_S`, flockenv first."""
     rows = m.settings()
     rows = rows[rows.dt_s == STEP_S].copy()
-    rows["theirs"] = rows.engine.ne("flockenv")
-    return _short(rows.sort_values(["theirs", "engine"], kind="stable"), {}, ENGINES)
+    rows["is_other"] = rows.engine.ne("flockenv")
+    return _short(rows.sort_values(["is_other", "engine"], kind="stable"), {}, ENGINES)
 
 
 def steps(m: Measurements) -> pd.DataFrame:
     """Return leapfrog's speed and errors against the step."""
     rows = m.settings()
     rows = rows[(rows.scheme == "leapfrog") & (rows.solver == "block-pivoting")]
-    columns = {"dt_s": "dt, s"}
-    more = {
+    first_columns = {"dt_s": "dt, s"}
+    further_columns = {
         "jam_overlap_max_cm": "deepest in the jam, cm",
         "cycle_overlap_max_cm": "deepest in the cycle, cm",
         "cycle_deep_share": "cycles beyond 0.01 cm",
         "jam_times_real_time": "jam, × real time",
         "cycle_times_real_time": "cycle, × real time",
     }
-    return _short(rows, columns, {**ENGINES, **more})
+    return _short(rows, first_columns, {**ENGINES, **further_columns})
 
 
 def _short(rows: pd.DataFrame, first: dict[str, str], columns: dict[str, str]) -> pd.DataFrame:
     names = rows.engine.where(rows.engine.ne("flockenv"), "") + " " + rows.setting
     short = rows.rename(columns=first | columns)[[*first.values(), *columns.values()]]
-    named = names.str.strip().str.replace("block-pivoting", "exact")
-    short.insert(0, "engine, setting", named)
+    settings = names.str.strip().str.replace("block-pivoting", "exact")
+    short.insert(0, "engine, setting", settings)
     return short
 
 
 def sizes(m: Measurements) -> pd.DataFrame:
-    """Return µs per step of jams against the number of boats."""
+    """Return the time of a step of jams in µs by the number of boats."""
     jam = m.speed[(m.speed.scene == "jam") & (m.speed.dt_s == STEP_S)]
     table = {
         name: jam[(jam.engine == engine) & (jam.setting == setting)].set_index("n").us_per_step
@@ -117,21 +117,21 @@ def sizes(m: Measurements) -> pd.DataFrame:
 
 
 def exponents(m: Measurements) -> pd.DataFrame:
-    """Return the power of the step that errors grow with, over the smallest steps."""
+    """Return the exponents of errors as powers of the step, fitted over the smallest steps."""
     settings = m.settings()
-    found = []
+    table = []
     for scheme in ("leapfrog", "moreau", "paper"):
         slide = _by_step(m.slide, scheme).head(4)
-        whole = _by_step(settings, scheme).head(3)
-        found.append(
+        flock = _by_step(settings, scheme).head(3)
+        table.append(
             {
                 "scheme": scheme,
                 "sliding for 2 s": _exponent(slide, "slide_median_cm"),
-                "0.5 s of the jam": _exponent(whole, "jam_half_second_cm"),
-                "0.5 s of the cycle": _exponent(whole, "cycle_half_second_cm"),
+                "0.5 s of the jam": _exponent(flock, "jam_half_second_cm"),
+                "0.5 s of the cycle": _exponent(flock, "cycle_half_second_cm"),
             }
         )
-    return pd.DataFrame(found)
+    return pd.DataFrame(table)
 
 
 def _by_step(rows: pd.DataFrame, scheme: str) -> pd.DataFrame:

@@ -23,9 +23,9 @@ def provenance(benches: Path, files: Path) -> dict[str, str]:
     }
 
 
-def write_provenance(folder: Path, found: dict[str, str]) -> None:
-    """Store them beside the tables."""
-    lines = [f"{name} = {json.dumps(text, ensure_ascii=False)}\n" for name, text in found.items()]
+def write_provenance(folder: Path, made: dict[str, str]) -> None:
+    """Store the provenance of tables beside them."""
+    lines = [f"{name} = {json.dumps(text, ensure_ascii=False)}\n" for name, text in made.items()]
     (folder / FILE).write_text("".join(lines), encoding="utf-8")
 
 
@@ -48,13 +48,13 @@ def _machine() -> str:
 
 
 def _versions(benches: Path, files: Path) -> str:
-    # Of compiler and engines, as locked or installed.
+    # Versions of the compiler and of the engines, as locked or installed.
     command = ["rustc", "--version"]
     rustc = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     lock = tomllib.loads((benches / "Cargo.lock").read_text())
     locked = {package["name"]: package["version"] for package in lock["package"]}
     crates = ["flockenv", "rapier2d-f64", "rapier2d", "boxdd-sys", "clarabel"]
-    found = [" ".join(rustc.split()[:2])] + [f"{name} {locked[name]}" for name in crates]
+    versions = [" ".join(rustc.split()[:2])] + [f"{name} {locked[name]}" for name in crates]
     peers = json.loads((files / "versions.json").read_text())
-    found += [f"{name} {number}" for name, number in peers.items()]
-    return ", ".join(found).replace("boxdd-sys", "Box2D 3.2 (crate boxdd-sys)")
+    versions += [f"{name} {number}" for name, number in peers.items()]
+    return ", ".join(versions).replace("boxdd-sys", "Box2D 3.2 (crate boxdd-sys)")

@@ -8,9 +8,9 @@ from pathlib import Path
 import pandas as pd
 
 KEY = ["engine", "setting", "scheme", "solver", "tolerance_cm", "dt_s"]
-# The step and setting that ratios refer to.
+# The step in s at which engines are compared.
 STEP_S = 0.01
-# Beyond this an overlap is deep: hulls are then moved apart.
+# Deeper overlaps count as deep.
 DEEP_CM = 0.01
 RAPIER = ("rapier2d-f64", "4 iterations / unit 10 cm")
 TIGHT_RAPIER = ("rapier2d-f64", "4 iterations / unit 1 cm")
@@ -40,7 +40,7 @@ class Measurements:
         """Read every table, and append the tables of other programs."""
         tables = {}
         for name in cls.__dataclass_fields__:
-            # A long one is compressed once the report has been made.
+            # A long table is compressed after the report is made.
             packed = folder / f"{name}.csv.gz"
             frames = [pd.read_csv(packed if packed.exists() else folder / f"{name}.csv")]
             peers = folder / f"{name}_peers.csv"
@@ -51,26 +51,27 @@ class Measurements:
         return cls(**tables)
 
     def overlaps(self) -> pd.DataFrame:
-        """Return each setting's overlaps over its seeds, and the share of runs with deep ones."""
+        """Return each setting's overlaps over its seeds, and its fraction of deep runs."""
         key = [*KEY, "scene", "n"]
         runs = self.overlap.assign(deep_share=self.overlap.overlap_max_cm > DEEP_CM)
         columns = {"overlap_mean_cm": "mean", "overlap_max_cm": "max", "deep_share": "mean"}
         return runs.groupby(key, dropna=False, as_index=False).agg(columns)
 
     def settings(self) -> pd.DataFrame:
-        """Return one row per engine, setting and step: the scene of 27 boats and the exact laws."""
+        """Return a row for each engine, setting and step: results of 27 boats and of exact laws."""
         joined = None
         for scene in ("jam", "cycle"):
             for table, columns in [
                 (self.speed, ["us_per_step", "us_q1", "us_q3", "faster", "times_real_time"]),
                 (self.overlaps(), ["overlap_mean_cm", "overlap_max_cm", "deep_share"]),
             ]:
-                own = table[(table.scene == scene) & (table.n == 27)]
-                joined = _join(joined, own, columns, f"{scene}_")
+                rows = table[(table.scene == scene) & (table.n == 27)]
+                joined = _join(joined, rows, columns, f"{scene}_")
             for horizon_s, name in [(0.5, "half_second_cm"), (1.0, "second_cm")]:
-                at = (self.horizon.scene == scene) & (self.horizon.horizon_s == horizon_s)
-                own = self.horizon[at].rename(columns={"horizon_median_cm": name})
-                joined = _join(joined, own, [name], f"{scene}_")
+                of_scene = self.horizon[self.horizon.scene == scene]
+                rows = of_scene[of_scene.horizon_s == horizon_s]
+                rows = rows.rename(columns={"horizon_median_cm": name})
+                joined = _join(joined, rows, [name], f"{scene}_")
         joined = _join(joined, self.slide, ["slide_median_cm", "slide_worst_cm"], "")
         joined = _join(joined, self.wall_push, ["force_error"], "")
         columns = ["momentum_drift", "angular_momentum_drift"]
@@ -81,13 +82,13 @@ def _join(
     joined: pd.DataFrame | None, table: pd.DataFrame, columns: list[str], prefix: str
 ) -> pd.DataFrame:
     key = KEY if joined is None else ["engine", "setting", "dt_s"]
-    own = table[key + columns].rename(columns={name: prefix + name for name in columns})
-    return own if joined is None else joined.merge(own, on=key, how="left")
+    prefixed = table[key + columns].rename(columns={name: prefix + name for name in columns})
+    return prefixed if joined is None else joined.merge(prefixed, on=key, how="left")
 
 
-def pick(table: pd.DataFrame, who: tuple[str, str], **fields: object) -> pd.Series:
+def pick(table: pd.DataFrame, engine: tuple[str, str], **fields: object) -> pd.Series:
     """Return the one row of an engine and setting, by default at the reference step."""
-    wanted = {"engine": who[0], "setting": who[1], "dt_s": STEP_S, **fields}
+    wanted = {"engine": engine[0], "setting": engine[1], "dt_s": STEP_S, **fields}
     rows = table
     for name, value in wanted.items():
         rows = rows[rows[name] == value]
@@ -106,5 +107,5 @@ def in_words(engine: str, setting: str) -> str:
 
 
 def ours(scheme: str, gaps: str) -> tuple[str, str]:
-    """Our engine with the exact solver."""
+    """Return flockenv and the name of its setting with the exact solver."""
     return "flockenv", f"{scheme} / block-pivoting / {gaps}"

@@ -34,7 +34,7 @@ SERIES = {
 
 
 def draw_all(m: Measurements, folder: Path) -> None:
-    """Writes every figure into a folder."""
+    """Write every figure into a folder."""
     with mpl.rc_context(page_style()):
         for name, draw in [
             ("pareto", _pareto),
@@ -87,13 +87,13 @@ def _pareto(m: Measurements) -> plt.Figure:
 
 
 def _tolerance(m: Measurements) -> plt.Figure:
-    """Time and errors of the default scheme against the tolerance, a line for each step."""
+    """Draw time and errors of the default scheme against the tolerance, a line for each step."""
     settings = m.settings()
     ours = settings[(settings.scheme == "leapfrog") & (settings.solver == "block-pivoting")]
-    # A table has no number for an infinite tolerance.
+    # In the table the cell of an infinite tolerance is empty.
     ours = ours.assign(tolerance_cm=ours.tolerance_cm.fillna(math.inf))
     finite = sorted(cm for cm in ours.tolerance_cm.unique() if math.isfinite(cm))
-    # Gaps that are linearized once have no tolerance: they stand right of the largest.
+    # Gaps that are linearized once have an infinite tolerance, drawn right of the largest one.
     once_cm = 100 * finite[-1]
     figure, axes = plt.subplots(1, 3, figsize=(8.6, 4.2), layout="constrained")
     panels = [
@@ -105,8 +105,10 @@ def _tolerance(m: Measurements) -> plt.Figure:
     for axis, (column, label) in zip(axes, panels, strict=True):
         for color, (dt_s, rows) in zip(colors, ours.groupby("dt_s"), strict=True):
             rows = rows.sort_values("tolerance_cm")
-            at = rows.tolerance_cm.replace(math.inf, once_cm)
-            axis.plot(at, rows[column], label=f"{dt_s:g} s", **_line(OKABE_ITO[color], "o", True))
+            tolerances = rows.tolerance_cm.replace(math.inf, once_cm)
+            axis.plot(
+                tolerances, rows[column], label=f"{dt_s:g} s", **_line(OKABE_ITO[color], "o", True)
+            )
         axis.set(xscale="log", yscale="log", ylabel=label, xlabel="tolerance_cm")
         names = [f"{cm:.0e}".replace("e-0", "e-") for cm in finite]
         axis.set_xticks([*finite, once_cm], [*names, "once"])
@@ -166,16 +168,16 @@ def _growth(m: Measurements) -> plt.Figure:
             axes[0].plot(rows.n, rows.us_per_step, label=name, **_line(*style))
     axes[0].set(ylabel="µs per step, jam, dt = 0.01 s")
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.45, -0.16))
-    of_factor = 8 * m.growth.factor_entries_per_boat
+    factor_bytes = 8 * m.growth.factor_entries_per_boat
     for values, label, color, marker in [
         (m.growth.bytes_per_boat, "held, with room to grow", OKABE_ITO["black"], "s"),
         (
-            m.growth.bytes_in_use_per_boat - of_factor,
+            m.growth.bytes_in_use_per_boat - factor_bytes,
             "in use, besides the factor",
             OKABE_ITO["blue"],
             "o",
         ),
-        (of_factor, "in use, of the factor", OKABE_ITO["vermilion"], "D"),
+        (factor_bytes, "in use, of the factor", OKABE_ITO["vermilion"], "D"),
     ]:
         axes[1].plot(m.growth.n, values, label=label, **_line(color, marker, True))
     axes[1].set(ylabel="bytes per boat, jam, dt = 0.02 s")

@@ -6,21 +6,21 @@ use crate::{Engine, Start};
 use flockenv::FlockParameters;
 use flockenv::parameters::{Scheme, Solver};
 
-/// Which engine, and how it is set.
+/// An engine with its settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// flockenv.
     Ours {
-        /// How a step is taken.
+        /// Time integrator.
         scheme: Scheme,
-        /// How contacts are solved.
+        /// Solver of contacts.
         solver: Solver,
         /// Deepest overlap in cm that a step may leave.
         tolerance_cm: f64,
     },
     /// flockenv with the default scheme and a step that follows its error.
     Controlled {
-        /// Difference in cm of a step and its two halves that is accepted.
+        /// Accepted difference in cm between a step and its two halves.
         accepted_cm: f64,
     },
     /// rapier2d-f64.
@@ -45,9 +45,9 @@ pub struct Configuration {
     pub dt_s: f64,
 }
 
-/// Steps in s that engines are compared at.
+/// Steps in s at which engines are compared.
 pub const STEPS_S: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
-/// The tolerances in cm that engines are compared at, from gaps that are linearized once to the finest.
+/// Tolerances in cm at which engines are compared, from gaps that are linearized once to the finest.
 pub const TOLERANCES_CM: [f64; 4] = [f64::INFINITY, 1e-4, 1e-6, 1e-9];
 /// The tolerance in cm of steps that follow their error.
 pub const CONTROLLED_CM: f64 = 1e-6;
@@ -57,7 +57,7 @@ pub const LONGEST_S: f64 = 0.1;
 pub const STEP_S: f64 = 0.01;
 
 impl Configuration {
-    /// Names of what [`Self::cells`] gives.
+    /// Columns of the cells of [`Self::cells`].
     pub const COLUMNS: [&str; 6] = [
         "engine",
         "setting",
@@ -90,7 +90,7 @@ impl Configuration {
         }
     }
 
-    /// rapier2d-f64 at its default accuracy: what all ratios refer to.
+    /// rapier2d-f64 at its default accuracy, to which all ratios refer.
     pub fn rapier(dt_s: f64) -> Self {
         Self {
             kind: Kind::RapierF64(rapier_f64::Settings::default()),
@@ -98,7 +98,7 @@ impl Configuration {
         }
     }
 
-    /// Box2D with the substeps that it advises.
+    /// Box2D with the number of substeps that its documentation advises.
     pub fn box2d(dt_s: f64) -> Self {
         Self {
             kind: Kind::Box2d {
@@ -133,7 +133,7 @@ impl Configuration {
         all
     }
 
-    /// All of them: exact, inexact, peers.
+    /// All configurations: exact, inexact, peers.
     pub fn all() -> Vec<Self> {
         [Self::all_exact(), Self::all_inexact(), Self::all_peers()].concat()
     }
@@ -141,8 +141,9 @@ impl Configuration {
     /// The other solvers, at the step of the main comparison.
     pub fn all_inexact() -> Vec<Self> {
         let solvers = [Solver::GaussSeidel, Solver::Clarabel];
-        let each = |scheme| solvers.map(|solver| Self::ours(scheme, solver, f64::INFINITY, STEP_S));
-        Scheme::ALL.iter().copied().flat_map(each).collect()
+        let with_solvers =
+            |scheme| solvers.map(|solver| Self::ours(scheme, solver, f64::INFINITY, STEP_S));
+        Scheme::ALL.iter().copied().flat_map(with_solvers).collect()
     }
 
     /// The peers in this binary: steps at default settings, then settings at the step of the main comparison.
@@ -197,7 +198,7 @@ impl Configuration {
             dt_s: self.dt_s,
             ..scene.clone()
         };
-        if let Some((scheme, solver, tolerance_cm)) = self.own() {
+        if let Some((scheme, solver, tolerance_cm)) = self.flockenv_settings() {
             parameters.scheme = scheme;
             parameters.solver = solver;
             parameters.tolerance_cm = tolerance_cm;
@@ -205,8 +206,8 @@ impl Configuration {
         parameters
     }
 
-    /// Scheme, solver and tolerance in cm of flockenv.
-    fn own(&self) -> Option<(Scheme, Solver, f64)> {
+    /// Scheme, solver and tolerance in cm of flockenv; `None` for other engines.
+    fn flockenv_settings(&self) -> Option<(Scheme, Solver, f64)> {
         match self.kind {
             Kind::Ours {
                 scheme,
@@ -240,14 +241,14 @@ impl Configuration {
         }
     }
 
-    /// Steps in a time.
+    /// The number of steps in a time in s.
     pub fn steps(&self, seconds: f64) -> usize {
         (seconds / self.dt_s).round() as usize
     }
 
-    /// Its cells of a table.
+    /// The cells of [`Self::COLUMNS`].
     pub fn cells(&self) -> Vec<String> {
-        let (scheme, solver, tolerance_cm) = match self.own() {
+        let (scheme, solver, tolerance_cm) = match self.flockenv_settings() {
             Some((scheme, solver, cm)) => (scheme.name(), solver.name(), number(cm)),
             None => ("", "", String::new()),
         };

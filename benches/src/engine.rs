@@ -1,4 +1,4 @@
-//! What every engine has in common.
+//! The interface of all engines.
 
 use flockenv::contact::Statistics;
 use flockenv::geometry::{Pose, Velocity};
@@ -6,23 +6,23 @@ use std::time::Duration;
 
 /// A scene in motion.
 pub trait Engine {
-    /// Takes so many steps: noise, forces of eqs (8) and (9), contacts, motion.
+    /// Takes a number of steps: noise, forces of eqs (8) and (9), contacts, motion.
     fn advance(&mut self, steps: usize);
     /// Poses of all boats.
     fn poses(&self) -> Vec<Pose>;
     /// Velocities of all boats.
     fn velocities(&self) -> Vec<Velocity>;
-    /// What the outer wall carried in the last step, in cm/s².
+    /// Force on the outer wall in the last step, in cm/s².
     fn wall_force(&self) -> f64;
-    /// Time spent so far in the engine's own step call, where noise and forces are applied outside it.
+    /// Time spent so far in the engine's own step call; `None` if noise and forces are part of it.
     fn step_call(&self) -> Option<Duration> {
         None
     }
-    /// Whether the motion left the range of sensible numbers; nothing moves any more then.
+    /// Whether the engine failed; it does not move any more then.
     fn is_lost(&self) -> bool {
         false
     }
-    /// What flockenv did so far.
+    /// Statistics of flockenv so far; `None` for other engines.
     fn statistics(&self) -> Option<Statistics> {
         None
     }

@@ -1,8 +1,7 @@
-//! Measures flockenv and the engines that a user would pick instead on the same scenes: how long a
-//! step takes, and how far off it is.
+//! Measures flockenv and alternative engines on the same scenes: the time of a step, and its error.
 //!
 //! Scene and start → [`Configuration`] → [`Engine`] → measurements → CSV. Engines in other languages
-//! take part through files: [`exchange`] writes their tasks and judges the poses they bring back.
+//! take part through files: [`exchange`] writes their tasks and measures the poses that they return.
 
 pub mod configuration;
 pub mod engine;

@@ -4,14 +4,14 @@ use flockenv::geometry::{Pose, Velocity};
 use flockenv::parameters::{Pool, Preset};
 use flockenv::{Flock, FlockParameters};
 
-/// Where a run starts.
+/// The start of a run.
 #[derive(Debug, Clone)]
 pub struct Start {
     /// Poses of all boats.
     pub poses: Vec<Pose>,
     /// Their velocities.
     pub velocities: Vec<Velocity>,
-    /// Time in s: where in the cycle of phases the run starts.
+    /// Time in s, which sets where in the cycle of phases the run starts.
     pub time_s: f64,
 }
 
@@ -21,11 +21,11 @@ impl Start {
     /// # Panics
     /// If the boats do not fit.
     pub fn placed(parameters: &FlockParameters, seed: u64) -> Self {
-        Self::of(&Flock::new(parameters.clone(), seed).expect("the boats fit"))
+        Self::from_flock(&Flock::new(parameters.clone(), seed).expect("the boats fit"))
     }
 
-    /// Where a flock is now.
-    pub fn of(flock: &Flock) -> Self {
+    /// The present state of a flock.
+    pub fn from_flock(flock: &Flock) -> Self {
         Self {
             poses: flock.poses().to_vec(),
             velocities: flock.velocities().to_vec(),
@@ -34,17 +34,17 @@ impl Start {
     }
 }
 
-/// What the boats do.
+/// A scene: what the motors do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scene {
-    /// Engines always forward: the flock presses against the outer wall.
+    /// Motors always forward: the flock presses against the outer wall.
     Jam,
     /// Phases of [2 1 2 1] s.
     Cycle,
 }
 
 impl Scene {
-    /// Both.
+    /// Both scenes.
     pub const ALL: [Self; 2] = [Self::Jam, Self::Cycle];
     /// Length of a cycle of phases in s, and of the blocks of a jam that are timed.
     pub const BLOCK_S: f64 = 6.0;
@@ -60,7 +60,7 @@ impl Scene {
     /// Leaderless boats in pool `narrow`, scaled by sqrt(n/50) beyond 50.
     pub fn parameters(self, boats: usize) -> FlockParameters {
         let scale = (boats as f64 / 50.0).sqrt().max(1.0);
-        let rest = match self {
+        let off_s = match self {
             Self::Jam => 0.0,
             Self::Cycle => 1.0,
         };
@@ -71,9 +71,9 @@ impl Scene {
                 inner_radius_cm: Pool::NARROW.inner_radius_cm * scale,
             },
             fw_s: 2.0,
-            nop1_s: rest,
-            bw_s: 2.0 * rest,
-            nop2_s: rest,
+            nop1_s: off_s,
+            bw_s: 2.0 * off_s,
+            nop2_s: off_s,
             ..FlockParameters::preset(Preset::Simulation)
         }
     }

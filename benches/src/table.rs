@@ -12,7 +12,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// With these column names.
+    /// An empty table with these column names.
     pub fn new(columns: &[&str]) -> Self {
         let mut table = Self {
             columns: columns.len(),
@@ -43,7 +43,7 @@ impl Table {
     }
 }
 
-/// A number for a cell: six significant digits, empty if there is none.
+/// The text of a number for a cell: the shorter of all digits and six significant ones; empty if it is missing or not finite.
 pub fn number(value: impl Into<Option<f64>>) -> String {
     value
         .into()
@@ -68,13 +68,13 @@ pub fn text(value: impl Display) -> String {
 pub fn quartiles(values: &[f64]) -> [f64; 3] {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    [0.25, 0.5, 0.75].map(|share| {
+    [0.25, 0.5, 0.75].map(|fraction| {
         let Some(last) = sorted.len().checked_sub(1) else {
             return f64::NAN;
         };
-        let place = share * last as f64;
-        let (low, high) = (place.floor() as usize, place.ceil() as usize);
-        sorted[low] + (sorted[high] - sorted[low]) * place.fract()
+        let index = fraction * last as f64;
+        let (low, high) = (index.floor() as usize, index.ceil() as usize);
+        sorted[low] + (sorted[high] - sorted[low]) * index.fract()
     })
 }
 

@@ -14,7 +14,7 @@ use flockenv::parameters::{FlockParameters, Physics, Pool, Preset};
 use std::hint::black_box;
 use std::ops::Range;
 
-/// 27 boats, 4 leaders.
+/// Parameters of 27 boats, 4 of them leaders.
 pub fn environment(pool: Pool, bw_s: f64) -> FlockParameters {
     FlockParameters {
         n_boats: 27,
@@ -25,7 +25,7 @@ pub fn environment(pool: Pool, bw_s: f64) -> FlockParameters {
     }
 }
 
-/// The same, stepped as for training.
+/// The same with the physics of trainings.
 pub fn training(pool: Pool, bw_s: f64) -> FlockParameters {
     let mut parameters = environment(pool, bw_s);
     if let Some((dt_s, tolerance_cm)) = Physics::Training.stepping() {
@@ -50,7 +50,7 @@ pub fn leaning() -> EnvSettings {
     }
 }
 
-/// A batch with an episode per seed, after 20 s, so that the flocks are where they usually are.
+/// A batch with an episode for each seed, 20 s after its start.
 pub fn warm_batch(
     settings: EnvSettings,
     parameters: &FlockParameters,
@@ -72,7 +72,7 @@ pub fn warm_batch(
     Ok(batch)
 }
 
-/// Decisions with the actions held.
+/// Steps a batch by a number of decisions with constant actions.
 pub fn control(batch: &mut EnvBatch, decisions: u64) -> Result<()> {
     let actions = vec![0.5; batch.rows()];
     let mut observations = vec![0.0; batch.rows() * batch.observation_size()];

@@ -52,7 +52,7 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
     let before = ALLOCATOR.current_usage();
     let mut flock = Flock::new(parameters, 1).expect("the boats fit");
     flock.advance(20.0, None).expect("the motion stays finite");
-    let warm = *flock.statistics();
+    let before_timing = *flock.statistics();
     let timed_s = effort.choose(2.0, if boats < 1000 { 20.0 } else { 10.0 });
     let start = Instant::now();
     flock
@@ -60,19 +60,22 @@ fn row(boats: usize, effort: Effort) -> Vec<String> {
         .expect("the motion stays finite");
     let time = start.elapsed().as_secs_f64();
     let bytes = (ALLOCATOR.current_usage() - before) as f64;
-    // A copy holds what is in use, and no room to grow.
+    // A copy allocates only the memory in use, without spare capacity.
     let copy = std::hint::black_box(flock.clone());
     let bytes_in_use = (ALLOCATOR.current_usage() - before) as f64 - bytes;
     drop(copy);
-    let done = *flock.statistics();
-    let (steps, n) = ((done.substeps - warm.substeps) as f64, boats as f64);
-    let entries = done.most_factor_entries as f64;
+    let after = *flock.statistics();
+    let (steps, n) = (
+        (after.substeps - before_timing.substeps) as f64,
+        boats as f64,
+    );
+    let entries = after.most_factor_entries as f64;
     vec![
         text(boats),
         number(DT_S),
         number(time * 1e6 / steps),
         number(timed_s / time),
-        number((done.contacts - warm.contacts) as f64 / steps),
+        number((after.contacts - before_timing.contacts) as f64 / steps),
         number(bytes),
         number(bytes / n),
         number(bytes_in_use / n),

@@ -1,5 +1,5 @@
 //! Speed against error: `speed_vs_error [--trial] FOLDER PART...` writes one CSV a part into FOLDER.
-//! `yardstick SCENE` prints µs per step of rapier2d-f64 instead: all of a step, and its step call.
+//! `yardstick SCENE` instead prints two times of rapier2d-f64 in µs: of a whole step, and of its step call.
 
 use flockenv_benches::measure::{
     Effort, horizon, momentum, order, overlap, parts, profile, slide, solvers, speed, wall_push,

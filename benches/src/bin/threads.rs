@@ -1,5 +1,5 @@
-//! How long a step takes where engines may use two threads: `threads FOLDER [--trial]` writes threads.csv. A program of its
-//! own, since rapier's threads are a feature that it is compiled with.
+//! The time of a step with two threads: `threads FOLDER [--trial]` writes threads.csv. It is a separate program, since
+//! rapier's threads are a feature with which it is compiled.
 
 use flockenv_benches::measure::{Effort, threads};
 use std::path::Path;
@@ -13,7 +13,7 @@ fn main() {
     } else {
         Effort::Full
     };
-    // Rapier takes the threads of the global pool, Box2D starts its own.
+    // Rapier uses the threads of the global pool, and Box2D starts its own.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads::THREADS);
     pool.build_global().expect("the first pool");
     threads::measure(effort).write(Path::new(folder), "threads.csv");

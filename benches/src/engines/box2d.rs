@@ -10,9 +10,9 @@ use flockenv::geometry::{Hull, Pose, Vec2, Velocity};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// What Box2D's tolerances take for a meter, in cm, as for rapier; one for the whole process.
+/// The length in cm that Box2D's tolerances treat as a meter, as for rapier; it holds for the whole process.
 const LENGTH_UNIT_CM: f32 = 10.0;
-/// Contacts of one boat that are examined.
+/// Largest number of contacts of one boat that are read.
 const MOST_CONTACTS: usize = 64;
 
 /// Box2D keeps its worlds in one list, without a lock of its own.
@@ -31,7 +31,7 @@ pub struct Box2d {
 }
 
 impl Box2d {
-    /// A scene that starts at the start given; Box2D advises 4 substeps. More than one worker are threads of its own.
+    /// A scene at a start. Box2D's documentation advises 4 substeps. With more than one worker, Box2D starts its own threads.
     pub fn new(
         parameters: &FlockParameters,
         seed: u64,
@@ -161,7 +161,7 @@ fn velocity_of(id: b2BodyId) -> Velocity {
     Velocity::new(f64::from(linear.x), f64::from(linear.y), f64::from(angular))
 }
 
-/// What the contacts of a boat with the wall carried in the last step, substeps summed.
+/// Impulse between a boat and the wall in the last step, summed over substeps.
 fn impulse_between(boat: b2BodyId, wall: b2BodyId) -> f32 {
     let mut contacts = Vec::with_capacity(MOST_CONTACTS);
     // SAFETY: Box2D writes at most the capacity and returns how many it wrote.
@@ -169,14 +169,14 @@ fn impulse_between(boat: b2BodyId, wall: b2BodyId) -> f32 {
         let count = b2Body_GetContactData(boat, contacts.as_mut_ptr(), MOST_CONTACTS as i32);
         contacts.set_len(count as usize);
     }
-    let of_wall = |shape: b2ShapeId| {
+    let is_wall = |shape: b2ShapeId| {
         // SAFETY: the shape was just handed out.
         let body = unsafe { b2Shape_GetBody(shape) };
         body.index1 == wall.index1
     };
     let touching = contacts
         .iter()
-        .filter(|c: &&b2ContactData| of_wall(c.shapeIdA) || of_wall(c.shapeIdB));
+        .filter(|c: &&b2ContactData| is_wall(c.shapeIdA) || is_wall(c.shapeIdB));
     touching
         .flat_map(|c| &c.manifold.points[..c.manifold.pointCount as usize])
         .map(|point| point.totalNormalImpulse)
@@ -192,7 +192,7 @@ fn smooth() -> b2ShapeDef {
     definition
 }
 
-/// A closed chain, one-sided: boats do not catch on its corners.
+/// Adds a closed one-sided chain, on whose corners boats do not catch.
 fn add_wall(world: b2WorldId, radius: f64, water: Side) -> b2BodyId {
     let corners = circle(radius, water)
         .into_iter()

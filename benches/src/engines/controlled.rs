@@ -10,31 +10,31 @@ use std::time::{Duration, Instant};
 
 /// Number of shortest half steps in the longest step.
 const PARTS: u64 = 256;
-/// The next step is twice as long if the error is less than this share of what is accepted.
+/// The next step is twice as long if the error is less than this fraction of the accepted error.
 const GROWS_BELOW: f64 = 0.1;
 
-/// A flock whose step is compared with its two halves. If they differ by more than is accepted, the
-/// halves are tried apart, and so on; halves that are accepted stand.
+/// A flock whose step is compared with its two halves. If they differ by more than is accepted, the first half is tried
+/// as a step, and so on. Accepted halves are kept.
 pub struct Controlled {
-    now: Ours,
+    ours: Ours,
     accepted_cm: f64,
     clock: Clock,
     /// Length of the next step, in parts.
     length: u64,
-    /// Parts that were taken.
+    /// Number of parts of the steps so far.
     done: u64,
     is_lost: bool,
 }
 
-/// Moves copies of a flock, and counts the time that they take. Copies, and checks of parameters with
-/// another step, do not count: a controlled step that is built in needs neither.
+/// Advances copies of a flock, and measures the time of advancing. Copying and checking parameters do not count, since a
+/// built-in controlled step would need neither.
 struct Clock {
     part: Ticks,
     moving: Duration,
 }
 
 impl Clock {
-    /// A copy of a flock after one step of so many parts.
+    /// A copy of a flock after one step of this many parts.
     fn moved(&mut self, flock: &Flock, parts: u64) -> Result<Flock> {
         let mut copy = flock.clone();
         copy.set_step(seconds(parts * self.part))?;
@@ -47,13 +47,13 @@ impl Clock {
 }
 
 impl Controlled {
-    /// A flock that starts at the start given; the parameters' step is its longest.
+    /// A flock at a start; the parameters' step is its longest.
     ///
     /// # Panics
     /// If parameters or start are refused.
     pub fn new(parameters: &FlockParameters, seed: u64, start: &Start, accepted_cm: f64) -> Self {
         Self {
-            now: Ours::new(parameters, seed, start),
+            ours: Ours::new(parameters, seed, start),
             accepted_cm,
             clock: Clock {
                 part: ticks(parameters.dt_s) / PARTS,
@@ -65,17 +65,17 @@ impl Controlled {
         }
     }
 
-    /// Takes the longest step that is accepted.
+    /// Takes the longest accepted step of at most `length` parts.
     fn step(&mut self) -> Result<()> {
-        let gyration_cm = self.now.flock.parameters().gyration_radius_cm;
-        let mut whole = self.clock.moved(&self.now.flock, self.length)?;
+        let gyration_cm = self.ours.flock.parameters().gyration_radius_cm;
+        let mut whole = self.clock.moved(&self.ours.flock, self.length)?;
         loop {
             let half = self.length / 2;
-            let middle = self.clock.moved(&self.now.flock, half)?;
+            let middle = self.clock.moved(&self.ours.flock, half)?;
             let halves = self.clock.moved(&middle, half)?;
             let error_cm = rms_distance(halves.poses(), whole.poses(), gyration_cm);
             if error_cm <= self.accepted_cm || half == 1 {
-                self.now.flock = halves;
+                self.ours.flock = halves;
                 self.done += self.length;
                 self.grow(error_cm);
                 return Ok(());
@@ -84,7 +84,7 @@ impl Controlled {
         }
     }
 
-    /// Makes the next step twice as long if the error allows it, and only where longer steps start.
+    /// Doubles the next step if the error allows it and the time is a multiple of the doubled step.
     fn grow(&mut self, error_cm: f64) {
         let is_small = error_cm < GROWS_BELOW * self.accepted_cm;
         if is_small && self.length < PARTS && self.done.is_multiple_of(2 * self.length) {
@@ -102,15 +102,15 @@ impl Engine for Controlled {
     }
 
     fn poses(&self) -> Vec<Pose> {
-        self.now.poses()
+        self.ours.poses()
     }
 
     fn velocities(&self) -> Vec<Velocity> {
-        self.now.velocities()
+        self.ours.velocities()
     }
 
     fn wall_force(&self) -> f64 {
-        self.now.wall_force()
+        self.ours.wall_force()
     }
 
     fn step_call(&self) -> Option<Duration> {

@@ -1,4 +1,4 @@
-//! Eqs (8) and (9) applied by hand, for engines that only know forces.
+//! Eqs (8) and (9) as forces, for engines that only take forces.
 
 use flockenv::FlockParameters;
 use flockenv::boat::{Drive, FreeMotion};
@@ -7,7 +7,7 @@ use flockenv::geometry::{Vec2, Velocity};
 use flockenv::integrator::{Phase, PhaseSchedule};
 use flockenv::random::BrownianPaths;
 
-/// What drives one boat in one step.
+/// The forces on one boat in one step.
 #[derive(Debug, Clone, Copy)]
 pub struct Push {
     /// Force in cm/s² (mass 1).
@@ -32,7 +32,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Noise increments are those that flockenv's `moreau` scheme meets on this seed.
+    /// Noise increments are those of flockenv's `moreau` scheme with this seed.
     pub fn new(parameters: &FlockParameters, seed: u64, time_s: f64) -> Self {
         let (n, dt) = (parameters.n_boats, ticks(parameters.dt_s));
         Self {
@@ -61,7 +61,7 @@ impl Driver {
         self.time = end;
     }
 
-    /// What drives a boat in this step.
+    /// The forces on a boat in this step.
     pub fn push(&self, boat: usize, axis: Vec2, velocity: &Velocity) -> Push {
         let drive = Drive {
             preferred_speed: self.preferred_speed,

@@ -15,7 +15,7 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// A flock that starts at the start given.
+    /// A flock at a start.
     ///
     /// # Panics
     /// If parameters or start are refused.

@@ -15,12 +15,12 @@ use rapier::parry::mass_properties::MassProperties;
 use rapier::prelude::*;
 use std::time::{Duration, Instant};
 
-/// What a user may set.
+/// Settings of rapier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Solver iterations; rapier's default is 4.
     pub iterations: usize,
-    /// What rapier's tolerances take for a meter, in cm.
+    /// The length in cm that rapier's tolerances treat as a meter.
     pub length_unit_cm: f64,
     /// Whether the inner wall is rapier's own disc rather than chords.
     pub round_obstacle: bool,
@@ -30,7 +30,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             iterations: 4,
-            // Its tolerances are made for bodies of about a meter; a boat is 1.5 of these.
+            // Rapier's tolerances suit bodies of about a meter; a boat is 1.5 units long.
             length_unit_cm: 10.0,
             round_obstacle: false,
         }
@@ -48,7 +48,7 @@ pub struct Rapier {
 }
 
 impl Rapier {
-    /// A scene that starts at the start given.
+    /// A scene at a start.
     pub fn new(parameters: &FlockParameters, seed: u64, start: &Start, settings: Settings) -> Self {
         let mut world = PhysicsWorld {
             gravity: Vector::new(0.0, 0.0),
@@ -102,9 +102,9 @@ impl Engine for Rapier {
     fn poses(&self) -> Vec<Pose> {
         let pose = |&handle: &RigidBodyHandle| {
             let body = &self.world.bodies[handle];
-            let place = body.translation();
+            let position = body.translation();
             let angle = f64::from(body.rotation().angle());
-            Pose::new(f64::from(place.x), f64::from(place.y), angle)
+            Pose::new(f64::from(position.x), f64::from(position.y), angle)
         };
         self.boats.iter().map(pose).collect()
     }

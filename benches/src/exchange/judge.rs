@@ -12,12 +12,12 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// What an engine made of a task.
+/// The result of a task in an engine.
 #[derive(Debug, Clone, Deserialize)]
 struct Outcome {
     engine: String,
     setting: String,
-    /// Which task, counted from 0.
+    /// Index of the task.
     task: usize,
     /// File of little-endian doubles [start][record][boat][x y heading vx vy ω].
     file: String,
@@ -52,10 +52,13 @@ impl Judged {
             .map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight bytes")))
             .collect();
         let boats = task.starts[0].poses.len();
-        let records: Vec<Record> = numbers.chunks(6 * boats).map(Record::of).collect();
+        let records: Vec<Record> = numbers
+            .chunks(6 * boats)
+            .map(Record::from_numbers)
+            .collect();
         let mut records = records.into_iter();
-        let in_a_run = task.steps / task.record_every;
-        let of_start = |_: &TaskStart| records.by_ref().take(in_a_run).collect();
+        let records_per_run = task.steps / task.record_every;
+        let of_start = |_: &TaskStart| records.by_ref().take(records_per_run).collect();
         Self {
             cells: vec![
                 outcome.engine.clone(),
@@ -71,14 +74,14 @@ impl Judged {
         }
     }
 
-    /// Who it is by and what it is of: all but the seed.
+    /// Engine, setting, measurement and scene: everything but the seed.
     fn key(&self) -> String {
         format!("{:?} {} {}", self.cells, self.task.measure, self.task.scene)
     }
 }
 
 impl Record {
-    fn of(numbers: &[f64]) -> Self {
+    fn from_numbers(numbers: &[f64]) -> Self {
         let states = || numbers.chunks_exact(6);
         Self {
             poses: states().map(|s| Pose::new(s[0], s[1], s[2])).collect(),
@@ -146,10 +149,10 @@ impl Tables {
         push_row(table, &group[0].cells, cells);
     }
 
-    /// Adds what a group of runs that differ in their seeds amounts to.
+    /// Adds the rows of a group of runs that differ only in their seeds.
     fn add(&mut self, group: &[Judged]) {
         let first = &group[0];
-        let ends = |place: usize| move |run: &Vec<Record>| run[place].poses.clone();
+        let ends = |index: usize| move |run: &Vec<Record>| run[index].poses.clone();
         match first.task.measure.as_str() {
             "overlap" => self.add_timed_run(group),
             "slide" => {
@@ -168,11 +171,11 @@ impl Tables {
             "horizon" => {
                 let runs = first.records.iter();
                 let ends: horizon::Ends = runs
-                    .map(|run| [0, 1].map(|place| ends(place)(run)))
+                    .map(|run| [0, 1].map(|index| ends(index)(run)))
                     .collect();
                 let scene = first.task.scene();
-                let which = usize::from(scene != Scene::ALL[0]);
-                for row in horizon::rows(scene, &ends, &self.horizons[which]) {
+                let scene_index = usize::from(scene != Scene::ALL[0]);
+                for row in horizon::rows(scene, &ends, &self.horizons[scene_index]) {
                     self.push("horizon", group, row);
                 }
             }
@@ -189,7 +192,7 @@ impl Tables {
             let mut overlap = overlap::Overlap::new(&scene.parameters(boats));
             run.records[0]
                 .iter()
-                .for_each(|record| overlap.look(&record.poses));
+                .for_each(|record| overlap.add(&record.poses));
             let cells = overlap::row(scene, boats, run.task.seed, &overlap, None);
             self.push("overlap", group, cells);
             let yardstick = run
@@ -197,7 +200,7 @@ impl Tables {
                 .yardstick_us
                 .expect("runs that are timed come with a yardstick");
             for &time in &run.outcome.block_us {
-                // Only step calls compare: forces are Python's here.
+                // Step calls are compared with step calls, since Python computes the forces here.
                 own.whole.push(time);
                 reference.whole.push(yardstick);
             }
@@ -222,9 +225,9 @@ impl Tables {
 
 fn order_of(run: &Judged, run_s: f64) -> [f64; 2] {
     let mut frames = order::Frames::new(run_s);
-    for (place, record) in run.records[0].iter().enumerate() {
-        frames.look(
-            (place + 1) as f64 * order::FRAME_S,
+    for (index, record) in run.records[0].iter().enumerate() {
+        frames.add(
+            (index + 1) as f64 * order::FRAME_S,
             &record.poses,
             &record.velocities,
         );

@@ -1,5 +1,5 @@
-//! Engines in other languages take part through files: their tasks go out as `tasks.json`; what comes
-//! back are `results.json` and the poses and velocities they name.
+//! Engines in other languages take part through files: they read their tasks in `tasks.json`, and write `results.json` and
+//! the files of poses and velocities that it names.
 
 mod judge;
 mod task;

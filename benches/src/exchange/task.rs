@@ -9,16 +9,16 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// Seeds of the order parameters: fewer than in this binary, a step from Python takes longer.
+/// Number of seeds for order parameters: fewer than in this binary, since a step from Python takes longer.
 pub(super) const ORDER_SEEDS: u64 = 12;
 
-/// Something to be simulated.
+/// A simulation for an engine in another language.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Task {
-    /// Which measurement it is for: the name of its table.
+    /// Name of the measurement, which is that of its table.
     pub(super) measure: String,
     pub(super) scene: String,
-    /// Radii in cm; `None` for an outer wall that is not there, 0 for no obstacle.
+    /// Radii of the walls in cm; `None` without an outer wall, 0 without an inner one.
     pub(super) outer_cm: Option<f64>,
     pub(super) inner_cm: f64,
     /// Radius and half-length of the core in cm.
@@ -37,9 +37,9 @@ pub(super) struct Task {
     /// Steps before anything is recorded or timed.
     pub(super) warm_up_steps: usize,
     pub(super) steps: usize,
-    /// Poses and velocities are recorded after every so many steps.
+    /// Number of steps between two records of poses and velocities.
     pub(super) record_every: usize,
-    /// Steps that are timed together; 0 where time does not matter.
+    /// Number of steps that are timed together; 0 for a run that is not timed.
     pub(super) block_steps: usize,
 }
 
@@ -73,7 +73,7 @@ impl Task {
             constants: [p.c0, p.c1, p.c3, p.c4],
             dt_s: p.dt_s,
             seed,
-            starts: starts.iter().map(TaskStart::of).collect(),
+            starts: starts.iter().map(TaskStart::from_start).collect(),
             warm_up_steps: 0,
             steps: 0,
             record_every: 0,
@@ -81,8 +81,8 @@ impl Task {
         }
     }
 
-    /// Timed for so long after a warm-up, recorded every so often.
-    fn timed(mut self, warm_up_s: f64, duration_s: f64, record_s: f64) -> Self {
+    /// Sets the durations in s of the warm-up and of the run, and the time between records.
+    fn lasting(mut self, warm_up_s: f64, duration_s: f64, record_s: f64) -> Self {
         let steps = |seconds: f64| (seconds / self.dt_s).round() as usize;
         self.warm_up_steps = steps(warm_up_s);
         self.steps = steps(duration_s);
@@ -99,7 +99,7 @@ impl Task {
 }
 
 impl TaskStart {
-    fn of(start: &Start) -> Self {
+    fn from_start(start: &Start) -> Self {
         let pose = |p: &Pose| [p.position.x, p.position.y, p.heading];
         let velocity = |v: &Velocity| [v.linear.x, v.linear.y, v.angular];
         Self {
@@ -132,11 +132,11 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             let [first, second] = horizon::HORIZONS_S;
             tasks.push(
                 Task::new("horizon", scene.name(), &parameters, 1, &starts)
-                    .timed(0.0, second, first),
+                    .lasting(0.0, second, first),
             );
         }
         let sliding = Task::new("slide", "", &at(slide::scene()), 1, &slide::starts());
-        tasks.push(sliding.timed(0.0, slide::SLIDE_S, slide::SLIDE_S));
+        tasks.push(sliding.lasting(0.0, slide::SLIDE_S, slide::SLIDE_S));
         let pushing = Task::new(
             "wall_push",
             "",
@@ -144,7 +144,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             1,
             &[wall_push::start(1e-9)],
         );
-        tasks.push(pushing.timed(
+        tasks.push(pushing.lasting(
             wall_push::TRANSIENT_S,
             wall_push::AVERAGED_S,
             wall_push::AVERAGED_S,
@@ -156,7 +156,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
             1,
             &[momentum::start()],
         );
-        tasks.push(flying.timed(0.0, momentum::FLIGHT_S, momentum::FLIGHT_S));
+        tasks.push(flying.lasting(0.0, momentum::FLIGHT_S, momentum::FLIGHT_S));
     }
     let parameters = FlockParameters {
         dt_s: STEP_S,
@@ -165,7 +165,7 @@ pub fn write_tasks(files: &Path, effort: Effort) {
     for seed in 1..=effort.choose(2, ORDER_SEEDS) {
         let start = Start::placed(&parameters, seed);
         let task = Task::new("order", "", &parameters, seed, &[start]);
-        tasks.push(task.timed(0.0, order::run_s(effort), order::FRAME_S));
+        tasks.push(task.lasting(0.0, order::run_s(effort), order::FRAME_S));
     }
     fs::create_dir_all(files).expect("the folder can be made");
     let text = serde_json::to_string(&tasks).expect("tasks are plain data");
@@ -179,6 +179,6 @@ fn timed_run(scene: Scene, parameters: FlockParameters, seed: u64, effort: Effor
     let block_steps = (Scene::BLOCK_S / parameters.dt_s).round() as usize;
     Task {
         block_steps,
-        ..task.timed(speed::WARM_UP_S, timed_s, parameters.dt_s)
+        ..task.lasting(speed::WARM_UP_S, timed_s, parameters.dt_s)
     }
 }

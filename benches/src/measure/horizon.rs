@@ -1,6 +1,5 @@
-//! The whole scene over a short time, before chaos wins: the distance from where every boat ends to
-//! where steps of 1e-4 s take it. Starts lie in the middle of a run; noise is off from there on, since
-//! its path differs between steps.
+//! The error of a whole scene over a short time, before it grows chaotically: the distance from the poses that steps of
+//! 1e-4 s reach. Runs start from states in the middle of a run. They have no noise, whose path would differ between steps.
 
 use super::{Effort, distance, on_all_cores, push_row, table};
 use crate::table::{Table, number, quartiles, text};
@@ -13,7 +12,7 @@ use flockenv::{Flock, FlockParameters};
 pub const HORIZONS_S: [f64; 2] = [0.5, 1.0];
 const BOATS: usize = 27;
 
-/// Where runs are at the start of a forward phase, three cycles in.
+/// States after three cycles, at the start of a forward phase.
 pub fn starts(scene: Scene, effort: Effort) -> Vec<Start> {
     let seeds: Vec<u64> = (1..=effort.choose(4, 12)).collect();
     on_all_cores(&seeds, |&seed| {
@@ -26,7 +25,7 @@ pub fn starts(scene: Scene, effort: Effort) -> Vec<Start> {
         flock
             .advance(3.0 * Scene::BLOCK_S, None)
             .expect("the motion stays finite");
-        Start::of(&flock)
+        Start::from_flock(&flock)
     })
 }
 
@@ -41,7 +40,7 @@ pub fn parameters(scene: Scene) -> FlockParameters {
 /// Poses at the horizons, for each start.
 pub type Ends = Vec<[Vec<Pose>; 2]>;
 
-/// Where a configuration takes the boats.
+/// Poses that a configuration reaches from the starts.
 pub fn ends(configuration: &Configuration, scene: Scene, starts: &[Start]) -> Ends {
     let end = |start: &Start| {
         let mut engine = configuration.build(&parameters(scene), 1, start);
@@ -55,11 +54,14 @@ pub fn ends(configuration: &Configuration, scene: Scene, starts: &[Start]) -> En
     starts.iter().map(end).collect()
 }
 
-/// Where steps of 1e-4 s take them.
+/// Poses that steps of 1e-4 s reach.
 pub fn reference(scene: Scene, starts: &[Start]) -> Ends {
     let reference = Configuration::exact(Scheme::Leapfrog, 1e-9, 1e-4);
-    let each = |start: &Start| ends(&reference, scene, std::slice::from_ref(start));
-    on_all_cores(starts, each).into_iter().flatten().collect()
+    let ends_of = |start: &Start| ends(&reference, scene, std::slice::from_ref(start));
+    on_all_cores(starts, ends_of)
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Names of the columns.
@@ -75,10 +77,10 @@ pub const COLUMNS: [&str; 6] = [
 /// The rows of one engine, one for each horizon.
 pub fn rows(scene: Scene, ends: &Ends, reference: &Ends) -> Vec<Vec<String>> {
     let parameters = parameters(scene);
-    let row = |(place, horizon_s): (usize, f64)| {
+    let row = |(index, horizon_s): (usize, f64)| {
         let pairs = ends.iter().zip(reference);
         let errors: Vec<f64> = pairs
-            .map(|(end, right)| distance(&parameters, &end[place], &right[place]))
+            .map(|(end, exact)| distance(&parameters, &end[index], &exact[index]))
             .collect();
         let [q1, median, q3] = quartiles(&errors);
         vec![
@@ -100,10 +102,10 @@ pub fn measure(effort: Effort) -> Table {
     for scene in Scene::ALL {
         let starts = starts(scene, effort);
         let reference = reference(scene, &starts);
-        let found = on_all_cores(&all, |configuration| {
+        let row_groups = on_all_cores(&all, |configuration| {
             rows(scene, &ends(configuration, scene, &starts), &reference)
         });
-        for (configuration, rows) in all.iter().zip(found) {
+        for (configuration, rows) in all.iter().zip(row_groups) {
             for row in rows {
                 push_row(&mut table, &configuration.cells(), row);
             }

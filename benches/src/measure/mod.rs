@@ -24,12 +24,12 @@ use rayon::prelude::*;
 pub enum Effort {
     /// Enough to see that everything runs.
     Trial,
-    /// What the report is made from.
+    /// Enough for the report.
     Full,
 }
 
 impl Effort {
-    /// One of two amounts.
+    /// Chooses one of two amounts.
     pub fn choose<T>(self, trial: T, full: T) -> T {
         match self {
             Self::Trial => trial,
@@ -48,7 +48,7 @@ pub fn push_row(table: &mut Table, configuration: &[String], cells: Vec<String>)
     table.row([configuration, cells.as_slice()].concat());
 }
 
-/// Works something out for every item, on all cores. Nothing that is timed runs here.
+/// Maps items on all cores; not for timed work.
 pub fn on_all_cores<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Send + Sync) -> Vec<T> {
     items.par_iter().map(work).collect()
 }

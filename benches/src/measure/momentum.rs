@@ -8,11 +8,11 @@ use flockenv::FlockParameters;
 use flockenv::geometry::{Pose, Vec2, Velocity, cross};
 use flockenv::parameters::Pool;
 
-/// How long the boats fly, in s: through the collisions in the middle.
+/// Duration of a run in s: long enough for the collisions in the middle.
 pub const FLIGHT_S: f64 = 20.0;
 const BOATS: usize = 27;
 
-/// Twenty-seven boats that nothing but contacts acts on.
+/// Twenty-seven boats on which only contacts act.
 pub fn scene() -> FlockParameters {
     FlockParameters {
         pool: Pool {
@@ -28,14 +28,14 @@ pub fn scene() -> FlockParameters {
     }
 }
 
-/// All boats head for a place beside the middle, at 15 cm/s, turning.
+/// All boats move at 15 cm/s towards a point beside the center, and turn at different rates.
 pub fn start() -> Start {
     let mut start = Start::placed(&scene(), 1);
-    let places = start.poses.iter().map(|pose| pose.position);
-    start.velocities = places
+    let positions = start.poses.iter().map(|pose| pose.position);
+    start.velocities = positions
         .enumerate()
-        .map(|(k, place)| {
-            let direction = (Vec2::new(10.0, 5.0) - place).normalize();
+        .map(|(k, position)| {
+            let direction = (Vec2::new(10.0, 5.0) - position).normalize();
             let angular = (k as f64 - 13.0) / 26.0;
             Velocity {
                 linear: direction * 15.0,
@@ -46,7 +46,7 @@ pub fn start() -> Start {
     start
 }
 
-/// Momentum, angular momentum about the origin, and the sums of their parts' sizes.
+/// Momentum, angular momentum about the origin, and the sums of the magnitudes of their terms.
 struct Momentum {
     linear: Vec2,
     angular: f64,
@@ -55,7 +55,7 @@ struct Momentum {
 }
 
 impl Momentum {
-    fn of(poses: &[Pose], velocities: &[Velocity]) -> Self {
+    fn total(poses: &[Pose], velocities: &[Velocity]) -> Self {
         let moment = scene().gyration_radius_cm.powi(2);
         let mut total = Self {
             linear: Vec2::zeros(),
@@ -80,8 +80,8 @@ impl Momentum {
 /// The cells of one engine: drift over the flight, relative to the sum of all boats' momenta.
 pub fn row(poses: &[Pose], velocities: &[Velocity]) -> Vec<String> {
     let start = start();
-    let before = Momentum::of(&start.poses, &start.velocities);
-    let after = Momentum::of(poses, velocities);
+    let before = Momentum::total(&start.poses, &start.velocities);
+    let after = Momentum::total(poses, velocities);
     vec![
         number((after.linear - before.linear).norm() / before.linear_size),
         number((after.angular - before.angular).abs() / before.angular_size),

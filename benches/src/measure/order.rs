@@ -1,8 +1,8 @@
-//! What a user cares about: mean Ψ_o and C_v of 20 boats without leaders in pool `wide` at
+//! Errors of the results that users care about: mean Ψ_o and C_v of 20 boats without leaders in pool `wide` at
 //! bw = 0.3 s, white noise, over the 10 Hz frames in the analysis window after the first tenth.
 //!
-//! The same seeds for everyone, against leapfrog at 0.005 s, seed by seed. The path of the noise differs
-//! between steps, and chaos parts the rest: the intervals are what counts.
+//! All engines have the same seeds and are compared with leapfrog at 0.005 s, seed by seed. Runs still differ by
+//! chance, since the path of the noise differs between steps and motion is chaotic. The intervals show this scatter.
 
 use super::{Effort, on_all_cores, push_row, table};
 use crate::configuration::STEP_S;
@@ -14,9 +14,9 @@ use flockenv::integrator::PhaseSchedule;
 use flockenv::parameters::{Preset, Scheme};
 use flockenv::{FlockParameters, OrderParameters};
 
-/// Runs a seed that the reference is the mean of.
+/// Number of runs for each seed whose mean is the reference.
 const REPLICAS: u64 = 4;
-/// First seed of the runs that show what chance does.
+/// First seed of the runs that show the scatter by chance.
 const OTHER_SEEDS: u64 = 9001;
 /// Time between frames in s.
 pub const FRAME_S: f64 = 0.1;
@@ -57,8 +57,8 @@ impl Frames {
         }
     }
 
-    /// Measures a frame.
-    pub fn look(&mut self, time_s: f64, poses: &[Pose], velocities: &[Velocity]) {
+    /// Adds a frame, if it is in the analysis window.
+    pub fn add(&mut self, time_s: f64, poses: &[Pose], velocities: &[Velocity]) {
         if time_s < self.first_s || !self.schedule.in_analysis_window(ticks(time_s)) {
             return;
         }
@@ -81,7 +81,7 @@ fn run(configuration: &Configuration, seed: u64, run_s: f64) -> [f64; 2] {
     let mut frames = Frames::new(run_s);
     for frame in 1..=(run_s / FRAME_S).round() as u64 {
         engine.advance(configuration.steps(FRAME_S));
-        frames.look(
+        frames.add(
             frame as f64 * FRAME_S,
             &engine.poses(),
             &engine.velocities(),
@@ -157,8 +157,8 @@ fn interval(values: &[f64]) -> (f64, f64) {
     (mean, quantile * (variance / n).sqrt())
 }
 
-/// Measures the configurations that differ in what they may do to the physics. The first row is the
-/// reference, the second the same on other seeds: how far apart equally right runs are by chance.
+/// Measures the configurations that may change the results. The first row is the reference, the second the same
+/// with other seeds, which shows how far apart equally exact runs are by chance.
 pub fn measure(effort: Effort) -> Table {
     let (seeds, run_s) = (seeds(effort), run_s(effort));
     let exact = |scheme, tolerance_cm, steps: &[f64]| -> Vec<(Configuration, u64)> {
@@ -185,8 +185,8 @@ pub fn measure(effort: Effort) -> Table {
     let mut table = table(&COLUMNS);
     let cells = row(1, run_s, &reference, &reference);
     push_row(&mut table, &finest.cells(), cells);
-    for ((configuration, first), own) in all.iter().zip(&means) {
-        let cells = row(*first, run_s, own, &reference);
+    for ((configuration, first), run_means) in all.iter().zip(&means) {
+        let cells = row(*first, run_s, run_means, &reference);
         push_row(&mut table, &configuration.cells(), cells);
     }
     table

@@ -1,5 +1,5 @@
-//! How deep hulls overlap at the end of steps, by flockenv's own gaps on the poses of every engine;
-//! and for flockenv what the solver did and left.
+//! Depths of overlaps at the end of steps, by flockenv's gaps on the poses of every engine, and statistics of flockenv's
+//! solver.
 
 use super::{Effort, on_all_cores, push_row, speed, table};
 use crate::table::{Table, number, text};
@@ -32,7 +32,7 @@ impl Overlap {
     }
 
     /// Measures the poses at a step's end.
-    pub fn look(&mut self, poses: &[Pose]) {
+    pub fn add(&mut self, poses: &[Pose]) {
         self.boats.clear();
         self.boats.extend(poses.iter().map(HullPose::new));
         self.detector.detect(&self.boats, 0.0, &mut self.contacts);
@@ -42,12 +42,12 @@ impl Overlap {
         self.most = self.most.max(deepest);
     }
 
-    /// Makes all numbers those of nothing seen.
-    fn forget(&mut self) {
+    /// Makes all results NaN.
+    fn invalidate(&mut self) {
         (self.sum, self.most) = (f64::NAN, f64::NAN);
     }
 
-    /// The deepest overlap of a step, its mean over steps and the deepest of all, in cm.
+    /// The mean over steps of the deepest overlap of a step, and the deepest overlap of all, in cm.
     pub fn mean_and_most(&self) -> [f64; 2] {
         [self.sum / self.steps, self.most]
     }
@@ -75,7 +75,7 @@ struct Run {
     timed_s: f64,
 }
 
-/// Starts of every setting with 27 boats: deep overlaps are rare, and one run tells little of them.
+/// Number of runs of every setting with 27 boats: deep overlaps are so rare that one run says little about them.
 const SEEDS: u64 = 20;
 
 /// Measures every configuration in every scene.
@@ -134,17 +134,17 @@ fn measured(run: &Run) -> Vec<String> {
     let mut overlap = Overlap::new(&scene);
     for _ in 0..run.configuration.steps(run.timed_s) {
         engine.advance(1);
-        overlap.look(&engine.poses());
+        overlap.add(&engine.poses());
     }
     if engine.is_lost() {
-        overlap.forget();
+        overlap.invalidate();
         return row(run.scene, run.boats, run.seed, &overlap, None);
     }
     let work = engine.statistics().zip(before);
     row(run.scene, run.boats, run.seed, &overlap, work)
 }
 
-/// The cells of one engine; `work` are its statistics after and before.
+/// The cells of one engine; `work`: its statistics after and before.
 pub fn row(
     scene: Scene,
     boats: usize,

@@ -1,4 +1,4 @@
-//! What each part of a scene costs: the cycle scene of 27 boats with one thing changed at a time.
+//! The cost of each part of a scene: the cycle scene of 27 boats with one change at a time.
 
 use super::{Effort, speed};
 use crate::configuration::STEP_S;
@@ -8,7 +8,7 @@ use flockenv::FlockParameters;
 use flockenv::parameters::{Noise, Pool, Scheme};
 use speed::{Entry, take_turns};
 
-/// Scenes by what is different in them.
+/// Scenes, each with the words for its change.
 fn scenes() -> Vec<(&'static str, FlockParameters)> {
     let whole = Scene::Cycle.parameters(27);
     let pool = |outer, inner| Pool {

@@ -1,6 +1,5 @@
-//! Where the time of a step goes: the parts of leapfrog steps of a jam, one by one, on the states of
-//! consecutive steps. What is left of the whole step is rest: bookkeeping, drift, what parts do to each
-//! other's caches.
+//! The time of each part of a step: the parts of leapfrog steps of a jam, one by one, on the states of consecutive steps.
+//! The remaining time of a whole step is bookkeeping, drift, and effects of the parts on each other's caches.
 
 use super::Effort;
 use super::solvers::{Problem, jam, without_contacts};
@@ -28,12 +27,12 @@ const PARTS: [&str; 6] = [
 
 /// Consecutive states of a jam.
 struct States {
-    /// The flock before all of them.
+    /// The flock before the first of these states.
     before: Flock,
     boats: Vec<Vec<HullPose>>,
     velocities: Vec<Vec<Velocity>>,
     problems: Vec<Problem>,
-    /// The same problems with their solutions as guesses.
+    /// The same problems, with their solutions as initial guesses.
     known: Vec<Problem>,
 }
 
@@ -50,7 +49,8 @@ impl States {
         let mut flock = states.before.clone();
         let mut solver = ContactSolver::new(Solver::BlockPivoting);
         for _ in 0..count {
-            let (problem, mut known) = (Problem::of(&flock), Problem::of(&flock));
+            let (problem, mut known) =
+                (Problem::of_next_step(&flock), Problem::of_next_step(&flock));
             problem.solve(&mut solver);
             known.guess.clone_from(&solver.impulses);
             states
@@ -118,6 +118,7 @@ impl States {
         })
     }
 
+    /// Time of some work in µs, divided by the number of states.
     fn per_step(&self, work: impl FnOnce()) -> f64 {
         let start = Instant::now();
         work();

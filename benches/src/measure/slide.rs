@@ -1,5 +1,5 @@
 //! One boat slides along the outer wall of `narrow` for 2 s, its bow touching all the time: the
-//! distance from where it ends to where steps of 1e-4 s take it.
+//! distance from the pose that steps of 1e-4 s reach.
 
 use super::{distance, on_all_cores, push_row, table};
 use crate::table::{Table, number, quartiles};
@@ -8,12 +8,12 @@ use flockenv::FlockParameters;
 use flockenv::geometry::{Hull, Pose, Vec2, Velocity, turned_left};
 use flockenv::parameters::Scheme;
 
-/// How long it slides, in s.
+/// Duration of the slide in s.
 pub const SLIDE_S: f64 = 2.0;
-/// Rate at which it circles the pool at first, in rad/s.
+/// Initial rate at which the boat circles the pool, in rad/s.
 const CIRCLING: f64 = 0.12;
 
-/// One boat, engines forward, no noise.
+/// One boat with its motor forward, without noise.
 pub fn scene() -> FlockParameters {
     FlockParameters {
         c4: 0.0,
@@ -45,7 +45,7 @@ pub fn starts() -> Vec<Start> {
     outward.map(start).collect()
 }
 
-/// Where the boat ends.
+/// The boat's final pose for each start.
 pub fn ends(configuration: &Configuration) -> Vec<Vec<Pose>> {
     let end = |start: &Start| {
         let mut engine = configuration.build(&scene(), 1, start);
@@ -55,7 +55,7 @@ pub fn ends(configuration: &Configuration) -> Vec<Vec<Pose>> {
     starts().iter().map(end).collect()
 }
 
-/// Where steps of 1e-4 s take it.
+/// Final poses that steps of 1e-4 s reach.
 pub fn reference() -> Vec<Vec<Pose>> {
     ends(&Configuration::exact(Scheme::Leapfrog, 1e-9, 1e-4))
 }
@@ -64,7 +64,7 @@ pub fn reference() -> Vec<Vec<Pose>> {
 pub fn row(ends: &[Vec<Pose>], reference: &[Vec<Pose>]) -> Vec<String> {
     let pairs = ends.iter().zip(reference);
     let errors: Vec<f64> = pairs
-        .map(|(end, right)| distance(&scene(), end, right))
+        .map(|(end, exact)| distance(&scene(), end, exact))
         .collect();
     let worst = errors.iter().copied().fold(0.0, f64::max);
     vec![number(quartiles(&errors)[1]), number(worst)]

@@ -1,5 +1,5 @@
 //! The contact problem alone: the problems of consecutive steps of a jam, rebuilt from its poses and
-//! velocities, solved by each solver from what the step before carried.
+//! velocities, solved by each solver from the impulses of the step before.
 
 use super::Effort;
 use crate::Scene;
@@ -13,7 +13,7 @@ use flockenv::parameters::Solver;
 use flockenv::{Flock, FlockParameters};
 use std::time::Instant;
 
-/// Overlaps deeper than this (cm) are no matter of the solver.
+/// Gap in cm of the deepest overlap that the solver closes.
 const DEEP: f64 = -0.01;
 
 /// One step's problem.
@@ -22,18 +22,18 @@ pub(super) struct Problem {
     inertia: Vec<InverseInertia>,
     free: Vec<Velocity>,
     bounds: Vec<f64>,
-    /// What the same contacts carried in the step before.
+    /// Impulses of the same contacts in the step before.
     pub(super) guess: Vec<f64>,
 }
 
-/// Whether two contacts are of the same bodies, at the same ends.
-fn same_touch(a: &Contact, b: &Contact) -> bool {
+/// Whether two contacts are between the same features of the same bodies.
+fn is_same_contact(a: &Contact, b: &Contact) -> bool {
     (a.boat, a.partner, a.feature) == (b.boat, b.partner, b.feature)
 }
 
 impl Problem {
-    /// The problem of the step that a flock in a jam takes next.
-    pub(super) fn of(flock: &Flock) -> Self {
+    /// The problem of the next step of a flock in a jam.
+    pub(super) fn of_next_step(flock: &Flock) -> Self {
         let p = flock.parameters();
         let boats: Vec<HullPose> = flock.poses().iter().map(HullPose::new).collect();
         let (free, inertia) = without_contacts(p, &boats, flock.velocities());
@@ -49,7 +49,7 @@ impl Problem {
         let carried = |contact: &Contact| {
             let known = before
                 .iter()
-                .find(|known| same_touch(&known.contact, contact));
+                .find(|known| is_same_contact(&known.contact, contact));
             known.map_or(0.0, |known| known.force * p.dt_s)
         };
         Self {
@@ -78,7 +78,7 @@ impl Problem {
     }
 }
 
-/// Velocities and effective inertia as leapfrog has them, noise left out.
+/// Velocities without contacts and effective inverse inertia of a leapfrog step, without noise.
 pub(super) fn without_contacts(
     parameters: &FlockParameters,
     boats: &[HullPose],
@@ -103,7 +103,7 @@ pub(super) fn without_contacts(
     boats.iter().zip(velocities).map(boat).unzip()
 }
 
-/// A jam at rest against the wall, more or less.
+/// A jam that has nearly come to rest against the wall.
 pub(super) fn jam(boats: usize) -> Flock {
     let parameters = FlockParameters {
         dt_s: STEP_S,
@@ -120,12 +120,12 @@ fn problems(boats: usize, count: usize) -> Vec<Problem> {
         flock
             .advance(STEP_S, None)
             .expect("the motion stays finite");
-        Problem::of(&flock)
+        Problem::of_next_step(&flock)
     };
     (0..count).map(next).collect()
 }
 
-/// How long all problems take a solver, in µs a problem, and what it reports.
+/// The mean time of a solver for a problem in µs, and its reports.
 fn solve_all(problems: &[Problem], kind: Solver) -> (f64, Vec<SolveReport>) {
     let mut solver = ContactSolver::new(kind);
     let start = Instant::now();
@@ -160,14 +160,14 @@ pub fn measure(effort: Effort) -> Table {
         let mut times = vec![Vec::new(); Solver::ALL.len()];
         let mut reports = vec![Vec::new(); Solver::ALL.len()];
         for _ in 0..turns {
-            for (which, &kind) in Solver::ALL.iter().enumerate() {
-                let (time, found) = solve_all(&problems, kind);
-                times[which].push(time);
-                reports[which] = found;
+            for (index, &kind) in Solver::ALL.iter().enumerate() {
+                let (time, solver_reports) = solve_all(&problems, kind);
+                times[index].push(time);
+                reports[index] = solver_reports;
             }
         }
-        for (which, kind) in Solver::ALL.iter().enumerate() {
-            let cells = row(boats, &problems, &times[which], &reports[which]);
+        for (index, kind) in Solver::ALL.iter().enumerate() {
+            let cells = row(boats, &problems, &times[index], &reports[index]);
             table.row([vec![text(kind.name())], cells].concat());
         }
     }

@@ -1,6 +1,6 @@
-//! How long a step takes where other engines use two threads, over flockenv's on one.
+//! The time of a step of other engines on two threads, relative to flockenv's on one.
 //!
-//! They take turns, so that what else the machine does meets them alike, and ratios are taken turn by turn.
+//! Engines take turns, so that other work of the machine slows them alike. Ratios are taken turn by turn.
 
 use super::speed::{Entry, take_turns};
 use super::{Effort, push_row, table};

@@ -1,4 +1,4 @@
-//! Five boats in a row, bow to stern, push the outer wall, which has to carry 5·c0·v0.
+//! Five boats in a row, bow to stern, push the outer wall with the force 5·c0·v0.
 
 use super::{on_all_cores, push_row, table};
 use crate::table::{Table, number, text};
@@ -10,10 +10,10 @@ use flockenv::parameters::Pool;
 const BOATS: usize = 5;
 /// Time for the row to come to rest, in s.
 pub const TRANSIENT_S: f64 = 1.0;
-/// Time that the force is averaged over, in s.
+/// Time over which the force is averaged, in s.
 pub const AVERAGED_S: f64 = 1.0;
 
-/// No obstacle, no noise, engines forward.
+/// Five boats with their motors forward, without inner wall and noise.
 pub fn scene() -> FlockParameters {
     FlockParameters {
         c4: 0.0,
@@ -25,15 +25,15 @@ pub fn scene() -> FlockParameters {
     }
 }
 
-/// The row, touching, at rest; every other boat is so many cm off the line. Chipmunk needs a hair of
-/// that: it lets boats that are exactly in line pass through each other.
-pub fn start(hair: f64) -> Start {
+/// The row at rest, with touching boats; every other boat is `offset_cm` off the line. Chipmunk needs a small offset,
+/// since it lets boats that are exactly in line pass through each other.
+pub fn start(offset_cm: f64) -> Start {
     let parameters = scene();
     let reach = Hull::new(&parameters).reach();
     let wall = parameters.pool.outer_radius_cm;
     let pose = |k: usize| {
-        let off = hair * (k % 2) as f64;
-        Pose::new(wall - reach - 2.0 * reach * k as f64, off, 0.0)
+        let y = offset_cm * (k % 2) as f64;
+        Pose::new(wall - reach - 2.0 * reach * k as f64, y, 0.0)
     };
     Start {
         poses: (0..BOATS).map(pose).collect(),
@@ -42,7 +42,7 @@ pub fn start(hair: f64) -> Start {
     }
 }
 
-/// The force that the wall has to carry, in cm/s².
+/// The exact force on the wall in cm/s².
 pub fn expected() -> f64 {
     BOATS as f64 * scene().c0 * scene().speed_cm_s
 }

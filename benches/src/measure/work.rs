@@ -1,7 +1,7 @@
-//! What an error costs: the time that engines take for the very runs of [`slide`] and [`horizon`]
-//! whose errors are measured, with fixed steps and with steps that follow their error.
+//! The cost of an error: the time of the runs of [`slide`] and [`horizon`] whose errors are measured, with fixed steps and
+//! with steps that follow their error.
 //!
-//! Engines take turns, a run each, so that whatever else the machine does meets them alike.
+//! Engines take turns, a run each, so that other work of the machine slows them alike.
 
 use super::{Effort, distance, horizon, on_all_cores, push_row, slide, table};
 use crate::configuration::{CONTROLLED_CM, LONGEST_S};
@@ -20,7 +20,7 @@ const COLUMNS: [&str; 6] = [
     "us_per_s",
     "call_us_per_s",
 ];
-/// What a step and its two halves may differ by, in cm.
+/// Accepted differences between a step and its two halves, in cm.
 const ACCEPTED_CM: [f64; 7] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5];
 
 /// Runs whose errors are known.
@@ -33,7 +33,7 @@ struct Runs {
 
 impl Runs {
     fn all(effort: Effort) -> Vec<Self> {
-        let whole = |scene: Scene| Self {
+        let flock_runs = |scene: Scene| Self {
             scene: scene.name(),
             parameters: horizon::parameters(scene),
             seconds: horizon::HORIZONS_S[0],
@@ -46,27 +46,27 @@ impl Runs {
             starts: slide::starts(),
         };
         let mut all = vec![slide];
-        all.extend(Scene::ALL.map(whole));
+        all.extend(Scene::ALL.map(flock_runs));
         all
     }
 
-    /// What a configuration makes of a start, as it comes to `right` by the shortest steps.
-    fn run(&self, configuration: &Configuration, start: &Start, right: &[Pose]) -> Run {
+    /// Runs a configuration from a start, from which the shortest steps reach the poses `exact`.
+    fn run(&self, configuration: &Configuration, start: &Start, exact: &[Pose]) -> Run {
         let mut engine = configuration.build(&self.parameters, 1, start);
-        let began = Instant::now();
+        let start_time = Instant::now();
         engine.advance(configuration.steps(self.seconds));
-        let took = began.elapsed();
+        let elapsed = start_time.elapsed();
         assert!(!engine.is_lost(), "{configuration:?} is lost");
         let us_per_s = |time: Duration| time.as_secs_f64() * 1e6 / self.seconds;
         Run {
-            error_cm: distance(&self.parameters, &engine.poses(), right),
-            us_per_s: us_per_s(took),
+            error_cm: distance(&self.parameters, &engine.poses(), exact),
+            us_per_s: us_per_s(elapsed),
             call_us_per_s: engine.step_call().map(us_per_s),
         }
     }
 
-    /// Where steps of 1e-4 s lead.
-    fn right(&self) -> Vec<Vec<Pose>> {
+    /// Poses that steps of 1e-4 s reach.
+    fn exact_ends(&self) -> Vec<Vec<Pose>> {
         let reference = Configuration::exact(Scheme::Leapfrog, 1e-9, 1e-4);
         on_all_cores(&self.starts, |start| {
             let mut engine = reference.build(&self.parameters, 1, start);
@@ -78,21 +78,21 @@ impl Runs {
     /// The cells of every configuration.
     fn rows(&self, all: &[Configuration], repeats: usize) -> Vec<Vec<String>> {
         // By configuration, and then by start.
-        let mut found: Vec<Vec<Run>> = all.iter().map(|_| Vec::new()).collect();
-        for (start, right) in self.starts.iter().zip(self.right()) {
-            let mut tries: Vec<Vec<Run>> = all.iter().map(|_| Vec::new()).collect();
+        let mut medians: Vec<Vec<Run>> = all.iter().map(|_| Vec::new()).collect();
+        for (start, exact) in self.starts.iter().zip(self.exact_ends()) {
+            let mut repeated: Vec<Vec<Run>> = all.iter().map(|_| Vec::new()).collect();
             for _ in 0..repeats {
-                for (configuration, own) in all.iter().zip(&mut tries) {
-                    // The first run finds the caches as another engine left them.
-                    let warm = [(), ()].map(|()| self.run(configuration, start, &right));
-                    own.push(warm[1]);
+                for (configuration, runs) in all.iter().zip(&mut repeated) {
+                    // The first run only warms the caches, which another engine has used.
+                    let [_, warm] = [(), ()].map(|()| self.run(configuration, start, &exact));
+                    runs.push(warm);
                 }
             }
-            for (runs, own) in found.iter_mut().zip(&tries) {
-                runs.push(Run::middle(own));
+            for (runs, repeats) in medians.iter_mut().zip(&repeated) {
+                runs.push(Run::median(repeats));
             }
         }
-        found.iter().map(|runs| self.row(runs)).collect()
+        medians.iter().map(|runs| self.row(runs)).collect()
     }
 
     fn row(&self, runs: &[Run]) -> Vec<String> {
@@ -111,30 +111,30 @@ impl Runs {
     }
 }
 
-/// What a configuration makes of a start.
+/// The error and the time of a run.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     error_cm: f64,
     /// Time for a second of the scene in µs.
     us_per_s: f64,
-    /// The engine's own step calls alone; of a controlled step all but copies and checks.
+    /// Time of the engine's own step calls, or of a controlled step without copies and checks.
     call_us_per_s: Option<f64>,
 }
 
 impl Run {
-    /// The median times of the same run, again and again.
-    fn middle(tries: &[Self]) -> Self {
-        let middle = |times: Vec<f64>| median(&times);
-        let call: Option<Vec<f64>> = tries.iter().map(|run| run.call_us_per_s).collect();
+    /// The run with the median times of its repetitions.
+    fn median(repeats: &[Self]) -> Self {
+        let median_of = |times: Vec<f64>| median(&times);
+        let call: Option<Vec<f64>> = repeats.iter().map(|run| run.call_us_per_s).collect();
         Self {
-            us_per_s: middle(tries.iter().map(|run| run.us_per_s).collect()),
-            call_us_per_s: call.map(middle),
-            ..tries[0]
+            us_per_s: median_of(repeats.iter().map(|run| run.us_per_s).collect()),
+            call_us_per_s: call.map(median_of),
+            ..repeats[0]
         }
     }
 }
 
-/// What is compared: each engine from its longest step to its shortest.
+/// The compared configurations, for each engine from its longest step to its shortest.
 fn configurations() -> Vec<Configuration> {
     let halved = |longest_s: f64, times: i32| (0..times).map(move |k| longest_s / 2f64.powi(k));
     let fixed = |dt_s| Configuration::exact(Scheme::Leapfrog, CONTROLLED_CM, dt_s);
