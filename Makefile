@@ -1,9 +1,9 @@
-# Two front doors: `make compare` and `make test`. Both need a Rust toolchain, Python >= 3.11 and make, and set
-# up the rest themselves in .venv. `make help` lists the others.
+# Start with `make compare` or `make test`. Both need a Rust toolchain, Python >= 3.11 and make, and set up
+# everything else in .venv. `make help` lists the other commands.
 
-# The interpreter, parallel pytest workers, and how many of each kind of hostile input. Empty unless they are given:
-# PYTHONS, on which `make test-wheel` tries the wheel too, PAGE, the one page that `make extend` follows, and PYTEST_ARGS,
-# COMPARE_ARGS, STUDIES_ARGS, PRETRAINED_ARGS and INSTRUCTIONS, which are passed on.
+# Variables: the Python interpreter, the number of parallel pytest workers, and the number of examples of each kind of
+# hostile input. Empty by default are PYTHONS, further interpreters for `make test-wheel`; PAGE, a single page for
+# `make extend`; and PYTEST_ARGS, COMPARE_ARGS, STUDIES_ARGS, PRETRAINED_ARGS and INSTRUCTIONS, which are passed on.
 PYTHON ?= python3
 JOBS ?= 2
 FUZZ_EXAMPLES ?= 2000
@@ -12,31 +12,31 @@ BIN := .venv/bin
 STAMPS := .venv/.stamps
 # The versions of `requirements.lock`, which `make lock` renews.
 UV := VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/uv pip install --constraint requirements.lock
-# One thread for each worker's linear algebra, or the workers fight over the cores. Compiled modules are kept, even where
-# Python may not keep them elsewhere: imports take half the time then.
+# One thread for each worker's linear algebra, or the workers compete for the cores. Compiled Python modules are kept, even
+# if the environment forbids it, since they halve the time of imports.
 PYTEST := OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= PYTHONPYCACHEPREFIX="$(CURDIR)/.venv/pycache" $(BIN)/python -m pytest
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find src)
-# This machine's own build may use AVX2, which alters no bit.
+# A build for this machine may use AVX2, which does not change results by a bit.
 CODEGEN := $(if $(findstring avx2,$(shell rustc --print cfg -C target-cpu=native 2> /dev/null)),-- -C target-feature=+avx2)
-# One stamp a kind: where a checkout is moved to a machine without AVX2, the core is compiled again.
+# One stamp with and one without AVX2: a checkout that moves to a machine without it compiles the core again.
 CORE := $(STAMPS)/core$(if $(CODEGEN),-avx2)
 JS_TESTS := tests/replay/js
 
-# What each front door needs, out of pyproject.toml: extras of users and groups of developers.
+# What each command installs from pyproject.toml: extras of users and groups of developers.
 NEEDS_compare := --extra plot
 NEEDS_test := --extra train --extra plot --extra render --extra sweep --extra tracks --group test --group dev
 NEEDS_browser := --group browser
 NEEDS_docs := --group docs
-# What studies/pyproject.toml adds.
+# What the studies install from studies/pyproject.toml.
 NEEDS_studies := --extra plots --extra search --extra train --extra data --extra test
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-# Only where a recipe says so: compilers leave a core idle for a minute each.
+# Recipes run in parallel only if one sets PARALLEL: a compiler leaves a core idle for about a minute.
 ifndef PARALLEL
 .NOTPARALLEL:
 else
-# Cargo would look for job slots in make's flags, which are not handed on to it.
+# Otherwise cargo would look for job slots in make's flags, which it does not get.
 export CARGO_MAKEFLAGS :=
 endif
 .PHONY: $(shell sed -n 's/^\([a-z][a-z -]*\):.*/\1/p' Makefile)
@@ -57,7 +57,7 @@ setup: $(STAMPS)/test
 setup-train: build ## install what trainings and their plots need beside the core, without compiling it again
 	$(UV) $(if $(TORCH),--torch-backend $(TORCH)) -r pyproject.toml --extra train --extra plot
 
-# One set of versions for all platforms and interpreters; no addresses, so that it holds for any registry.
+# One set of versions for all platforms and interpreters, without addresses, so that it fits any registry.
 lock: $(STAMPS)/venv ## choose the newest versions of what is installed here
 	$(BIN)/uv pip compile --quiet --upgrade --universal --python-version 3.11 --no-annotate --custom-compile-command "make lock" \
 		$(NEEDS_compare) $(NEEDS_test) $(NEEDS_browser) $(NEEDS_docs) $(NEEDS_studies) pyproject.toml studies/pyproject.toml \
@@ -88,7 +88,8 @@ format: $(STAMPS)/test ## format the Rust and Python sources
 test-rust: $(if $(PARALLEL),| $(CORE)) ## the physics alone, no Python
 	cargo test --locked --features clarabel,draw
 
-# Tests of one file share what it prepares. pytest-xdist would wait forever for what a dead worker had left.
+# Tests of one file run in one worker and share its fixtures. A worker that dies is not replaced, since pytest-xdist would
+# wait forever for its tests.
 test-python: $(STAMPS)/test $(CORE) ## the Python package
 	$(PYTEST) -n $(JOBS) --dist loadfile --max-worker-restart 0 $(PYTEST_ARGS)
 
@@ -222,14 +223,14 @@ $(JS_TESTS)/node_modules: $(JS_TESTS)/package.json
 	cd $(JS_TESTS) && npm install --no-package-lock --no-audit --no-fund
 	@touch $@
 
-# An install from elsewhere, such as `pip install .` in this .venv, takes the place of the editable one; and
-# `git clean` removes what was compiled.
+# The core is compiled again if another install, such as `pip install .` in this .venv, has replaced the editable one, or if
+# `git clean` has removed the compiled module.
 ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -lxF "$(CURDIR)" .venv/lib/python3*/site-packages/flockenv.pth 2> /dev/null)),)
 .PHONY: $(CORE)
 endif
 
-# In the profile of a checkout: half the time to compile, the same bits. Wheels, pinned counts and the comparison with
-# engines are compiled as a release.
+# The profile of a checkout compiles in half the time, with the same results to the bit. Wheels, pinned counts and the
+# comparison with engines are compiled as a release.
 $(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/venv
 	VIRTUAL_ENV="$(CURDIR)/.venv" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --locked --uv $(CODEGEN)
 	@touch $@

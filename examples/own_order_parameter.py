@@ -1,7 +1,7 @@
 """Measure your own quantity: `python examples/own_order_parameter.py MINUTES`.
 
-A quantity is a function of the recording that returns one number per sample. It is kept in the
-recording, in its file and in its tables.
+A quantity is a function of the recording that returns one number per sample. The recording, its
+file and its tables hold these numbers.
 """
 
 import sys
@@ -20,10 +20,10 @@ out.mkdir(parents=True, exist_ok=True)
 def neighbor_alignment(run):
     """Return the mean cosine between the headings of each boat and its nearest neighbor."""
     position, heading = run.pose[..., :2], run.pose[..., 2]
-    away = np.linalg.norm(position[:, :, None] - position[:, None], axis=-1)
-    away[:, *np.diag_indices(away.shape[1])] = np.inf
-    neighbor = np.take_along_axis(heading, away.argmin(axis=2), axis=1)
-    return np.cos(heading - neighbor).mean(axis=1)
+    distance = np.linalg.norm(position[:, :, None] - position[:, None], axis=-1)
+    distance[:, *np.diag_indices(distance.shape[1])] = np.inf
+    neighbor_heading = np.take_along_axis(heading, distance.argmin(axis=2), axis=1)
+    return np.cos(heading - neighbor_heading).mean(axis=1)
 
 
 for bw_s in (0.1, 0.3, 0.6):

@@ -1,7 +1,7 @@
 """Use your own reward: `python examples/own_reward.py FLOCKS SECONDS`.
 
-The reward is any function of the vector environment after its step. This one pays for normal boats
-that stay away from the outer wall.
+The reward may be any function of the vector environment after its step. Here it is the fraction of
+normal boats that are away from the outer wall.
 """
 
 import sys

@@ -17,10 +17,11 @@ fn main() -> Result<()> {
     let seeds = 0..8;
     let mut sums = [0.0; 2];
     for seed in seeds.clone() {
-        let (paper, own) = (signed_order(seed, None)?, signed_order(seed, Some(law))?);
-        println!("seed {seed}: paper's law {paper:6.3}, this law {own:6.3}");
+        let paper = signed_order(seed, None)?;
+        let this_law = signed_order(seed, Some(law))?;
+        println!("seed {seed}: paper's law {paper:6.3}, this law {this_law:6.3}");
         sums[0] += paper;
-        sums[1] += own;
+        sums[1] += this_law;
     }
     let count = seeds.count() as f64;
     println!("means: {:.3} and {:.3}", sums[0] / count, sums[1] / count);

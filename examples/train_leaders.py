@@ -62,11 +62,11 @@ class Learner:
 
 
 def environment(task: Task) -> LeaderVecEnv:
-    """Return the flocks. Each leader is a slot, and sees the lean features alone."""
-    others = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
+    """Return the flocks. Each leader is a slot, and observes only the lean features."""
+    switched_off = {"own": False, "phase": False, "target": False, "neighbors": 0, "order": False}
     return LeaderVecEnv(
         **vars(task),
-        observation={**others, "lean_features": True},
+        observation={**switched_off, "lean_features": True},
         reward={"signed_order": 1.0, "contact_alignment": 30.0},
     )
 
@@ -86,13 +86,13 @@ def untrained(learner: Learner, env: LeaderVecEnv, seed: int) -> PPO:
     return model
 
 
-given, task = Settings(*map(int, sys.argv[1:])), Task()
-folder = Path("results/train_leaders") / str(given.seed)
+settings, task = Settings(*map(int, sys.argv[1:])), Task()
+folder = Path("results/train_leaders") / str(settings.seed)
 env = environment(task)
-env.seed(POLICY_SEEDS["training"].seeds(1, run=given.seed)[0])
-model = untrained(Learner(), env, given.seed)
+env.seed(POLICY_SEEDS["training"].seeds(1, run=settings.seed)[0])
+model = untrained(Learner(), env, settings.seed)
 model.set_logger(configure(str(folder), ["csv"]))
-model.learn(int(3600 * given.flock_hours * env.decisions_hz) * task.n_leaders)
+model.learn(int(3600 * settings.flock_hours * env.decisions_hz) * task.n_leaders)
 model.logger.close()
 learned = LeaningLaw.from_model(model, task.pool)  # decides every second, as the model does
 law = LeaningLaw(task.pool, learned.bias, learned.weights)  # decides at every control step
@@ -101,7 +101,7 @@ print(f"{time.process_time() / 60:.1f} minutes of one core")
 
 flock = FlockParameters(n_boats=task.n_boats, pool=task.pool, bw_s=task.bw_s)
 policies = {"paper's law": "paper's law", "tuned law": "tuned law", "mine": law}
-seeds = release_seeds("train_leaders", given.test_flocks)
+seeds = release_seeds("train_leaders", settings.test_flocks)
 runs = compare_leaders(flock, [task.n_leaders], policies, seeds, task.episode_s)
 print(runs.groupby("policy")["signed_order"].agg(["mean", "sem"]).round(4))
 

@@ -24,7 +24,7 @@ from flockenv.policies import NetworkPolicy
 
 @dataclass
 class Settings:
-    """One sample is one agent's decision."""
+    """Settings of the training; one sample is one agent's decision."""
 
     episodes: int = 200
     seed: int = 0
@@ -77,46 +77,45 @@ for episode in range(settings.episodes):
 
     # One episode, in which every agent explores.
     observations, infos = env.reset(seed=first_seed + episode)
-    seen, actions, chances, rewards = [], [], [], []
+    observed, actions, log_probs, rewards = [], [], [], []
     with torch.no_grad():
         while env.agents:
-            seen.append(stacked(observations))
-            drawn = Normal(actor(seen[-1]).squeeze(-1), log_std.exp())
-            actions.append(drawn.sample())
-            chances.append(drawn.log_prob(actions[-1]))
+            observed.append(stacked(observations))
+            distribution = Normal(actor(observed[-1]).squeeze(-1), log_std.exp())
+            actions.append(distribution.sample())
+            log_probs.append(distribution.log_prob(actions[-1]))
             rudders = actions[-1].clamp(-1.0, 1.0).numpy()
-            given = {agent: rudders[[index]] for index, agent in enumerate(agents)}
-            observations, gained, _, _, infos = env.step(given)
-            rewards.append(stacked(gained))
-        seen.append(stacked(observations))
+            by_agent = {agent: rudders[[index]] for index, agent in enumerate(agents)}
+            observations, step_rewards, _, _, infos = env.step(by_agent)
+            rewards.append(stacked(step_rewards))
+        observed.append(stacked(observations))
 
-        # Advantages, backward in time. The episode was cut off by its time limit, so its last state
+        # Advantages, backward in time. The episode ended only by its time limit, so its last state
         # still has a value.
-        rows = torch.stack(seen)
+        rows = torch.stack(observed)
         values = critic(rows).squeeze(-1)
-        advantages, later = torch.zeros_like(values[:-1]), torch.zeros(len(agents))
+        advantages, advantage = torch.zeros_like(values[:-1]), torch.zeros(len(agents))
         for step in reversed(range(len(rewards))):
-            surprise = rewards[step] + settings.gamma * values[step + 1] - values[step]
-            later = surprise + settings.gamma * settings.gae_lambda * later
-            advantages[step] = later
+            error = rewards[step] + settings.gamma * values[step + 1] - values[step]
+            advantage = error + settings.gamma * settings.gae_lambda * advantage
+            advantages[step] = advantage
         returns = advantages + values[:-1]
 
-    # All agents' decisions are samples of one policy.
+    # The decisions of all agents are samples of one policy.
     batch = [
         tensor.flatten(0, 1)
-        for tensor in (rows[:-1], torch.stack(actions), torch.stack(chances), advantages, returns)
+        for tensor in (rows[:-1], torch.stack(actions), torch.stack(log_probs), advantages, returns)
     ]
     for _ in range(settings.epochs):
         for part in torch.randperm(len(batch[0])).chunk(settings.minibatches):
-            states, acted, before, gain, wanted = (tensor[part] for tensor in batch)
+            states, taken, old_log_prob, gain, targets = (tensor[part] for tensor in batch)
             gain = (gain - gain.mean()) / (gain.std() + 1e-8)
-            now = Normal(actor(states).squeeze(-1), log_std.exp()).log_prob(acted)
-            ratio = (now - before).exp()
+            log_prob = Normal(actor(states).squeeze(-1), log_std.exp()).log_prob(taken)
+            ratio = (log_prob - old_log_prob).exp()
             clipped = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip)
-            loss = -torch.minimum(ratio * gain, clipped * gain).mean()
-            loss = (
-                loss + settings.value_weight * (critic(states).squeeze(-1) - wanted).pow(2).mean()
-            )
+            actor_loss = -torch.minimum(ratio * gain, clipped * gain).mean()
+            value_loss = (critic(states).squeeze(-1) - targets).pow(2).mean()
+            loss = actor_loss + settings.value_weight * value_loss
             optimizer.zero_grad()
             loss.backward()
             nn.utils.clip_grad_norm_(parameters, settings.largest_gradient)
