@@ -100,13 +100,13 @@ pub extern "C" fn describe() -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn check() -> u32 {
     with_page(|page| {
-        let answer = page.request().and_then(request::Request::read);
-        let answer = answer.and_then(|request| {
+        let request = page.request().and_then(request::Request::read);
+        let values = request.map(|request| {
             let values = describe::values(&request.parameters);
             page.checked = Flock::new(request.parameters, request.seed).ok();
-            Ok(values)
+            values
         });
-        page.answer(answer)
+        page.answer(values)
     })
 }
 
