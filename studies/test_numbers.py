@@ -79,7 +79,7 @@ def entries() -> list[Number]:
         ),
         *interval(
             page,
-            "512 flocks is {}, and that",
+            "at random, but {} over these 512",
             f"{folder}laws.csv",
             {"level": "order-narrow", "policy": "straight ahead"},
             ("signed_order", "low", "high"),
@@ -212,7 +212,7 @@ def section_4() -> list[Number]:
         Number(page, words, "studies/section4/claims.csv", {"quantity": quantity})
         for words, quantity in (
             ("uniform density at {} s (# to #) without leaders", f"{DENSITY}, no leaders"),
-            ("and at {} s (# to #) with three. Through", f"{DENSITY}, 3 leaders, CW"),
+            ("and at {} s (# to #) with three. It falls", f"{DENSITY}, 3 leaders, CW"),
             ("bound of disorder, at {} s", f"{LOST_BELOW}no leaders"),
             (
                 "disorder, at # s (# to #), and with three leaders {} s",
@@ -508,7 +508,7 @@ def response() -> list[Number]:
         ("(# to #) and {} times: these", at_end, large[400], ".2f"),
         ("At 0.2 s it is {} and", at_end, (27, 0.2), ".2f"),
         ("at 0.5 s {} times, both", at_end, (27, 0.5), ".2f"),
-        ("one learned leader responds as {} by", learned.format(1), small, ".2f"),
+        ("leader moves the flock as much as {} by", learned.format(1), small, ".2f"),
         ("1600 boats as {}, # (", learned.format(4), large[100], ".2f"),
         ("1600 boats as # (# to #), {} and", learned.format(15), large[400], ".2f"),
         ("(# to #) and {}.", learned.format(59), large[1600], ".2f"),

@@ -308,7 +308,7 @@ def our_settings() -> list[Number]:
             ".1f",
         ),
         *(
-            Number(PAGE, f"Ψ_o is higher by {words}", changes, training | {"dt, s": dt_s}, column)
+            Number(PAGE, f"Ψ_o changes by {words}", changes, training | {"dt, s": dt_s}, column)
             for dt_s, column, words in (
                 (0.05, rise, "{} ± # at dt"),
                 (0.05, width, "# ± {} at dt"),

@@ -130,6 +130,26 @@ def critical() -> list[Number]:
     ]
 
 
+def instructions() -> list[Number]:
+    """Instructions of a control step, which say why a GPU would gain little."""
+    page, table = "docs/questions.md", "benches/instructions.csv"
+
+    def thousands(rows: Any) -> float:
+        return round(rows["instructions per step"].item(), -3)
+
+    return [
+        Number(
+            page,
+            f"of 27 boats takes {words} instructions",
+            table,
+            {"scene": f"training control step in {pool}"},
+            thousands,
+            ",.0f",
+        )
+        for words, pool in (("{} to #", "wide"), ("# to {}", "narrow"))
+    ]
+
+
 def room(pool: str, boat_radius_cm: float = 5.0) -> int:
     """Hulls that the water of a pool has room for by their length and width."""
     outer, inner = flockenv.FlockParameters.preset("simulation").replace(pool=pool).pool_radii_cm
@@ -315,8 +335,8 @@ def readme_of_studies(page: str) -> list[Number]:
             )
             for words, reading in (
                 ("lose it at bw = {} s with white noise", "simulation"),
-                ("it is {} to # s: the less", "paper, 0.1 cm"),
-                ("it is # to {} s: the less", "paper, 0.001 cm"),
+                ("lose it at {} to # s: the less", "paper, 0.1 cm"),
+                ("lose it at # to {} s: the less", "paper, 0.001 cm"),
             )
         ),
         *(
@@ -420,6 +440,7 @@ NUMBERS = [
     *quoted_speed.every(),
     *energy(),
     *critical(),
+    *instructions(),
     *levels(),
     *easy_branches(),
     *leaders("README.md"),
