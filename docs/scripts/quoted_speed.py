@@ -111,7 +111,7 @@ def speed() -> list[Number]:
     numbers += [
         Number(page, words, f"{SPEED}short_engines.csv", drake, column, "g")
         for words, column in (
-            ("takes them: a step takes {} µs", "jam, µs"),
+            ("SAP accepts: a step takes {} µs", "jam, µs"),
             ("in the jam and {} µs in the cycle", "cycle, µs"),
         )
     ]

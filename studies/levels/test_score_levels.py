@@ -211,7 +211,7 @@ def test_a_row_links_its_entry_and_names_the_commits_of_its_policies(script) -> 
     assert all(commit.endswith("+") for commit in commits)
     text = script.PAGE.read_text("utf-8")
     assert f"{lost} policies of `order-easy` name a commit that is not in the history" in text
-    assert f"the other {others} name one with +" in text
+    assert f"the other {others} policies name a commit with +" in text
 
 
 def test_ranks_are_known_on_paper(script) -> None:
@@ -264,7 +264,7 @@ def test_the_page_names_what_the_tables_say(script) -> None:
     )
     text = (script.HERE / "README.md").read_text("utf-8")
     *names, last = script.told_apart(pairs)
-    assert f"Each two differ of {', '.join(names)} and {last}.**" in text
+    assert f"{', '.join(names)} and {last} all differ from each other.**" in text
     assert f"- **Best.** {entries['entry'].iloc[0]} has " in text
     listed = (f"{row.entry} {row.area:.2f}" for row in areas.itertuples())
     assert ", ".join(listed).replace("-", "−") in text

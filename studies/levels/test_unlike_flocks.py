@@ -172,11 +172,11 @@ def test_the_page_names_the_algorithms_that_are_best_on_both_sides(script) -> No
     ranks = ranks.set_index("level")
     same = ranks["best_own"] == ranks["best_unlike"]
     assert list(ranks.index[~same]) == ["order-narrow"]
-    words = "that ranks best in its own flocks ranks best in unlike ones, too"
+    words = "that ranks best in the level's own flocks ranks best in unlike ones, too"
     best, narrow = ranks["best_own"], ranks.loc["order-narrow"]
     assert (
         f"{words}: {best['order-easy']} in `order-easy` and `order-noisy`, and "
         f"{best['order-wide']} in `order-wide`. In `order-narrow` {narrow['best_own']} ranks best "
-        f"in its own, and {narrow['best_unlike']} in unlike ones.**"
+        f"in the level's own flocks, and {narrow['best_unlike']} in unlike ones.**"
     ) in text
     assert best["order-easy"] == best["order-noisy"]
