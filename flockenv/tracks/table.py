@@ -131,14 +131,18 @@ def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame"
                 f"every column needs a name{_separator_hint(names)}"
             )
     names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
+    # Numbers that are names of boats stay texts: 007 is not 7.
+    id_key = _key(layout.id or "")
     table: pd.DataFrame = pandas.read_csv(
         io.StringIO(text),
         sep=r"\s+" if separator == " " else separator,
+        decimal=layout.decimal,
         skiprows=first - 1,
         header=None,
         names=range(len(names)),
         index_col=False,
-        dtype=str,
+        dtype={index: str for index, name in enumerate(names) if _key(name) == id_key},
+        low_memory=False,
         keep_default_na=False,
         na_values=[""],
         skipinitialspace=True,
