@@ -14,9 +14,9 @@ class Format(NamedTuple):
     """The table of one program."""
 
     program: str
-    #: Columns by field of a layout; a table of the program has all of them.
+    #: Patterns of columns by field of a layout; a table of the program has all of them.
     columns: Mapping[str, str]
-    #: Other fields of a layout: the clock, the axes, the hull's columns.
+    #: Other fields of the layout, such as the clock and the direction of y.
     fields: Mapping[str, Any] = MappingProxyType({})
     #: First cells, in lower case, of a header in levels: in its first line, and in lines of names.
     levels: tuple[str, ...] = ()
@@ -26,30 +26,27 @@ class Format(NamedTuple):
 
 _MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
 _BOX = {"y": "bb_top", "box": _MOT[4:6], "heading": "", "y_down": True}
-_TURN = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Its vertical axis is Y.
-_ABOVE = {"y": "{id}.Position_Z", "quaternion": _TURN, "heading_turns": "ccw", "y_down": True}
+_ROTATION = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Motive's vertical axis is Y.
+_RIGID_BODY = {"y": "{id}.Position_Z", "quaternion": _ROTATION, "heading_turns": "ccw"}
+_RIGID_BODY |= {"y_down": True}
 _BODIES = ("type", "name", "", "frame")
 _PARTS = ("scorer", "individuals", "bodyparts", "coords")
 
 FORMATS = (
     Format("MOT", {"frame": "frame", "id": "id", "x": "bb_left"}, _BOX, header=_MOT),
-    Format("Motive", {"frame": "Time (Seconds)", "x": "{id}.Position_X"}, _ABOVE, levels=_BODIES),
-    Format("DeepLabCut", {"frame": "frame", "x": "{id}.{part}_x"}, levels=_PARTS),
-    Format("DeepLabCut, one animal", {"frame": "frame", "x": "{part}_x"}),
-    Format("SLEAP", {"frame": "frame_idx", "id": "track", "x": "{part}.x"}),
-    Format("movement", {"frame": "time", "id": "individual*", "x": "{part}_x"}),
+    Format(
+        "Motive", {"frame": "Time (Seconds)", "x": "{id}.Position_X"}, _RIGID_BODY, levels=_BODIES
+    ),
     Format("TrackMate", {"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
     Format("ROS", {"frame": "%time", "x": "*position.x"}, {"fps": 1e9}),
     Format("ROS 2", {"frame": "*rosbagTimestamp", "x": "*position.x"}, {"fps": 1e9}),
     Format("AnimalTA", {"frame": "Time", "x": "X_{id}"}),
-    Format("EthoVision", {"frame": "Trial time", "x": "X center"}),
-    Format("idtracker.ai", {"frame": "seconds", "x": "*x{n}*"}),
-    Format("numbered columns", {"x": "*x{n}*"}),
-    Format("key points of several", {"x": "{id}.{part}_x"}),
-    Format("key points", {"x": "{part}_x"}),
-    Format("key points", {"x": "{part}.x"}),
+    Format("numbered columns, as of idtracker.ai", {"x": "*x{n}*"}),
+    Format("DeepLabCut", {"x": "{id}.{part}_x"}, levels=_PARTS),
+    Format("key points, as of DeepLabCut and movement", {"x": "{part}_x"}),
+    Format("key points, as of SLEAP", {"x": "{part}.x"}),
 )
-"""A row for each program, the more special ones first."""
+"""A row for each program that writes columns which `WORDS` lacks, the more special ones first."""
 
 NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
 """Cells that stand for a missing number, in lower case."""
@@ -103,12 +100,11 @@ PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
 _LONGEST = 200
-"""Longest name of a column that is compared: longer ones take time and match nothing."""
+"""Length of the longest column name that is compared. Longer names take time and match nothing."""
 
-_TELLING = {"heading", "confidence", "quaternion", "box", "fps"}
+_PREFERRED = {"heading", "confidence", "quaternion", "box", "fps"}
 """Fields that make key points and numbered columns better than plain columns of x and y."""
 
-_ANGLES = ("heading", "theta", "angle", "orientation", "alpha", "yaw")
 _PLACEHOLDERS = {
     "{id}": r"(?P<id>.+?)",
     "{part}": r"(?P<part>[^.]+)",
@@ -128,46 +124,55 @@ def plain(name: str) -> tuple[str, str]:
 
 
 def unit_of(name: str) -> str:
-    """Return the unit in the name of a column of times, perhaps its last word: time_min."""
+    """Return the unit in the name of a column of times, otherwise its last word, as in time_min."""
     words, unit = plain(name)
     return unit or words.rpartition("_")[2]
 
 
 def header_of(count: int) -> list[str]:
-    """Return the columns of a program that writes `count` columns without a header, or none."""
-    headers = (program.header for program in FORMATS if count <= len(program.header) <= count + 4)
+    """Return the names of the columns of a program that writes `count` columns without a header.
+
+    If there is no such program, the list is empty.
+    """
+    headers = (program.header for program in FORMATS if 0 <= len(program.header) - count <= 4)
     return [*next(headers, ())[:count]]
 
 
 def _matches(pattern: str, names: Iterable[str]) -> list[re.Match[str]]:
+    """Return the matches of a pattern of `FORMATS` among names, in any case."""
     text = re.escape(pattern)
     for placeholder, expression in _PLACEHOLDERS.items():
         text = text.replace(re.escape(placeholder), expression)
-    found = (re.fullmatch(text, name, re.IGNORECASE) for name in names)
-    return [match for match in found if match]
+    matches = (re.fullmatch(text, name, re.IGNORECASE) for name in names)
+    return [match for match in matches if match]
 
 
 def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | None:
     """Return the first match of the first pattern that has one."""
-    return next((found[0] for pattern in patterns if (found := _matches(pattern, names))), None)
+    return next((match for pattern in patterns for match in _matches(pattern, names)), None)
 
 
 def _siblings(name: str, letter: str, others: str, names: Names) -> list[str]:
-    """Return columns with other letters in place of one letter of a name, if all are in `names`."""
+    """Return the names with each of the `others` in place of a letter: "pos_y" for "pos_x" and "y".
+
+    One occurrence of the letter is replaced, the last one first, then all together. The first
+    choice counts whose names are all in `names`; without one the list is empty.
+    """
     swaps = [str.maketrans(letter + letter.upper(), other + other.upper()) for other in others]
-    spans = [(at, at + 1) for at in reversed(range(len(name))) if name[at].lower() == letter]
+    spans = [(i, i + 1) for i in reversed(range(len(name))) if name[i].lower() == letter]
     for start, end in [*spans, (0, len(name))] if spans else []:
-        found = [f"{name[:start]}{name[start:end].translate(swap)}{name[end:]}" for swap in swaps]
-        if names.keys() >= {*found}:
-            return found
+        siblings = [f"{name[:start]}{name[start:end].translate(s)}{name[end:]}" for s in swaps]
+        if names.keys() >= {*siblings}:
+            return siblings
     return []
 
 
 def key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
     """Return the columns of x, y, heading and confidence that follow from key points.
 
-    The center is a point in the middle, or the middle of head and tail, or the only point. If there
-    are several others, the center is ambiguous, and no fields are returned.
+    `stems` holds the start of the columns' names by key point, such as "nose_" for "nose". The
+    center is the key point in the middle, or the mean of tail and head, or the only key point.
+    Otherwise the center is ambiguous, and no fields are returned.
     """
     tail, head, middle = (
         [stem for name, stem in stems.items() if plain(name)[0] in words][:1] for words in _POINTS
@@ -180,65 +185,72 @@ def key_points(stems: Mapping[str, str], names: Names) -> dict[str, list[str]]:
     if ends:
         form["heading"] = [f"{stem}{axis}" for stem in ends for axis in "xy"]
     for word in ("likelihood", "score", "confidence"):
-        sure = {f"{stem}{word}" for stem in (*center, *ends)}
-        if names.keys() >= sure:
-            form["confidence"] = sorted(sure)
+        confidence = {f"{stem}{word}" for stem in (*center, *ends)}
+        if names.keys() >= confidence:
+            form["confidence"] = sorted(confidence)
     return form
 
 
-def _of_all(boat: re.Match[str], name: str) -> str:
-    """Return a column of a boat with ``{id}`` in place of the boat's name or number."""
+def _with_id(boat: re.Match[str], name: str) -> str:
+    """Return the name of a boat's column with ``{id}`` in place of the boat's name or number."""
     return f"{name[: boat.start('id')]}{{id}}{name[boat.end('id') :]}"
 
 
 def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any] | None:
     """Return the fields of a layout if the table is this program's, otherwise None."""
-    found = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
-    pairs = [x for x in found["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
+    matches = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
+    pairs = [x for x in matches["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
     # In a table with names x1, y1, x2 and y2 may be a box around each boat instead of two boats.
     is_box = has_ids and sorted(str(x.groupdict().get("id")) for x in pairs) == ["1", "2"]
-    if not pairs or not all(found.values()) or is_box:
+    if not pairs or not all(matches.values()) or is_box:
         return None
     first = pairs[0]
-    known = {field: [matches[0][0]] for field, matches in found.items()}
+    known = {field: [field_matches[0][0]] for field, field_matches in matches.items()}
     if "part" in first.groupdict():
-        own = [pair for pair in pairs if pair.groupdict().get("id") == first.groupdict().get("id")]
+        boat = first.groupdict().get("id")
+        points = [pair for pair in pairs if pair.groupdict().get("id") == boat]
         del known["x"]
-        columns = key_points({pair["part"]: pair[0][:-1] for pair in own}, names)
+        columns = key_points({point["part"]: point[0][:-1] for point in points}, names)
     else:
         columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}
     if "id" in first.groupdict():
-        columns = {field: [_of_all(first, name) for name in columns[field]] for field in columns}
-        if columns and columns["x"] == columns["y"]:  # The boat of a key point x is no boat.
+        columns = {field: [_with_id(first, name) for name in columns[field]] for field in columns}
+        if columns and columns["x"] == columns["y"]:  # The key point x was taken for a boat.
             return None
         known["id"] = [""]
-        angle = _first([f"*{word}{{n}}*" for word in _ANGLES], names)
+        angle = _first([f"*{word}{{n}}*" for word in WORDS["heading"]], names)
         if angle and "part" not in first.groupdict():
-            known["heading"] = [_of_all(angle, angle[0])]
-    form = (known | columns).items()
-    return {field: each[0] if len(each) == 1 else each for field, each in form} | {**program.fields}
+            known["heading"] = [_with_id(angle, angle[0])]
+    form = {
+        field: names_of_field[0] if len(names_of_field) == 1 else names_of_field
+        for field, names_of_field in (known | columns).items()
+    }
+    return form | {**program.fields}
 
 
 def recognized(columns: Iterable[str]) -> dict[str, Any]:
-    """Return the fields of a layout that follow from names of columns; some may be empty."""
+    """Return the fields of a layout that follow from names of columns.
+
+    The result lacks fields that do not follow, and "" stands for None.
+    """
     names = dict.fromkeys(name for name in columns if len(name) <= _LONGEST)
     by_plain = dict[str, str]()
     for name in names:
         by_plain.setdefault(plain(name)[0], name)
-    found = {field: _first(words, by_plain) for field, words in WORDS.items()}
-    form: dict[str, Any] = {field: by_plain[match[0]] for field, match in found.items() if match}
+    matches = {field: _first(words, by_plain) for field, words in WORDS.items()}
+    form: dict[str, Any] = {field: by_plain[match[0]] for field, match in matches.items() if match}
     x = form.pop("x", "")
     if y := _siblings(x, "x", "y", names):
         form |= {"x": x, "y": y[0]}
     for program in FORMATS:
         known = _fields_of(program, names, has_ids="id" in form)
-        # Any pair of columns looks like a key point of the general formats.
-        is_plain = "y" not in form or "{" not in program.columns["x"]
-        if known is not None and (is_plain or _TELLING & known.keys()):
+        # Plain columns of x and y also look like a key point of the general formats.
+        is_needed = "y" not in form or "{" not in program.columns["x"]
+        if known is not None and (is_needed or _PREFERRED & known.keys()):
             form |= known
             break
     if not {"heading", "quaternion"} & form.keys():
-        turns = (_siblings(name, "w", "xyzw", names) for name in names)
-        if turn := next(filter(None, turns), []):
-            form["quaternion"] = turn
+        quaternions = (_siblings(name, "w", "xyzw", names) for name in names)
+        if quaternion := next(filter(None, quaternions), []):
+            form["quaternion"] = quaternion
     return form | ({"heading": ""} if "quaternion" in form else {})
