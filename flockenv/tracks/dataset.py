@@ -1,4 +1,4 @@
-"""Datasets as the package movement makes them, as tables of tracks."""
+"""Datasets of the package movement as tables of tracks."""
 
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ _DIMENSIONS = ("time", "space", "individuals", "keypoints")
 def dataset_table(
     dataset: "xarray.Dataset", layout: TrackLayout
 ) -> "tuple[pd.DataFrame, TrackLayout]":
-    """Return a dataset as a table, and the layout, which is completed by the dataset.
+    """Return a dataset as a table, and the layout completed with what the dataset says.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
     such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
@@ -35,8 +35,8 @@ def dataset_table(
     data = data.rename({name: f"{name}s" for name in data.dims if f"{name}s" in _DIMENSIONS})
     data = data.expand_dims([name for name in _DIMENSIONS[2:] if name not in data.dims])
     for name, variable in data.items():
-        wanted = {*_DIMENSIONS} - ({"space"} if name == "confidence" else set())
-        if {*variable.dims} != wanted or not wanted & {"time", "space"} <= {*variable.coords}:
+        expected = {*_DIMENSIONS} - ({"space"} if name == "confidence" else set())
+        if {*variable.dims} != expected or not expected & {"time", "space"} <= {*variable.coords}:
             raise ParameterError(
                 f"{name} has the dimensions {', '.join(map(str, variable.dims))}, and "
                 f"{', '.join(_DIMENSIONS)} are accepted"
@@ -63,25 +63,25 @@ def dataset_table(
 def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
     """Return the names along a dimension, or its numbers if there are none."""
     names = data.get_index(dimension).astype(str)
-    for again in names[names.duplicated()][:1]:
-        count = (names == again).sum()
-        raise ParameterError(f"{count} {dimension} of the dataset are called {again!r}")
+    for repeated in names[names.duplicated()][:1]:
+        count = (names == repeated).sum()
+        raise ParameterError(f"{count} {dimension} of the dataset are called {repeated!r}")
     return [*names]
 
 
 def _completed(
     dataset: "xarray.Dataset", layout: TrackLayout, stems: dict[str, str]
 ) -> TrackLayout:
-    """Return a layout with missing fields taken from the dataset."""
-    given = {one.name for one in fields(layout) if getattr(layout, one.name) != one.default}
-    known, points = key_points(stems, {}), listed([*stems])
-    form: dict[str, Any] = {"frame": "time", "id": "individuals", **known}
-    if "heading" not in known and not {"heading", "quaternion"} & given:
+    """Return a layout whose fields with their default are taken from the dataset."""
+    set_fields = {f.name for f in fields(layout) if getattr(layout, f.name) != f.default}
+    columns, points = key_points(stems, {}), listed([*stems])
+    form: dict[str, Any] = {"frame": "time", "id": "individuals", **columns}
+    if "heading" not in columns and not {"heading", "quaternion"} & set_fields:
         raise ParameterError(
             f"the dataset has no headings: its key points are {points or 'one'}; name those of "
             "tail and head in heading, or heading = None takes the direction of motion"
         )
-    if not known and "x" not in given:
+    if not columns and "x" not in set_fields:
         raise ParameterError(
             f"which of the key points {points} is the center is not known: name its columns in x "
             f"and y, such as x = {[f'{stem}x' for stem in stems.values()]}"
@@ -96,4 +96,6 @@ def _completed(
     time_unit = dataset.attrs.get("time_unit", "seconds")
     if time_unit != "seconds" and layout.fps is None:
         raise ParameterError(f"times of the dataset are in {time_unit}: fps is missing")
-    return replace(layout, **{name: value for name, value in form.items() if name not in given})
+    return replace(
+        layout, **{name: value for name, value in form.items() if name not in set_fields}
+    )

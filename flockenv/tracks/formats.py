@@ -25,10 +25,10 @@ class Format(NamedTuple):
 
 
 _MOT = ("frame", "id", "bb_left", "bb_top", "bb_width", "bb_height", "conf", "x", "y", "z")
-_BOX = {"y": "bb_top", "box": _MOT[4:6], "heading": "", "y_down": True}
+_BOX: dict[str, Any] = {"y": "bb_top", "box": _MOT[4:6], "heading": "", "y_down": True}
 _ROTATION = tuple(f"{{id}}.Rotation_{axis}" for axis in "XZYW")  # Motive's vertical axis is Y.
-_RIGID_BODY = {"y": "{id}.Position_Z", "quaternion": _ROTATION, "heading_turns": "ccw"}
-_RIGID_BODY |= {"y_down": True}
+_RIGID_BODY: dict[str, Any] = {"y": "{id}.Position_Z", "quaternion": _ROTATION}
+_RIGID_BODY |= {"heading_turns": "ccw", "y_down": True}
 _BODIES = ("type", "name", "", "frame")
 _PARTS = ("scorer", "individuals", "bodyparts", "coords")
 
@@ -130,10 +130,7 @@ def unit_of(name: str) -> str:
 
 
 def header_of(count: int) -> list[str]:
-    """Return the names of the columns of a program that writes `count` columns without a header.
-
-    If there is no such program, the list is empty.
-    """
+    """Return the names of `count` columns that a program writes without a header, or []."""
     headers = (program.header for program in FORMATS if 0 <= len(program.header) - count <= 4)
     return [*next(headers, ())[:count]]
 
@@ -153,10 +150,9 @@ def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | Non
 
 
 def _siblings(name: str, letter: str, others: str, names: Names) -> list[str]:
-    """Return the names with each of the `others` in place of a letter: "pos_y" for "pos_x" and "y".
+    """Return the columns with each of the `others` in place of a letter: "pos_y" for "pos_x".
 
-    One occurrence of the letter is replaced, the last one first, then all together. The first
-    choice counts whose names are all in `names`; without one the list is empty.
+    The last occurrence of the letter is tried first, and all together last; [] if none fits.
     """
     swaps = [str.maketrans(letter + letter.upper(), other + other.upper()) for other in others]
     spans = [(i, i + 1) for i in reversed(range(len(name))) if name[i].lower() == letter]
@@ -221,10 +217,7 @@ def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any
         angle = _first([f"*{word}{{n}}*" for word in WORDS["heading"]], names)
         if angle and "part" not in first.groupdict():
             known["heading"] = [_with_id(angle, angle[0])]
-    form = {
-        field: names_of_field[0] if len(names_of_field) == 1 else names_of_field
-        for field, names_of_field in (known | columns).items()
-    }
+    form = {field: n[0] if len(n) == 1 else n for field, n in (known | columns).items()}
     return form | {**program.fields}
 
 

@@ -28,15 +28,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Form = dict[str, Any]
+"""Values of a layout's fields."""
+
 Doubts = dict[str, tuple[Any, str]]
+"""Values of a layout's fields that must be checked or filled in, each with a hint."""
 
 
 def guess_layout(path: str | os.PathLike[str]) -> list[str]:
     """Write a description of tracks beside their table, guessed from the table.
 
-    The description is a TOML file with the table's name. Returns the lines that the user has to
-    check or to fill in, since they do not follow from the table. Raises ParameterError for a file
-    that is not a table, and for a description that exists already.
+    The description is a TOML file with the table's name. Returns those of its lines that do not
+    follow from the table, so that the user has to check them or fill them in. Raises ParameterError
+    for a file that is not a table, and for a description that exists already.
     """
     path = Path(path)
     description = description_of(path)
@@ -54,21 +57,21 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _guessed(path: Path) -> tuple[Form, Doubts]:
-    """Return the fields of a layout, and the doubtful ones with a hint what to do about them."""
+    """Return the fields of a layout that follow from the table, and the doubtful ones."""
     form, doubts = spelling_of(path), Doubts()
     rows = read_table(path, TrackLayout(pool="wide", **form))
     names = [*map(str, rows)]
     if all(is_value(name) or name.startswith("unnamed") for name in names):
-        known = header_of(len(names)) if "separator" not in form else []
-        names = form["header"] = known or [f"column {n}" for n in range(len(names))]
-        if not known:
+        program_header = header_of(len(names)) if "separator" not in form else []
+        names = form["header"] = program_header or [f"column {n}" for n in range(len(names))]
+        if not program_header:
             doubts["header"] = (names, "fill in: names of the columns, which the file lacks")
         rows = read_table(path, TrackLayout(pool="wide", **form))
     form |= recognized(names) if "header" not in doubts else {}
     missing = [name for name in ("frame", "x", "y", "id") if name not in form]
-    words = f"fill in: one of the columns {listed(names)}"
+    hint = f"fill in: one of the columns {listed(names)}"
     for name in missing:
-        doubts[name], words = ("", words), "fill in: another column"
+        doubts[name], hint = ("", hint), "fill in: another column"
     if missing in ([], ["id"]):
         _guess_from_values(rows, form, doubts)
     else:
@@ -81,7 +84,7 @@ def _guessed(path: Path) -> tuple[Form, Doubts]:
 
 
 def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None:
-    """Add fields that follow from the table's values to those from its columns' names."""
+    """Add the fields that follow from the table's values to `form` and `doubts`."""
     layout = TrackLayout(pool="wide", **{"heading": "", "id": "", **form, "confidence": ""})
     table, names = long_table(rows, layout)
     if "id" in form and names is None:
@@ -96,11 +99,11 @@ def _guess_from_values(rows: "pd.DataFrame", form: Form, doubts: Doubts) -> None
         elif is_whole and "fps" not in form:
             doubts["fps"] = (25.0, "check: frames, or other units of this column, per second")
     if len(layout.columns["heading"]) == 1:
-        _guess_turn(table[layout.columns["heading"][0]].abs().dropna(), form, doubts)
+        _guess_heading_unit(table[layout.columns["heading"][0]].abs().dropna(), form, doubts)
 
 
 def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: Doubts) -> None:
-    """Guess the pool, its center and the scale from all positions."""
+    """Guess the pool, its center, the scale and the direction of y from all positions."""
     x, y = (layout.columns[axis][:1] for axis in "xy")
     (points,), _ = points_of(table, x, y, layout)
     points = points[np.isfinite(points)]
@@ -110,34 +113,34 @@ def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: 
         raise ParameterError("no row has a position")
     low, high = (complex(f(points.real), f(points.imag)) for f in (np.min, np.max))
     center, unit = (low + high) / 2, plain(x[0])[1]
-    radius = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
-    words = "check: outer and inner radius in cm, here about all positions"
-    doubts["pool"] = ([round(radius, 1), 0.0], words)
-    words = "check: the pool's, in units of the file, here of all positions"
-    doubts["center"] = ([round(center.real, 2), round(center.imag, 2)], words)
+    radius_cm = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
+    hint = "check: outer and inner radius in cm, here about all positions"
+    doubts["pool"] = ([round(radius_cm, 1), 0.0], hint)
+    hint = "check: the pool's, in units of the file, here of all positions"
+    doubts["center"] = ([round(center.real, 2), round(center.imag, 2)], hint)
     if unit in CM:
         form["cm_per_unit"] = CM[unit]
     else:
-        word = "fill in" if unit else "check"
-        doubts["cm_per_unit"] = (1.0, f"{word}: how many cm a unit of x and y has")
+        task = "fill in" if unit else "check"
+        doubts["cm_per_unit"] = (1.0, f"{task}: how many cm a unit of x and y has")
     # Pixel coordinates count from the upper left corner.
-    is_down = form.get("y_down", bool(low.real >= 0.0 and low.imag >= 0.0))
-    words = "check: whether y points down; compare `analyze --plot` with the video"
-    doubts["y_down"] = (is_down, words)
+    y_down = form.get("y_down", bool(low.real >= 0.0 and low.imag >= 0.0))
+    hint = "check: whether y points down; compare `analyze --plot` with the video"
+    doubts["y_down"] = (y_down, hint)
     if lost:
         doubts["lost"] = (lost, "check: points that stand for a missing boat")
 
 
-def _guess_turn(turns: "pd.Series[float]", form: Form, doubts: Doubts) -> None:
-    """Guess the unit of headings from their column's name, or from how large they are."""
-    name = plain(form["heading"])[1].replace("°", "deg")
-    said = next((unit for unit in ("deg", "rad") if name.startswith(unit)), None)
-    largest = turns.quantile(0.99)  # A few may be placeholders.
-    unit = said or ("deg" if largest > TURN["rad"] + TINY else "rad")
-    if said:
-        form["heading_unit"] = said
+def _guess_heading_unit(sizes: "pd.Series[float]", form: Form, doubts: Doubts) -> None:
+    """Guess the unit of headings from their column's name, or from their absolute values."""
+    written_unit = plain(form["heading"])[1].replace("°", "deg")
+    known_unit = next((unit for unit in ("deg", "rad") if written_unit.startswith(unit)), None)
+    largest = sizes.quantile(0.99)  # A few may be placeholders.
+    unit = known_unit or ("deg" if largest > TURN["rad"] + TINY else "rad")
+    if known_unit:
+        form["heading_unit"] = known_unit
     elif unit == "deg":
-        words = "check: headings exceed a full turn in rad; wrapped = false if they are in rad"
-        doubts["heading_unit"] = ("deg", words)
+        hint = "check: headings exceed a full turn in rad; wrapped = false if they are in rad"
+        doubts["heading_unit"] = ("deg", hint)
     if largest > TURN[unit] + TINY:
         doubts["wrapped"] = (False, "check: headings exceed a full turn")

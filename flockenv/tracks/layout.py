@@ -30,7 +30,10 @@ _ACCEPTED: dict[Any, str] = {
     tuple[str, ...]: "a list of names",
     tuple[tuple[float, float], ...]: "a list of points [x, y]",
 }
-"""Accepted values by a field's annotation without None; FlockParameters checks other fields."""
+"""Accepted values, for errors, by a field's annotation without None.
+
+Literals list theirs, and `FlockParameters` checks fields of `Any`.
+"""
 
 
 def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
@@ -45,9 +48,9 @@ def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
         kinds = kinds[:1] * len(value) if kinds[-1] is ... and isinstance(value, tuple) else kinds
         if not isinstance(value, tuple) or len(value) != len(kinds):
             return False
-        return all(_is_of(one, item, inside=True) for one, item in zip(kinds, value, strict=True))
+        return all(_is_of(k, item, inside=True) for k, item in zip(kinds, value, strict=True))
     if kinds:
-        return any(_is_of(one, value) for one in kinds)
+        return any(_is_of(alternative, value) for alternative in kinds)
     if kind is float:
         is_number = isinstance(value, Real) and not isinstance(value, bool)
         return is_number and math.isfinite(value) and (inside or value > 0.0)
@@ -64,17 +67,17 @@ def _check(name: str, kind: object, value: object) -> None:
         words = [word if word.isalpha() else repr(word) for word in get_args(kind) if word]
         accepted = " or ".join(words)
     else:
-        accepted = next(words for one, words in _ACCEPTED.items() if kind in (one, one | None))
+        accepted = next(words for k, words in _ACCEPTED.items() if kind in (k, k | None))
     raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {accepted}")
 
 
 def _plain(name: str, value: object) -> object:
-    """Return lists as tuples. Names of boats and of missing values may be written as numbers."""
+    """Return lists as tuples, and numbers in a list of names as texts."""
     if not isinstance(value, list | tuple):
         return value
-    as_text = name in ("leaders", "unassigned", "missing")
+    holds_names = name in ("leaders", "unassigned", "missing")
     plain = (_plain("", item) for item in value)
-    return tuple(str(v) if as_text and type(v) in (int, float) else v for v in plain)
+    return tuple(str(v) if holds_names and type(v) in (int, float) else v for v in plain)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,8 +86,9 @@ class TrackLayout:
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
-    columns such as ``nose_x``, and missing fields are found by their names. A list becomes a tuple,
-    and "" becomes None. Raises ParameterError for a value out of range or of another kind.
+    columns such as ``nose_x``, and fields with their default follow from the key points' names. A
+    list becomes a tuple, and "" becomes None. Raises ParameterError for a value out of range or of
+    another kind.
     """
 
     pool: Any  #: As for `recording_of`.
@@ -97,18 +101,18 @@ class TrackLayout:
     #: Units of that column per second: frames per second, 1000 if it counts ms, 1/60 if it counts
     #: minutes. Whole numbers need it, for example 1 if they count seconds.
     fps: float | None = None
-    #: Column of names; None if the table has one boat, or has the boats' names in those of its
-    #: columns. If no row has a name, all rows belong to one boat.
+    #: Column of names. None if the table has one boat, or if names of columns hold the boats'
+    #: names. If no row has a name, all rows belong to one boat.
     id: str | None = "id"
     x: _Columns = "x"  #: Column of the center's x, or several whose mean it is.
     y: _Columns = "y"  #: As many columns of y.
     #: Columns of width and height, if x and y are the least corner of a box around the boat.
     box: tuple[str, str] | None = None
-    #: Column of headings; or the columns x, y of the tail and x, y of the head, two key points; or
-    #: None for the direction of motion, which is wrong for robots that are pushed sideways.
+    #: Column of headings, or four columns: x, y of the tail and x, y of the head, two key points.
+    #: None takes the direction of motion, which is wrong for robots that are pushed sideways.
     heading: str | _Four | None = "heading"
-    #: Columns x, y, z and w of a rotation, in place of `heading`, where z is the vertical. In a
-    #: system in which y is up these are the columns x, z, y and w.
+    #: Columns x, y, z and w of a rotation, in place of `heading`; z is the vertical. In a system in
+    #: which y is up, name the columns x, z, y and w.
     quaternion: _Four | None = None
     heading_unit: Literal["rad", "deg", "turn"] = "rad"  #: "turn" is a full turn.
     #: Where heading 0 points in the picture: "right", "up" (a compass's north), "left", "down".
@@ -116,15 +120,15 @@ class TrackLayout:
     #: The direction in which headings grow in the picture. None: from x to y of the file, clockwise
     #: if y points down.
     heading_turns: Literal["cw", "ccw", None] = None
-    #: Whether headings are axes without a bow, such as of ellipses. The bow is then the end towards
-    #: which a boat mostly moves, so a boat must not move backward for longer than forward.
+    #: Whether headings are axes without a bow, such as those of ellipses. The bow is then the end
+    #: toward which a boat mostly moves, so a boat must not move backward for longer than forward.
     axis: bool = False
     wrapped: bool = True  #: Whether headings are within a full turn.
     #: Length in cm of a unit in the file, such as a pixel. None: 1, or what a dataset says.
     cm_per_unit: float | None = None
     center: tuple[float, float] = (0.0, 0.0)  #: Center of the pool in units of the file.
     y_down: bool = False  #: Whether y points down, as in pictures.
-    max_speed_cm_s: float = 200.0  #: Highest speed: no velocity is taken across a faster step.
+    max_speed_cm_s: float = 200.0  #: Highest speed; a faster step gives no velocity.
     confidence: _Columns | None = None  #: Columns of the confidence in a row.
     least_confidence: float | None = None  #: The least value with which a row counts.
     unassigned: tuple[str, ...] = NOBODY  #: Names of detections that are not boats, in any case.
@@ -138,32 +142,30 @@ class TrackLayout:
     header: tuple[str, ...] = ()  #: Names of the columns of a text file without a header.
 
     def __post_init__(self) -> None:
-        for one in fields(self):
-            value = _plain(one.name, getattr(self, one.name))
-            if value == "" and {None, NoneType} & {*get_args(one.type)}:
+        for field in fields(self):
+            value = _plain(field.name, getattr(self, field.name))
+            if value == "" and {None, NoneType} & {*get_args(field.type)}:
                 value = None
-            _check(one.name, one.type, value)
-            object.__setattr__(self, one.name, value)
+            _check(field.name, field.type, value)
+            object.__setattr__(self, field.name, value)
         if not 0 < len(columns_of(self.x)) == len(columns_of(self.y)):
             raise ParameterError(f"x = {self.x!r} and y = {self.y!r} are not as many columns")
         if (self.confidence is None) != (self.least_confidence is None):
             raise ParameterError("confidence and least_confidence need each other")
-        count, size = (
-            len(self.leaders),
-            {"boat_radius_cm": self.hull[0], "boat_shape": self.hull[1]},
-        )
-        known: dict[str, Any] = {"pool": self.pool, "target": self.target, **size}
+        radius_cm, shape = self.hull
+        values: dict[str, Any] = {"n_leaders": len(self.leaders), "n_boats": len(self.leaders) + 1}
+        values |= {"boat_radius_cm": radius_cm, "boat_shape": shape}
         try:
-            flock = FlockParameters(n_boats=count + 1, n_leaders=count, **known)
+            flock = FlockParameters(**values, pool=self.pool, target=self.target)
         except TypeError as error:
             raise ParameterError(str(error)) from error
-        # An iterator can be read only once.
+        # An iterator can be read only once, so the fields keep what was read.
         object.__setattr__(self, "pool", flock.pool)
         object.__setattr__(self, "target", flock.target)
 
     @property
     def is_wide(self) -> bool:
-        """Whether the table has one row per frame, with boats beside each other."""
+        """Whether the table has one row per frame, with columns for each boat."""
         return "{id}" in columns_of(self.x)[0]
 
     @property
@@ -173,34 +175,34 @@ class TrackLayout:
 
     @property
     def columns(self) -> dict[str, tuple[str, ...]]:
-        """The columns of each field, without those of times and names."""
+        """The names of the columns of numbers, by field; all columns but times and names."""
         heading = self.heading if self.quaternion is None else None
-        of_boats = {"x": self.x, "y": self.y, "box": self.box, "heading": heading}
-        of_boats |= {"quaternion": self.quaternion, "confidence": self.confidence}
-        return {name: columns_of(value) for name, value in of_boats.items()}
+        values = {"x": self.x, "y": self.y, "box": self.box, "heading": heading}
+        values |= {"quaternion": self.quaternion, "confidence": self.confidence}
+        return {name: columns_of(value) for name, value in values.items()}
 
 
 def columns_of(value: _Columns | None) -> tuple[str, ...]:
-    """Return the names in a field that takes none, one or several."""
+    """Return the names in a field that holds None, a name or several names."""
     return (value,) if isinstance(value, str) else value or ()
 
 
 def description_of(path: Path) -> Path:
-    """Return the default path of a table's description."""
+    """Return the path of a table's description: ``a.toml`` for ``a.csv`` and ``a.csv.gz``."""
     if not path.name:
         raise ParameterError(f"{os.fspath(path)!r} is not the name of a table")
-    bare = path.with_suffix("") if path.suffix.lower() == ".gz" else path
-    return bare.with_suffix(".toml")
+    uncompressed = path.with_suffix("") if path.suffix.lower() == ".gz" else path
+    return uncompressed.with_suffix(".toml")
 
 
 def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
     """Return the layout in a TOML file, in which "" means None and a pool is needed.
 
-    Raises ParameterError for a file that cannot be read, or is not a layout.
+    Raises ParameterError for a file that cannot be read or is not a layout.
     """
     values = read_toml_file(path, str(path))
     with naming(path):
-        refuse_unknown(values, [one.name for one in fields(TrackLayout)], "field of a layout")
+        refuse_unknown(values, [field.name for field in fields(TrackLayout)], "field of a layout")
         if "pool" not in values:
             raise ParameterError('pool is missing: "narrow", "wide", or two radii in cm')
         return TrackLayout(**values)
@@ -208,7 +210,7 @@ def read_layout(path: str | os.PathLike[str]) -> TrackLayout:
 
 @contextmanager
 def naming(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Put the name of a file before what a ParameterError says of its content."""
+    """Put the name of a file before the message of a ParameterError about its content."""
     try:
         yield
     except ParameterError as error:

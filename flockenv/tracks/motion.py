@@ -1,4 +1,4 @@
-"""Motion of tracked boats: velocities, gaps and speeds."""
+"""Motion of tracked boats: their velocities, gaps and continuous headings."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -16,7 +16,7 @@ HEADING_ZERO = {"right": 0.0, "up": np.pi / 2, "left": np.pi, "down": -np.pi / 2
 """Zero of headings, in rad counter-clockwise from x."""
 
 TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
-"""A full turn in the units of headings."""
+"""A full turn in each unit of headings."""
 
 TINY = 1e-6
 """How much rounding may add to a full turn."""
@@ -26,22 +26,25 @@ _MOST_BROKEN, _AXIS_JUMP = 0.5, 0.8
 
 @dataclass(frozen=True)
 class Motion:
-    """Velocities of boats, and the times and presence of the poses that they come from."""
+    """Velocities of t poses of n boats, and the times at which the poses exist."""
 
-    #: Times of poses in s, shape (t, n).
+    #: Each boat's own times of poses in s, shape (t, n).
     stamps: Floats
     #: Whether a boat has a pose, shape (t, n).
     present: NDArray[np.bool_]
     #: [cm/s, cm/s, rad/s], shape (t, n, 3); NaN for poses without a neighbor in time.
     velocity: Floats
-    #: Steps that were too fast.
+    #: Number of steps that were too fast for a velocity.
     broken: int
-    #: Steps that last longer are gaps.
+    #: Longest step in s; longer ones are gaps.
     longest_s: float
 
     @classmethod
     def from_poses(cls, time_s: Floats, pose: Floats, fastest_cm_s: float = np.inf) -> Self:
-        """Return the motion of poses (t, n, 3), at times of shape (t,) or (t, n)."""
+        """Return the motion of poses (t, n, 3), at times of shape (t,) or (t, n).
+
+        Raises ParameterError if more than half of the steps are faster than `fastest_cm_s`.
+        """
         stamps = np.ascontiguousarray(np.broadcast_to(np.atleast_2d(time_s.T).T, pose.shape[:2]))
         steps = np.diff(stamps, axis=0)
         # Steps much longer than nine tenths of all steps are gaps.
@@ -66,37 +69,44 @@ class Motion:
         return np.asarray(self.present[1:] & self.present[:-1] & is_short)
 
     def split(self, boat: int) -> tuple[list[NDArray[np.intp]], Floats]:
-        """Return the frames of a boat's poses, split at its gaps, and the lengths of the gaps."""
+        """Return the frames of a boat's poses, split at its gaps, and the gaps' lengths in s."""
         frames = np.flatnonzero(self.present[:, boat])
         steps = np.diff(self.stamps[frames, boat])
         is_gap = (np.diff(frames) > 1) | (steps > self.longest_s)
         return np.split(frames, np.flatnonzero(is_gap) + 1), steps[is_gap]
 
     def cosine(self, heading: Floats) -> float:
-        """Return the mean cosine between heading and motion, weighted by speed, or NaN."""
-        speed = np.nansum(np.hypot(self.velocity[..., 0], self.velocity[..., 1]))
-        return float(np.nansum(self.ahead(heading)) / speed) if speed > 0.0 else np.nan
+        """Return the mean cosine between heading and motion, weighted by speed.
 
-    def ahead(self, heading: Floats) -> Floats:
-        """Return the speeds of boats along their headings."""
+        It is NaN if no boat moves.
+        """
+        speed = np.nansum(np.hypot(self.velocity[..., 0], self.velocity[..., 1]))
+        return float(np.nansum(self.speed_along(heading)) / speed) if speed > 0.0 else np.nan
+
+    def speed_along(self, heading: Floats) -> Floats:
+        """Return the velocities in cm/s along headings, negative for backward motion."""
         return self.velocity[..., 0] * np.cos(heading) + self.velocity[..., 1] * np.sin(heading)
 
 
 def in_water(
     pool: str | tuple[float, float], distance_cm: Floats, margin_cm: float
 ) -> NDArray[np.bool_]:
-    """Return whether distances from the center are in the water, or `margin_cm` outside of it."""
+    """Return whether distances from the center are in the water, or at most `margin_cm` outside."""
     outer_cm, inner_cm = _core.pool_radii_cm(pool)
     return (distance_cm <= outer_cm + margin_cm) & (distance_cm >= inner_cm - margin_cm)
 
 
-def direction(way: NDArray[np.complex128]) -> Floats:
-    """Return the angle of vectors x + iy in rad; NaN for none."""
-    return np.where(way == 0.0, np.nan, np.angle(way))
+def direction(vectors: NDArray[np.complex128]) -> Floats:
+    """Return the angle of vectors x + iy in rad; NaN for vectors of length 0."""
+    return np.where(vectors == 0.0, np.nan, np.angle(vectors))
 
 
-def turned_into_motion(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
-    """Return the motion of poses, after turning their headings into continuous ones of the bows."""
+def motion_with_bows(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
+    """Return the motion of poses after changing their headings in place.
+
+    Missing headings become directions of motion, axes become headings of the bows, and jumps of
+    full turns are removed.
+    """
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if not layout.has_headings:
         pose[..., 2] = direction(motion.velocity[..., 0] + 1j * motion.velocity[..., 1])
@@ -113,21 +123,21 @@ def _check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> No
     """Refuse a column of headings that fits the motion better in another unit, or as axes."""
     if len(layout.columns["heading"]) != 1:
         return
-    zero, given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
-    turned = heading - zero
-    for unit in (unit for unit in TURN if TURN[unit] < TURN[given]):
+    zero, unit_given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
+    from_zero = heading - zero
+    for unit in (unit for unit in TURN if TURN[unit] < TURN[unit_given]):
         # Headings must stay within a full turn of the smaller unit, and span more than half of one.
-        share = TURN[unit] / TURN[given]
-        is_within = np.nanmax(np.abs(turned)) <= 1.003 * TURN["rad"] * share
-        is_wide = np.ptp(turned[motion.present]) > 0.5 * TURN["rad"] * share
-        fits = motion.cosine(zero + turned / share) > motion.cosine(heading)
+        share = TURN[unit] / TURN[unit_given]
+        is_within = np.nanmax(np.abs(from_zero)) <= 1.003 * TURN["rad"] * share
+        is_wide = np.ptp(from_zero[motion.present]) > 0.5 * TURN["rad"] * share
+        fits = motion.cosine(zero + from_zero / share) > motion.cosine(heading)
         if is_within and is_wide and fits:
             raise ParameterError(
                 f"headings never exceed a full turn in {unit}, and fit the motion better than "
-                f"in {given}: is heading_unit = {unit!r}?"
+                f"in {unit_given}: is heading_unit = {unit!r}?"
             )
     jumps = (np.abs(np.diff(heading, axis=0)) > _AXIS_JUMP * np.pi) & motion.steps
-    if layout.axis or jumps.sum() < 3 or not _spans_half_turn(heading):
+    if layout.axis or jumps.sum() < 3 or not _is_within_half_turn(heading):
         return
     if motion.cosine(_bows_of(heading, motion)) > motion.cosine(heading):
         raise ParameterError(
@@ -136,20 +146,23 @@ def _check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> No
         )
 
 
-def _spans_half_turn(heading: Floats) -> bool:
-    """Return whether headings lie within half a turn, as axes do, apart from whole turns."""
+def _is_within_half_turn(heading: Floats) -> bool:
+    """Return whether headings, modulo full turns, lie within half a turn, as those of axes do.
+
+    Four half turns are tried, which start at 0, 90, 180 and 270 degrees.
+    """
     starts = np.pi * np.array([[0.0], [0.5], [1.0], [1.5]])
-    turned = np.mod(heading[~np.isnan(heading)] - starts, 2 * np.pi)
-    return bool((turned <= np.pi + 1e-6).all(axis=1).any())
+    from_start = np.mod(heading[~np.isnan(heading)] - starts, 2 * np.pi)
+    return bool((from_start <= np.pi + TINY).all(axis=1).any())
 
 
 def _bows_of(axis: Floats, motion: Motion) -> Floats:
-    """Return axes as headings: continuous, and mostly along the boat's motion."""
+    """Return axes as headings of the bows: continuous, and mostly along the boat's motion."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):
         for part in motion.split(boat)[0]:
             heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
-            if np.nansum(motion.ahead(heading)[part, boat]) < 0.0:
+            if np.nansum(motion.speed_along(heading)[part, boat]) < 0.0:
                 heading[part, boat] += np.pi
     return heading
 

@@ -18,9 +18,9 @@ from flockenv.recording import PHASES, PRECISIONS, Recording
 from flockenv.recording.checks import check_array
 from flockenv.tracks.dataset import dataset_table
 from flockenv.tracks.layout import TrackLayout, description_of, naming, read_layout
-from flockenv.tracks.motion import Floats, Motion, in_water, turned_into_motion, unwrapped
+from flockenv.tracks.motion import Floats, Motion, in_water, motion_with_bows, unwrapped
 from flockenv.tracks.report import TrackReport, report_of
-from flockenv.tracks.samples import TWICE, check_samples, frames_of, poses_of, samples_of
+from flockenv.tracks.samples import REPEATED, check_samples, frames_of, poses_of, samples_of
 from flockenv.tracks.table import check_ending, plain_table, read_table
 
 if TYPE_CHECKING:
@@ -28,12 +28,13 @@ if TYPE_CHECKING:
     import xarray
 
 _FASTEST_CM_S = 1000.0
+"""Largest median speed of a boat."""
 
 
 def read_tracks(
     source: "str | os.PathLike[str] | pd.DataFrame | xarray.Dataset",
     layout: TrackLayout | None = None,
-    report: Callable[[TrackReport], object] = lambda found: None,
+    report: Callable[[TrackReport], object] = lambda report: None,
 ) -> Recording:
     """Read tracks as a recording, to analyze and replay it like a simulated one.
 
@@ -55,7 +56,7 @@ def read_tracks(
     ------
     ParameterError
         If the file cannot be read, a column is missing or holds anything but numbers, a boat has
-        two positions in one frame, units contradict the layout, all data are missing, the arrays
+        two positions in one frame, units contradict the layout, no row can be used, the arrays
         would be too large, or there is no layout. Also for the reasons of `recording_of`.
     MissingExtraError
         Without the extra ``plot``.
@@ -81,19 +82,20 @@ def read_tracks(
 def _recording(
     rows: "pd.DataFrame", layout: TrackLayout, report: Callable[[TrackReport], object]
 ) -> Recording:
+    """Return the rows of a table as a recording, and call `report` with what was left out."""
     samples, is_named = samples_of(rows, layout)
-    unsorted = samples[samples["why"] != TWICE].groupby("id")["time"].diff() < 0.0
+    unsorted = samples[samples["why"] != REPEATED].groupby("id")["time"].diff() < 0.0
     samples = samples.sort_values("time", kind="stable")
     samples["frame"] = frames_of(samples)
     used = samples[samples["why"] == ""]
     check_samples(samples, used, layout, is_named)
     names, time_s, stamps, pose = poses_of(samples, used)
-    motion = turned_into_motion(stamps, pose, layout)
+    motion = motion_with_bows(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
-    found = report_of(samples, time_s, pose, motion, layout)
+    track_report = report_of(samples, time_s, pose, motion, layout)
     unnamed = layout.id is not None and not is_named
-    report(replace(found, unsorted=int(unsorted.sum()), unnamed=unnamed))
+    report(replace(track_report, unsorted=int(unsorted.sum()), unnamed=unnamed))
     return recording
 
 
@@ -150,17 +152,17 @@ def recording_of(
         boat above 10 m/s, centers more than a hull's width outside the water, and unknown or
         repeated names.
     """
-    times, poses, motion = _checked(time_s, pose, velocity)
+    times, poses, velocities = _checked(time_s, pose, velocity)
     names = [str(name) for name in items(range(poses.shape[1]) if ids is None else ids, "ids")]
     leaders = [str(name) for name in items(leaders, "leaders")]
     order = _leaders_first(names, leaders, poses.shape[1])
-    poses, motion = poses[:, order], motion[:, order]
-    if (lengths := series(hull, "hull")).shape != (2,):
+    poses, velocities = poses[:, order], velocities[:, order]
+    if (hull_numbers := series(hull, "hull")).shape != (2,):
         raise ParameterError(f"hull = {short_repr(hull)} is not accepted: two numbers")
-    fields = dict(zip(("boat_radius_cm", "boat_shape"), lengths.tolist(), strict=True))
+    fields = dict(zip(("boat_radius_cm", "boat_shape"), hull_numbers.tolist(), strict=True))
     fields |= {"target": materialized(target), "discs": discs, "walls": walls}
     parameters = FlockParameters(n_boats=len(names), n_leaders=len(leaders), pool=pool, **fields)
-    _check_units(poses, motion, parameters)
+    _check_units(poses, velocities, parameters)
     phases, analyzed = _phases(phase, times)
     is_leader = np.arange(len(names)) < len(leaders)
     return Recording(
@@ -168,8 +170,9 @@ def recording_of(
         phase=phases,
         in_analysis_window=analyzed,
         pose=poses,
-        velocity=motion,
-        order=order_series(poses, np.where(is_leader[:, None], np.nan, motion)),
+        velocity=velocities,
+        # Without velocities the leaders count in no quantity.
+        order=order_series(poses, np.where(is_leader[:, None], np.nan, velocities)),
         parameters=parameters,
         seed=0,
         version=_core.__version__,
@@ -180,7 +183,7 @@ def recording_of(
 def _checked(
     time_s: ArrayLike, pose: ArrayLike, velocity: ArrayLike | None
 ) -> tuple[Floats, Floats, Floats]:
-    """Return times, poses with continuous headings, and their velocities after checking them."""
+    """Check times, poses and velocities, and return them with continuous headings."""
     times, poses = with_gaps(time_s, "time_s"), with_gaps(pose, "pose")
     shape = (times.size, np.atleast_2d(poses).shape[1], 3)
     check_array("time_s", times, shape[:1], PRECISIONS)
@@ -190,14 +193,14 @@ def _checked(
     if np.isnan(poses).all():
         raise ParameterError("pose is not accepted: it is NaN everywhere, no boat is ever present")
     poses[..., 2] = unwrapped(poses[..., 2])
-    own = Motion.from_poses(times, poses).velocity if velocity is None else velocity
-    motion = with_gaps(own, "velocity")
-    check_array("velocity", motion, shape, PRECISIONS, gaps=True)
-    return times, poses, motion
+    velocity = Motion.from_poses(times, poses).velocity if velocity is None else velocity
+    velocities = with_gaps(velocity, "velocity")
+    check_array("velocity", velocities, shape, PRECISIONS, gaps=True)
+    return times, poses, velocities
 
 
 def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-    """Return each sample's phase, and whether it is analyzed; without phases all samples are."""
+    """Return each sample's phase and whether it is analyzed: without phases "" and True."""
     phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
     if phase is not None:
         phases = np.array([*map(str, items(phase, "phase"))])
@@ -217,12 +220,13 @@ def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
+    """Refuse speeds and positions that boats in the pool cannot have, as of pixels or frames."""
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
-    moves = ~np.isnan(speed).all(axis=0)
-    fastest = np.nanmedian(speed[:, moves], axis=0).max(initial=0.0)
-    if fastest > _FASTEST_CM_S:
+    has_speed = ~np.isnan(speed).all(axis=0)
+    fastest_cm_s = np.nanmedian(speed[:, has_speed], axis=0).max(initial=0.0)
+    if fastest_cm_s > _FASTEST_CM_S:
         raise ParameterError(
-            f"a boat moves at {fastest / 100:.3g} m/s in the median, above "
+            f"a boat moves at {fastest_cm_s / 100:.3g} m/s in the median, above "
             f"{_FASTEST_CM_S / 100:g} m/s: are positions in cm and times in s?"
         )
     present = ~np.isnan(pose[..., 0])

@@ -1,4 +1,4 @@
-"""Report of tracks: the used and the omitted parts."""
+"""Report of tracks: what was used, what was left out, and what is doubtful."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -18,16 +18,16 @@ _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackReport:
-    """Report of tracks: the used and the omitted parts."""
+    """Report of tracks: what was used, and what was left out. As text it names what is doubtful."""
 
     #: Numbers of different times, of different names, and of used poses.
     frames: int
     boats: int
     samples: int
-    #: Times at which a boat is missing, summed over boats; empty frames count, too.
+    #: Number of frames without a pose, summed over boats; frames without any row count, too.
     missing: int
-    #: Time from first to last, median step, and median of the boats' speeds (NaN without any): a
-    #: wrong `fps` or `cm_per_unit` shows in them.
+    #: Time from first to last frame, median step, and median of the boats' speeds (NaN without
+    #: any): a wrong `fps` or `cm_per_unit` shows in them.
     duration_s: float
     step_s: float
     median_speed_cm_s: float
@@ -49,20 +49,20 @@ class TrackReport:
     #: ahead, small or negative if axes, units or directions are wrong; NaN if nothing moves.
     cosine: float = float("nan")
     #: Boats that are at exactly one point in at least 20 samples and a tenth of all their samples,
-    #: or at one point together with other boats: x and y in units of the file, and the number of
-    #: samples.
+    #: or at a point where boats are together in at least six samples. Holds x and y in units of
+    #: the file, and the boat's number of samples there.
     stuck: Mapping[str, tuple[float, float, int]] = field(default_factory=dict)
     #: Boats that move, but have one heading in at least 20 samples and each other heading in at
-    #: most a tenth as many: the number of samples.
+    #: most a tenth as many. Holds the number of samples with that heading.
     held: Mapping[str, int] = field(default_factory=dict)
 
     def named(self) -> dict[str, Any]:
-        """Return the attributes by name, None for numbers that are undefined."""
+        """Return the attributes by name, with None for NaN."""
         return {name: None if value != value else value for name, value in asdict(self).items()}
 
     def __str__(self) -> str:
         counts = {why: sum(boats.values()) for why, boats in self.left_out.items()}
-        reasons = [f"{count} {why}{_by_boat(self.left_out[why])}" for why, count in counts.items()]
+        reasons = [f"{n} {why}{_by_boat(self.left_out[why])}" for why, n in counts.items()]
         longest = f", the longest {self.longest_gap_s:.4g} s" if self.gaps else ""
         lines = [
             f"{self.samples} poses of {self.boats} boats in {self.frames} frames; "
@@ -78,7 +78,10 @@ class TrackReport:
         return "\n  ".join([*lines, *self._doubts(counts.get("outside the water", 0))])
 
     def _doubts(self, outside: int) -> list[str]:
-        """Return a line about each unusual value, which may be correct."""
+        """Return a line about each unusual value, which may be correct.
+
+        `outside` is the number of rows outside the water.
+        """
         share = outside / max(1, outside + self.samples)
         points = [f"{n} at ({x:.6g}, {y:.6g}) in {c} frames" for n, (x, y, c) in self.stuck.items()]
         is_alone = self.lone == self.samples and self.frames > 1
@@ -104,6 +107,7 @@ class TrackReport:
 
 
 def _by_boat(boats: Mapping[str, int]) -> str:
+    """Return ": name count, ..." of the boats with the largest counts; "" without names."""
     named = sorted(((count, name) for name, count in boats.items() if name), reverse=True)
     return f": {_first_five([f'{name} {count}' for count, name in named])}" if named else ""
 
@@ -116,7 +120,7 @@ def _first_five(words: list[str]) -> str:
 def report_of(
     samples: "pd.DataFrame", time_s: Floats, pose: Floats, motion: Motion, layout: TrackLayout
 ) -> TrackReport:
-    """Return the report of used and omitted samples."""
+    """Return the report of used and omitted samples, without `unsorted` and `unnamed`."""
     speed = np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
     used, omitted = samples[samples["why"] == ""], samples[samples["why"] != ""]
     counts = omitted.fillna({"id": ""}).groupby(["why", "id"]).size()
@@ -145,7 +149,7 @@ def report_of(
 
 
 def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
-    """Return boats that stay at exactly one point in many samples, in units of the file."""
+    """Return boats that stay at exactly one point in many samples, as `TrackReport.stuck`."""
     counts = used.value_counts(["id", "x", "y"]).reset_index()
     share = counts["id"].map(used["id"].value_counts()) / 10
     # Two boats are never at one point.
@@ -154,15 +158,16 @@ def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, 
     counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
     (x, y), scale = layout.center, layout.cm_per_unit or 1.0
     up = -scale if layout.y_down else scale
-    found = counts.drop_duplicates("id").itertuples(index=False)
-    return {str(n): (at / scale + x, above / up + y, int(count)) for n, at, above, count in found}
+    stuck = counts.drop_duplicates("id").itertuples(index=False)
+    return {str(n): (x_cm / scale + x, y_cm / up + y, int(count)) for n, x_cm, y_cm, count in stuck}
 
 
 def _held(used: "pd.DataFrame") -> dict[str, int]:
-    """Return boats that move with one heading in many samples, and every other one in few."""
-    # A boat that never moves keeps its heading, too.
+    """Return boats that move with one heading in many samples, as `TrackReport.held`."""
+    # A boat at rest keeps its heading, so each of its points counts once.
     moving = used.drop_duplicates(["id", "x", "y"])
     counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
+    # `value_counts` sorts, so that the second entry of a boat is its second most frequent heading.
     most, second = counts.max(), counts.nth(1).droplevel("heading")
     held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index, fill_value=0))]
     return {str(name): int(count) for name, count in held.items()}

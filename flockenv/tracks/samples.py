@@ -12,23 +12,31 @@ from flockenv.errors import ParameterError, short_repr
 from flockenv.tracks.formats import PER_S, unit_of
 from flockenv.tracks.layout import TrackLayout
 from flockenv.tracks.motion import HEADING_ZERO, TINY, TURN, direction, in_water
-from flockenv.tracks.table import Floats, boats_of, index_of, listed, long_table, numbers, places_of
+from flockenv.tracks.table import (
+    Floats,
+    boats_of,
+    index_of,
+    indices_of,
+    listed,
+    long_table,
+    numbers,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
-TWICE = "that are repeated"
-_MOST_OUTSIDE, _MOST_STRANGE = 0.5, 0.01
+REPEATED = "that are repeated"
+_MOST_OUTSIDE, _MOST_TOO_LARGE = 0.5, 0.01
 _DAY_S = 86_400.0
 _DATES = ("ISO8601", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f")
 
 
 def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame, bool]":
-    """Return the columns id, time, x, y, heading and why of samples, and whether boats have names.
+    """Return a table of samples, and whether boats have names.
 
-    Times are in s from the earliest one, positions in cm from the pool's center with y up, headings
-    in rad. `why` says why a sample is omitted; it is "" for samples that count. If no row has a
-    name, all rows belong to one boat.
+    Its columns are id, time in s from the earliest one, x and y in cm from the pool's center with y
+    up, heading in rad, and why: the reason why a sample is omitted, "" for samples that count. If
+    no row has a name, all rows belong to one boat.
     """
     table, names = long_table(rows, layout)
     columns = layout.columns
@@ -39,20 +47,20 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     position = position.conj() if layout.y_down else position
     if len(columns["heading"]) == 1:
         _check_no_component(rows, columns["heading"][0], layout)
-    heading, is_strange = _headings(table, layout)
+    heading, is_too_large = _headings(table, layout)
     ids, time = "0" if names is None else names, _times(table[layout.frame], layout)
-    found = {"id": ids, "time": time, "x": position.real, "y": position.imag, "heading": heading}
-    samples: pd.DataFrame = require("pandas", "plot").DataFrame(found, table.index)
-    is_sure = table[[*columns["confidence"]]] >= (layout.least_confidence or 0.0)
+    values = {"id": ids, "time": time, "x": position.real, "y": position.imag, "heading": heading}
+    samples: pd.DataFrame = require("pandas", "plot").DataFrame(values, table.index)
+    is_confident = table[[*columns["confidence"]]] >= (layout.least_confidence or 0.0)
     reasons = {
         "without a name": samples["id"].isna(),
         "at a point that stands for a lost boat": is_lost,
         "without a position": np.isnan(position),
-        "with too little confidence": ~is_sure.all(axis=1),
-        "with a heading beyond a full turn": is_strange,
+        "with too little confidence": ~is_confident.all(axis=1),
+        "with a heading beyond a full turn": is_too_large,
         "without a heading": np.isnan(heading),
         "outside the water": ~in_water(layout.pool, np.abs(position), 2 * layout.hull[0]),
-        TWICE: samples.duplicated(),
+        REPEATED: samples.duplicated(),
     }
     samples["why"] = np.select(list(reasons.values()), list(reasons), "")
     _check_water(samples)
@@ -69,10 +77,13 @@ def points_of(
 
 
 def _check_water(samples: "pd.DataFrame") -> None:
-    """Refuse a pool in the wrong position; a few points with many rows each mark lost boats."""
+    """Refuse tracks of which most lie outside the pool.
+
+    Up to three points outside that several rows share are left out, since they may mark lost boats.
+    """
     counts = samples[samples["why"] == "outside the water"].value_counts(["x", "y"])
-    others = counts.sum() - counts[counts > 1].head(3).sum()
-    share = others / max(1, others + samples["why"].isin(["", TWICE]).sum())
+    outside = counts.sum() - counts[counts > 1].head(3).sum()
+    share = outside / max(1, outside + samples["why"].isin(["", REPEATED]).sum())
     if share > _MOST_OUTSIDE:
         raise ParameterError(
             f"{share:.0%} of the centers lie outside the pool, or in the obstacle in its middle: "
@@ -87,13 +98,13 @@ def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
     if is_text or kind in "mM":
         if layout.fps is not None:
             raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
-        dates = _read(column, first) if is_text else column
-        dates = dates - dates.min() if dates.dtype.kind == "M" else dates
-        times: Floats = dates.dt.total_seconds().to_numpy(np.float64)
+        stamps = _dates_or_durations(column, first) if is_text else column
+        stamps = stamps - stamps.min() if stamps.dtype.kind == "M" else stamps
+        times: Floats = stamps.dt.total_seconds().to_numpy(np.float64)
         times = _past_midnight(times) if is_text else times
     else:
         times = numbers(column, layout)
-        _check_kind(times, layout)
+        _check_clock(times, layout)
         times = times / (layout.fps or 1.0)
     for line in column.index[~np.isfinite(times)][:1]:
         raise ParameterError(
@@ -102,14 +113,17 @@ def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
     return np.asarray(times - times.min(initial=np.inf))
 
 
-def _read(column: "pd.Series[Any]", first: str) -> "pd.Series[Any]":
-    """Return dates, or durations for clock times, that are written as text."""
+def _dates_or_durations(column: "pd.Series[Any]", first: str) -> "pd.Series[Any]":
+    """Return texts as dates, or as durations since midnight if they are clock times.
+
+    `first` is the text that the error for other texts quotes.
+    """
     pandas = require("pandas", "plot")
     # Loggers write 12:34:56,789, and stopwatches 34:56.7.
     texts = column.astype(str).str.replace(",", ".")
-    clock = texts.str.replace(r"^\s*(\d+:\d+\.\d*)\s*$", r"00:\1", regex=True)
-    readings = (pandas.to_datetime(texts, "coerce", utc=True, format=form) for form in _DATES)
-    for times in (pandas.to_timedelta(clock, errors="coerce"), *readings):
+    with_hours = texts.str.replace(r"^\s*(\d+:\d+\.\d*)\s*$", r"00:\1", regex=True)
+    dates = (pandas.to_datetime(texts, "coerce", utc=True, format=form) for form in _DATES)
+    for times in (pandas.to_timedelta(with_hours, errors="coerce"), *dates):
         if (times.notna() | column.isna()).all():
             return times  # type: ignore[no-any-return]
     raise ParameterError(
@@ -119,7 +133,10 @@ def _read(column: "pd.Series[Any]", first: str) -> "pd.Series[Any]":
 
 
 def _past_midnight(seconds: Floats) -> Floats:
-    """Return times of day, with a day added to those past midnight: the ones before a long gap."""
+    """Return times of day, with a day added to those past midnight.
+
+    These are the times before a gap of at least half a day.
+    """
     stamps = np.unique(seconds[np.isfinite(seconds)])
     steps = np.diff(stamps)
     if steps.max(initial=0.0) < _DAY_S / 2 or stamps[-1] > _DAY_S:
@@ -127,8 +144,8 @@ def _past_midnight(seconds: Floats) -> Floats:
     return np.where(seconds <= stamps[steps.argmax()], seconds + _DAY_S, seconds)
 
 
-def _check_kind(times: Floats, layout: TrackLayout) -> None:
-    """Refuse frame numbers that would count as seconds, and seconds as frame numbers."""
+def _check_clock(times: Floats, layout: TrackLayout) -> None:
+    """Refuse frame numbers that would be read as seconds, and seconds as frame numbers."""
     stamps = np.unique(times[np.isfinite(times)])
     steps = np.diff(stamps)
     if not len(steps):
@@ -136,13 +153,14 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
     is_whole = bool((stamps == np.rint(stamps)).all())
     unit = unit_of(layout.frame)
     per_s = PER_S.get(unit)
-    # Steps of 12 may be seconds if the column's name says so; 0, 1, 2 are frames whatever it says.
-    says_s = per_s == 1.0 and steps.min() > 1.0
-    if layout.fps is None and (per_s not in (None, 1.0) or (is_whole and not says_s)):
-        holds = "holds whole numbers (fps = 1 if it counts s)"
-        if per_s not in (None, 1.0):
-            holds = f"counts {unit} (fps = {per_s:.6g})"
-        raise ParameterError(f"fps is missing: column {layout.frame!r} {holds}")
+    has_other_unit = per_s not in (None, 1.0)
+    # In a column named "seconds", steps of 12 are seconds, but 0, 1, 2 are frames even there.
+    are_seconds = per_s == 1.0 and steps.min() > 1.0
+    if layout.fps is None and (has_other_unit or (is_whole and not are_seconds)):
+        content = "holds whole numbers (fps = 1 if it counts s)"
+        if has_other_unit:
+            content = f"counts {unit} (fps = {per_s:.6g})"
+        raise ParameterError(f"fps is missing: column {layout.frame!r} {content}")
     if (layout.fps or 0.0) > 1.0 and not is_whole and np.median(steps) < 0.5:
         raise ParameterError(
             f"fps = {layout.fps:g} is given, but column {layout.frame!r} has steps of "
@@ -152,58 +170,62 @@ def _check_kind(times: Floats, layout: TrackLayout) -> None:
 
 def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArray[np.bool_]]:
     """Return headings in rad from x (0 without a column), and which exceed a full turn."""
-    columns, strange = layout.columns["heading"], np.zeros(len(table), bool)
+    columns, is_too_large = layout.columns["heading"], np.zeros(len(table), bool)
     turns = layout.heading_turns or ("cw" if layout.y_down else "ccw")
     if len(columns) == 4:
         (tail, head), is_lost = points_of(table, columns[::2], columns[1::2], layout)
-        way = (head - tail).conj() if layout.y_down else head - tail
-        return np.where(is_lost, np.nan, direction(way)), strange
+        to_head = (head - tail).conj() if layout.y_down else head - tail
+        return np.where(is_lost, np.nan, direction(to_head)), is_too_large
     if columns:
         heading = table[columns[0]].to_numpy()
-        strange = (np.abs(heading) > TURN[layout.heading_unit] + TINY) & layout.wrapped
-        _check_largest(heading, strange, layout)
+        is_too_large = (np.abs(heading) > TURN[layout.heading_unit] + TINY) & layout.wrapped
+        _check_largest(heading, is_too_large, layout)
         heading = heading * (TURN["rad"] / TURN[layout.heading_unit])
     elif layout.quaternion is not None:
-        # If turns are counted from y to x, the axis belongs to a mirrored system.
+        # If headings grow from y to x of the file, the quaternions are of a mirrored system.
         is_mirrored = (turns == "cw") != layout.y_down
-        heading = _turned(table[[*layout.quaternion]], -1.0 if is_mirrored else 1.0)
+        heading = _yaw(table[[*layout.quaternion]], -1.0 if is_mirrored else 1.0)
     else:
-        return np.zeros(len(table)), strange
-    return HEADING_ZERO[layout.heading_zero] + (heading if turns == "ccw" else -heading), strange
+        return np.zeros(len(table)), is_too_large
+    heading = heading if turns == "ccw" else -heading
+    return HEADING_ZERO[layout.heading_zero] + heading, is_too_large
 
 
-def _turned(quaternions: "pd.DataFrame", sense: float) -> Floats:
-    """Return the angle about the vertical of unit quaternions x, y, z and w."""
+def _yaw(quaternions: "pd.DataFrame", handedness: float) -> Floats:
+    """Return the angle in rad about the vertical of quaternions x, y, z, w; NaN if not of length 1.
+
+    `handedness` is 1 for a right-handed system, and -1 for a mirrored one.
+    """
     x, y, z, w = quaternions.to_numpy().T
-    off = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
-    if np.nanmedian(off) > 0.01:
+    error = np.abs(x**2 + y**2 + z**2 + w**2 - 1.0)
+    if np.nanmedian(error) > 0.01:
         raise ParameterError(
             f"quaternion = {[*quaternions]} is not accepted: columns x, y, z and w, whose squares "
             "add up to 1"
         )
-    heading = np.arctan2(2 * (w * z + sense * x * y), 1 - 2 * (y**2 + z**2))
-    return np.where(off > 0.1, np.nan, heading)
+    yaw = np.arctan2(2 * (w * z + handedness * x * y), 1 - 2 * (y**2 + z**2))
+    return np.where(error > 0.1, np.nan, yaw)
 
 
 def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout) -> None:
     """Refuse a component of a quaternion, a sine or a cosine as a heading.
 
-    They are recognized without names of columns: the squares of neighboring columns add up to 1.
+    Whatever its name, its square and those of one or three neighboring columns add up to 1.
     """
     name = heading.replace("{id}", boats_of(rows, layout)[0])
-    own = index_of(name, rows, places_of(rows))
-    some = rows.iloc[:: len(rows) // 10_000 + 1]  # It holds in every row.
+    heading_index = index_of(name, rows, indices_of(rows))
+    some_rows = rows.iloc[:: len(rows) // 10_000 + 1]  # At most 10 000 rows are enough.
     squares = dict[int, Floats]()
-    for index in range(max(0, own - 3), min(own + 4, rows.shape[1])):
-        with suppress(ParameterError):  # A column of remarks.
-            values = np.nan_to_num(numbers(some.iloc[:, index], layout))
+    for index in range(max(0, heading_index - 3), min(heading_index + 4, rows.shape[1])):
+        with suppress(ParameterError):  # The neighbor may hold texts.
+            values = np.nan_to_num(numbers(some_rows.iloc[:, index], layout))
             if len(values) and np.abs(values).max() <= 1.01:
                 squares[index] = values**2
-    square = squares.pop(own, np.zeros(1))
+    square = squares.pop(heading_index, np.zeros(1))
     for others in (*combinations(squares, 3), *combinations(squares, 1)):
         total = square + sum(squares[index] for index in others)
         if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(square):
-            names = [str(rows.columns[index]) for index in sorted((own, *others))]
+            names = [str(rows.columns[index]) for index in sorted((heading_index, *others))]
             raise ParameterError(
                 f"heading = {layout.heading!r} is a part of a turn: the squares of {listed(names)} "
                 "add up to 1. Name the columns x, y, z and w in quaternion, or make angles of a "
@@ -211,12 +233,13 @@ def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout)
             )
 
 
-def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLayout) -> None:
+def _check_largest(heading: Floats, is_too_large: NDArray[np.bool_], layout: TrackLayout) -> None:
     """Refuse headings if many exceed a full turn; a single such value may mark lost boats."""
-    share = strange.sum() / max(1, np.isfinite(heading).sum())
-    if share <= _MOST_STRANGE or (len(np.unique(heading[strange])) == 1 and share < 1.0):
+    share = is_too_large.sum() / max(1, np.isfinite(heading).sum())
+    is_mark = len(np.unique(heading[is_too_large])) == 1 and share < 1.0
+    if share <= _MOST_TOO_LARGE or is_mark:
         return
-    largest, unit_given = np.abs(heading[strange]).max(), layout.heading_unit
+    largest, unit_given = np.abs(heading[is_too_large]).max(), layout.heading_unit
     units = (u for u in TURN if TURN[u] > TURN[unit_given] and largest <= TURN[u] + TINY)
     unit = next((f"heading_unit = {u!r} if they are in {u}, " for u in units), "")
     raise ParameterError(
@@ -228,30 +251,32 @@ def _check_largest(heading: Floats, strange: NDArray[np.bool_], layout: TrackLay
 def check_samples(
     samples: "pd.DataFrame", used: "pd.DataFrame", layout: TrackLayout, is_named: bool
 ) -> None:
-    """Refuse samples of which none counts, two of one boat at one time, and names in two forms."""
+    """Refuse tracks without used samples, or with two samples of a boat at one time.
+
+    Also refuse two spellings of a name that never appear in one frame: they would be two boats.
+    """
     if used.empty:
         counts = [f"{count} {why}" for why, count in samples["why"].value_counts().items()]
-        found = ", ".join(counts) or "there are no rows"
-        raise ParameterError(f"no row has a name, a position and a heading in the water: {found}")
-    again = used[used.duplicated(["id", "time"])]
-    if len(again) and not is_named:
+        reasons = ", ".join(counts) or "there are no rows"
+        raise ParameterError(f"no row has a name, a position and a heading in the water: {reasons}")
+    repeated = used[used.duplicated(["id", "time"])]
+    if len(repeated) and not is_named:
         raise ParameterError("id is missing: several rows have one time, so boats have names")
-    for line, name, time in again[["id", "time"]].head(1).itertuples():
+    for line, name, time in repeated[["id", "time"]].head(1).itertuples():
         count = ((used["id"] == name) & (used["time"] == time)).sum()
         raise ParameterError(
             f"{name!r} appears {count} times in frame {time * (layout.fps or 1):g}, at different "
             f"positions, the second time in {used.index.name} {line}: were there two films, or "
             "was the clock set back? Give each film a table of its own"
         )
-    # Two spellings of a name that never appear in one frame would be two boats.
     names = used["id"].drop_duplicates()
     plain = names.str.normalize("NFKC").str.casefold()
     plain = plain.str.replace(r"(?<!\d)0+(?=\d)", "", regex=True)
-    for _, like in names.groupby(plain):
-        if len(like) > 1 and used.loc[used["id"].isin(like), "frame"].is_unique:
+    for _, spellings in names.groupby(plain):
+        if len(spellings) > 1 and used.loc[used["id"].isin(spellings), "frame"].is_unique:
             raise ParameterError(
-                f"the names {', '.join(map(repr, like))} are never in one frame, and differ in "
-                "case or leading zeros only: give each boat one spelling of its name"
+                f"the names {', '.join(map(repr, spellings))} are never in one frame, and differ "
+                "in case or leading zeros only: give each boat one spelling of its name"
             )
 
 
@@ -262,7 +287,7 @@ def poses_of(
     # Sorted by length, then alphabetically, so that 2 comes before 10.
     names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
     time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()
-    # Arrays hold a pose for each frame and name; in large ones at least a sixteenth must exist.
+    # Arrays hold a pose for each frame and name. Of large arrays a sixteenth must be filled.
     if len(time_s) * len(names) > max(1 << 22, 16 * len(samples)):
         raise ParameterError(
             f"{len(names)} names in {len(time_s)} frames are too many for {len(samples)} rows: "
@@ -270,29 +295,30 @@ def poses_of(
         )
     pose = np.full((len(time_s), len(names), 3), np.nan)
     stamps = np.tile(time_s[:, None], len(names))
-    at = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
-    pose[at], stamps[at] = used[["x", "y", "heading"]], used["time"]
+    entries = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
+    pose[entries], stamps[entries] = used[["x", "y", "heading"]], used["time"]
     return names, time_s - time_s[0], stamps, pose
 
 
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
-    """Return the frame of each row, of rows in the order of time.
+    """Return the number of the frame of each row; rows must be in the order of time.
 
     Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
-    one of its boats is seen again, and is shorter than the time between two rows of a boat.
+    one of its boats is seen again, and lasts at most 0.9 of the time between two rows of a boat.
     """
     stamps, frames = np.unique(rows["time"], return_inverse=True)
-    own = rows.groupby("id", sort=False)["time"].diff()
-    own = own[own > 0.0]
-    if len(stamps) < 3 or not len(own):
+    boat_steps = rows.groupby("id", sort=False)["time"].diff()
+    boat_steps = boat_steps[boat_steps > 0.0]
+    if len(stamps) < 3 or not len(boat_steps):
         return frames
-    if np.quantile(np.diff(stamps), 0.25) > 0.6 * own.quantile(0.1):
+    if np.quantile(np.diff(stamps), 0.25) > 0.6 * boat_steps.quantile(0.1):
         return frames
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
-    within, number, start, last_seen = 0.9 * float(own.median()), -1, -np.inf, dict[str, float]()
+    longest_s = 0.9 * float(boat_steps.median())
+    number, start, last_seen = -1, -np.inf, dict[str, float]()
     for index, (name, time) in enumerate(zip(names, times, strict=True)):
         # Repeated rows are in one frame, and rows without a name belong to no boat.
-        if last_seen.get(name, time) < time or time - start > within:
+        if last_seen.get(name, time) < time or time - start > longest_s:
             number, start, last_seen = number + 1, time, {}
         if isinstance(name, str):
             last_seen[name] = time

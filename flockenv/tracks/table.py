@@ -42,14 +42,14 @@ def check_ending(path: Path) -> None:
 
 
 def read_table(path: Path, layout: TrackLayout) -> "pd.DataFrame":
-    """Return the rows of a text or Parquet file; those of a text are numbered by their line."""
+    """Return the rows of a text or Parquet file; the index of a text's rows is their line."""
     pandas = require("pandas", "plot")
     try:
         data = _content(path)
         if not _is_parquet(path):
-            return _read_text(_decoded(data), layout, layout.separator or _usual(path))
-        held = require("pyarrow.parquet", "plot").ParquetFile(io.BytesIO(data)).metadata
-        cells = held.num_rows * held.num_columns
+            return _read_text(_decoded(data), layout, layout.separator or _usual_separator(path))
+        metadata = require("pyarrow.parquet", "plot").ParquetFile(io.BytesIO(data)).metadata
+        cells = metadata.num_rows * metadata.num_columns
         if 8 * cells > most_content(len(data)):
             raise ParameterError(f"it holds {cells} cells, too many for its {len(data)} bytes")
         return plain_table(pandas.read_parquet(io.BytesIO(data)))
@@ -61,24 +61,24 @@ def _is_parquet(path: Path) -> bool:
     return path.name.lower().endswith(_PARQUET)
 
 
-def _usual(path: Path) -> str:
+def _usual_separator(path: Path) -> str:
     """Return the separator that follows from a text file's ending."""
     return "\t" if path.name.lower().endswith((".tsv", ".tsv.gz")) else ","
 
 
 def _content(path: Path) -> bytes:
-    """Return the bytes of a file, decompressed, unless they would fill the memory."""
+    """Return the decompressed bytes of a file; refuse more than its size makes plausible."""
     with open_plain(path) as file:
         most = most_content(os.fstat(file.fileno()).st_size)
-        opened = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
-        data: bytes = opened.read(most + 1)
+        stream = gzip.GzipFile(fileobj=file) if path.suffix.lower() == ".gz" else file
+        data: bytes = stream.read(most + 1)
     if len(data) > most:
         raise ParameterError(f"it holds more than the {most} bytes that are accepted")
     return data
 
 
 def _decoded(data: bytes) -> str:
-    """Return bytes as text: UTF-8, UTF-16 by its mark, and otherwise Windows's own encoding."""
+    """Return bytes as text: UTF-16 if they start with its mark, else UTF-8, else Windows-1252."""
     is_utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
         text = data.decode("utf-16" if is_utf16 else "utf-8-sig")
@@ -88,49 +88,38 @@ def _decoded(data: bytes) -> str:
 
 
 def spelling_of(path: Path) -> dict[str, Any]:
-    """Return the unusual ones among the separator, decimal and skip of a text file."""
+    """Return those of separator, decimal and skip in which a text file differs from the default."""
     if _is_parquet(path):
         return {}
     lines = _decoded(_content(path)).splitlines()[:100] or [""]
-    mark = _separator_of(lines)
-    rows = [line.split(None if mark == " " else mark) for line in lines]
+    separator = _separator_of(lines)
+    rows = [line.split(None if separator == " " else separator) for line in lines]
     widths = [*map(len, rows)]
-    # The header is the first line with as many cells as the next ones, or the first of its levels.
+    # The header is the first line of a header in levels, or the first one of the widest lines.
     heights = enumerate(_header(rows[line : line + 10])[1] for line in range(min(4, len(rows))))
     skip = next((line for line, height in heights if height > 1), widths.index(max(widths)))
     form: dict[str, Any] = {"skip": skip} if skip else {}
-    if mark != _usual(path):
-        form["separator"] = mark
-    if mark != "," and any(_has_decimal(cell.strip(), ",") for row in rows[1:] for cell in row):
+    if separator != _usual_separator(path):
+        form["separator"] = separator
+    if separator != "," and any(
+        _has_decimal(cell.strip(), ",") for row in rows[1:] for cell in row
+    ):
         form["decimal"] = ","
     return form
 
 
 def _separator_of(lines: list[str]) -> str:
-    """Return the separator that is most frequent in the lines."""
+    """Return the separator that is most frequent in a line, of those that may be set."""
     counts = {mark: max(line.count(mark) for line in lines) for mark in ";\t|,"}
-    if max(counts.values()) < 2:  # Names may hold blanks, too.
+    if max(counts.values()) < 2:  # Blanks come last, since names may hold them, too.
         counts[" "] = max(len(line.split()) - 1 for line in lines)
     return max(counts, key=lambda mark: counts[mark])
 
 
 def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame":
-    pandas, lines = require("pandas", "plot"), text.split("\n", layout.skip + 10)
-    lines = lines[layout.skip : layout.skip + 10] or [""]
-    cells = csv.reader(lines, delimiter=separator, skipinitialspace=True)
-    rows = [line.split() for line in lines] if separator == " " else [*cells]
-    rows = [[cell.strip() for cell in row] for row in rows]
-    if not layout.header and not any(rows[0]):
-        raise ParameterError("there is no header in its first line")
-    names, height = ([*layout.header], 0) if layout.header else _header(rows)
-    first = layout.skip + height + 1
-    for line, row in enumerate(rows[height:], first):
-        if any(row[len(names) :]):
-            raise ParameterError(
-                f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
-                f"every column needs a name{_separator_hint(names)}"
-            )
-    names += [f"unnamed {index}" for index in range(len(names), max(map(len, rows)))]
+    """Return the rows of a text, without empty ones and without units under the header."""
+    pandas = require("pandas", "plot")
+    names, first = _names_in(text, layout, separator)
     # Numbers that are names of boats stay texts: 007 is not 7.
     id_key = _key(layout.id or "")
     table: pd.DataFrame = pandas.read_csv(
@@ -148,39 +137,58 @@ def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame"
         skipinitialspace=True,
         skip_blank_lines=False,
     )
-    numbered = pandas.RangeIndex(first, first + len(table), name="line")
-    table = table.set_axis(names, axis=1).set_axis(numbered).dropna(how="all")
+    lines = pandas.RangeIndex(first, first + len(table), name="line")
+    table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
     # Some programs write units, or longer names, into the lines under the header.
     head = table.head(0 if layout.header else 4)
     return table.drop(index=[line for line, row in head.iterrows() if not any(map(is_value, row))])
 
 
+def _names_in(text: str, layout: TrackLayout, separator: str) -> tuple[list[str], int]:
+    """Return a name for each column of a text, and the number of the first line of values."""
+    lines = text.split("\n", layout.skip + 10)[layout.skip : layout.skip + 10] or [""]
+    cells = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+    rows = [line.split() for line in lines] if separator == " " else [*cells]
+    rows = [[cell.strip() for cell in row] for row in rows]
+    if not layout.header and not any(rows[0]):
+        raise ParameterError("there is no header in its first line")
+    names, height = ([*layout.header], 0) if layout.header else _header(rows)
+    first = layout.skip + height + 1
+    for line, row in enumerate(rows[height:], first):
+        if any(row[len(names) :]):
+            raise ParameterError(
+                f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
+                f"every column needs a name{_separator_hint(names)}"
+            )
+    unnamed = range(len(names), max(map(len, rows)))
+    return names + [f"unnamed {index}" for index in unnamed], first
+
+
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
     """Return the names of columns, and the number of lines that they take.
 
-    The columns before those of the boats hold times; in a header in levels they hold the names of
-    its levels.
+    The first one or two columns hold times. In a header in levels they hold the levels' names.
     """
     starts = [next(filter(None, row[:2]), "").lower() for row in rows]
-    own = 1 if any(rows[0][:1]) else 2
+    n_time_columns = 1 if any(rows[0][:1]) else 2
     for levels in (program.levels for program in FORMATS if program.levels):
         if starts[0] == levels[0] and levels[-1] in starts:
             last = starts.index(levels[-1])
-            under = [rows[line][own:] for line in range(1, last + 1) if starts[line] in levels]
-            levels_of_columns = zip(*under, strict=False)
-            return ["frame", *rows[last][1:own], *map(_joined, levels_of_columns)], last + 1
+            level_rows = [rows[line] for line in range(1, last + 1) if starts[line] in levels]
+            columns = zip(*(row[n_time_columns:] for row in level_rows), strict=False)
+            return ["frame", *rows[last][1:n_time_columns], *map(_joined, columns)], last + 1
     # A separator at the end of the line leaves an empty name.
     return [name or f"unnamed {index}" for index, name in enumerate(rows[0])], 1
 
 
 def _joined(levels: Iterable[object]) -> str:
-    """Return the name of a column that is named in levels: individual, body part, coord."""
+    """Return "individual.part_coord" for a column that is named in these levels."""
     *individual, part, coord = map(str, levels)
     return f"{'.'.join([*individual, part])}_{coord}"
 
 
 def is_value(cell: object) -> bool:
-    """Return whether a cell begins like a number."""
+    """Return whether a cell begins like a number: with a digit after any signs and points."""
     return str(cell).lstrip("-+.")[:1].isdigit()
 
 
@@ -199,8 +207,8 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
                 f"the columns have {columns.nlevels} levels, such as {columns[0]!r}: give each "
                 "column one name"
             )
-        kept = columns.droplevel("scorer") if "scorer" in columns.names else columns
-        table = table.set_axis([_joined(levels) for levels in kept], axis=1)
+        named = columns.droplevel("scorer") if "scorer" in columns.names else columns
+        table = table.set_axis([_joined(levels) for levels in named], axis=1)
         index = index.rename(index.name or "frame")
     for level, name in enumerate(index.names):
         values = index.get_level_values(level)
@@ -215,22 +223,22 @@ def plain_table(table: "pd.DataFrame") -> "pd.DataFrame":
 def long_table(
     rows: "pd.DataFrame", layout: TrackLayout
 ) -> "tuple[pd.DataFrame, pd.Series[str] | None]":
-    """Return the columns that a layout names, as numbers but for times, and the names of boats.
+    """Return the columns that a layout names, and the names of boats.
 
-    A column whose name holds {id} stands for the columns of all boats, one after the other. A row
-    without a boat has the name None. If no row has a name, all rows belong to one boat, and None is
-    returned.
+    Times are as in the table, all other columns are numbers. A column whose name holds {id} stands
+    for the columns of all boats, one after the other. A row without a boat has the name None. If no
+    row has a name, all rows belong to one boat, and None is returned in place of the names.
     """
-    pandas, places, boats = require("pandas", "plot"), places_of(rows), boats_of(rows, layout)
+    pandas, indices, boats = require("pandas", "plot"), indices_of(rows), boats_of(rows, layout)
 
-    def found(name: str) -> "pd.Series[Any]":
-        own = [index_of(name.replace("{id}", boat), rows, places) for boat in boats]
-        column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in own])
+    def column_of(name: str) -> "pd.Series[Any]":
+        of_boats = [index_of(name.replace("{id}", boat), rows, indices) for boat in boats]
+        column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in of_boats])
         return column.rename(name)
 
-    ids = found(layout.id) if layout.id and not layout.is_wide else None
-    columns = {name: numbers(found(name), layout) for name in sum(layout.columns.values(), ())}
-    times = found(layout.frame)
+    ids = column_of(layout.id) if layout.id and not layout.is_wide else None
+    columns = {name: numbers(column_of(name), layout) for name in sum(layout.columns.values(), ())}
+    times = column_of(layout.frame)
     table: pd.DataFrame = pandas.DataFrame({layout.frame: times, **columns}, times.index)
     if ids is None and not layout.is_wide:
         return table, None
@@ -244,85 +252,86 @@ def long_table(
 
 
 def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
-    """Return what stands in place of {id} in the names of columns; "0" if they have none."""
+    """Return the boats' names in place of {id} in names of columns; ["0"] without {id}."""
     if not layout.is_wide:
         return ["0"]
-    names, places = [*map(str, rows)], places_of(rows)
+    names, indices = [*map(str, rows)], indices_of(rows)
     fields = sum(layout.columns.values(), ())
     first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-    boats = [found[1] for name in names if (found := first.fullmatch(name.strip()))]
-    boats = [b for b in boats if all(_key(f.replace("{id}", b)) in places for f in fields)]
+    boats = [match[1] for name in names if (match := first.fullmatch(name.strip()))]
+    boats = [b for b in boats if all(_key(f.replace("{id}", b)) in indices for f in fields)]
     if not boats:
-        looks = " and ".join(map(repr, fields))
-        raise ParameterError(f"no columns look like {looks}; there are {listed(names)}")
+        patterns = " and ".join(map(repr, fields))
+        raise ParameterError(f"no columns look like {patterns}; there are {listed(names)}")
     return boats
 
 
-def places_of(rows: "pd.DataFrame") -> dict[str, list[int]]:
-    """Return the indices of columns by their names, without case, blanks and marks of remarks."""
-    places = dict[str, list[int]]()
+def indices_of(rows: "pd.DataFrame") -> dict[str, list[int]]:
+    """Return the indices of columns by the key of their names."""
+    indices = dict[str, list[int]]()
     for index, name in enumerate(rows):
-        places.setdefault(_key(name), []).append(index)
-    return places
+        indices.setdefault(_key(name), []).append(index)
+    return indices
 
 
-def index_of(name: str, rows: "pd.DataFrame", places: dict[str, list[int]]) -> int:
+def index_of(name: str, rows: "pd.DataFrame", indices: dict[str, list[int]]) -> int:
     """Return the index of a column, whose name may differ in case or blanks."""
-    like = places.get(_key(name), [])
-    found = [index for index in like if rows.columns[index] == name] or like
-    if len(found) > 1:
+    similar = indices.get(_key(name), [])
+    matches = [index for index in similar if rows.columns[index] == name] or similar
+    if len(matches) > 1:
         raise ParameterError(f"there are several columns {name!r}: give each its own name")
-    if not found:
+    if not matches:
         names = [*map(str, rows)]
         hint = f"there are {listed(names)}{_separator_hint(names)}"
         raise ParameterError(f"column {name!r} is missing; {hint}")
-    return found[0]
+    return matches[0]
 
 
 def _key(name: object) -> str:
+    """Return a column's name without case, blanks around it and marks of remarks before it."""
     return str(name).strip().lstrip("#%").strip().casefold()
 
 
 def listed(names: list[str]) -> str:
-    """Return names separated by commas; of very many names only the first ones."""
+    """Return names separated by commas, the first 40 and the number of further names."""
     more = f" and {len(names) - 40} more" if len(names) > 40 else ""
     return f"{', '.join(names[:40])}{more}"
 
 
 def _separator_hint(names: list[str]) -> str:
-    """Return a hint for a header read as one name, or for numbers in its place."""
+    """Return a hint if a header was read as one name, or if it consists of numbers."""
     if sum(map(is_value, names)) > len(names) / 2:
         return ": `header` names the columns of a file whose first line does not"
     if names[0][:1] in ("#", "%", "/") and len(names) == 1:
         return ": `skip` leaves out lines before the header, such as remarks"
-    mark = _separator_of(names)
-    if len(names) > 1 or mark not in names[0]:
+    separator = _separator_of(names)
+    if len(names) > 1 or separator not in names[0]:
         return ""
-    return f": the header looks like one with separator = {mark!r}"
+    return f": the header looks like one with separator = {separator!r}"
 
 
 def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
     """Return a column as numbers, NaN for missing and infinite ones; refuse other texts."""
-    to_numeric, found = require("pandas", "plot").to_numeric, column
+    to_numeric, parsed = require("pandas", "plot").to_numeric, column
     if column.dtype.kind not in "iuf":
         texts = column.astype(object).where(column.notna(), "").astype(str).str.strip()
-        found = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
-        none = NO_NUMBER | {word.strip().lower() for word in layout.missing}
-        strange = texts[found.isna() & ~texts.str.lower().isin(none)]
-        for line, text in strange.head(1).items():
+        parsed = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
+        missing_texts = NO_NUMBER | {word.strip().lower() for word in layout.missing}
+        other_texts = texts[parsed.isna() & ~texts.str.lower().isin(missing_texts)]
+        for line, text in other_texts.head(1).items():
             decimal = "," if layout.decimal == "." else "."
             hint = f"; is decimal = {decimal!r}?" if _has_decimal(text, decimal) else ""
             raise ParameterError(
                 f"column {column.name!r} holds other things than numbers: {short_repr(text)} "
                 f"in {column.index.name} {line}{hint}"
             )
-    values: Floats = found.to_numpy(dtype=np.float64, na_value=np.nan).copy()
-    none = to_numeric(list(layout.missing), errors="coerce")
-    values[np.isinf(values) | np.isin(values, none)] = np.nan
+    values: Floats = parsed.to_numpy(dtype=np.float64, na_value=np.nan).copy()
+    missing_numbers = to_numeric(list(layout.missing), errors="coerce")
+    values[np.isinf(values) | np.isin(values, missing_numbers)] = np.nan
     return values
 
 
 def _has_decimal(cell: str, mark: str) -> bool:
-    """Return whether a cell is a number with a decimal mark."""
-    whole, _, part = cell.lstrip("+-").partition(mark)
-    return whole.isdigit() and part.isdigit()
+    """Return whether a cell consists of digits, the decimal mark and more digits."""
+    whole, _, fraction = cell.lstrip("+-").partition(mark)
+    return whole.isdigit() and fraction.isdigit()

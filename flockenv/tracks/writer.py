@@ -1,4 +1,4 @@
-"""Recordings out: long tables that `read_tracks` reads again, and GSD for OVITO and freud."""
+"""Recordings as tables, which `read_tracks` reads again, and as GSD for OVITO and freud."""
 
 import math
 import os
@@ -24,19 +24,19 @@ def export(
 ) -> list[Path]:
     """Write the poses of a recording for other programs, and return the files that were written.
 
-    The ending of the path decides. A CSV or Parquet table (extra ``plot``) has one row per sample
-    and boat, with the columns of `Recording.to_dataframe`, and beside it a layout in TOML, with
-    which `read_tracks` reads it. A GSD file (extra ``tracks``) has one frame per sample in the
-    schema of HOOMD-blue: positions and the box in cm, orientations as quaternions about z,
-    velocities in cm/s, and the types "boat" and "leader" with their hull. Its log has ``time_s``
-    and each boat's number.
+    The ending of the path selects the format. A CSV or Parquet table (extra ``plot``) has one row
+    per sample and boat, with the columns of `Recording.to_dataframe`. Beside it a layout in TOML is
+    written, with which `read_tracks` reads the table. A GSD file (extra ``tracks``) has one frame
+    per sample in the schema of HOOMD-blue: positions and the box in cm, orientations as quaternions
+    about z, velocities in cm/s, and the types "boat" and "leader" with their hull. Its log has
+    ``time_s`` and each boat's number.
 
     Parameters
     ----------
     recording, path
         What to write, and where; an existing table or GSD file is replaced.
     overwrite
-        Whether to replace another layout beside the table, too. It may be written by hand.
+        Whether to replace another layout beside the table, which may be written by hand.
 
     Raises
     ------
@@ -60,12 +60,12 @@ def export(
     if ending == ".gsd":
         _write_gsd(recording, path)
         return [path]
-    beside = path.with_suffix(".toml")
+    layout_path = path.with_suffix(".toml")
     text = "# Columns and units of the table beside this file, for flockenv.\n"
     text += tomli_w.dumps(_layout(recording))
-    is_other = beside.exists() and beside.read_bytes() != text.encode()
+    is_other = layout_path.exists() and layout_path.read_bytes() != text.encode()
     if not as_bool(overwrite, "overwrite") and is_other:
-        raise ParameterError(f"{beside} already exists, with another layout: overwrite=True")
+        raise ParameterError(f"{layout_path} already exists, with another layout: overwrite=True")
     table = recording.to_dataframe(boats=True)
     if ending == ".csv":
         write_csv(path, table)
@@ -73,11 +73,12 @@ def export(
         require("pyarrow", "plot")
         with atomic_write(path) as file:
             table.to_parquet(file, index=False)
-    write_text(beside, text)
-    return [path, beside]
+    write_text(layout_path, text)
+    return [path, layout_path]
 
 
 def _layout(recording: Recording) -> dict[str, Any]:
+    """Return the fields of the layout of a recording's table."""
     parameters, ids = recording.parameters, recording.ids
     names = range(parameters.n_boats) if ids is None else ids
     columns = {"frame": "time_s", "x": "x_cm", "y": "y_cm", "heading": "heading_rad"}
@@ -92,19 +93,20 @@ def _layout(recording: Recording) -> dict[str, Any]:
 
 
 def _write_gsd(recording: Recording, path: Path) -> None:
+    """Write a frame per sample, in a square box that holds all hulls."""
     hoomd = require("gsd.hoomd", "tracks")
     parameters = recording.parameters
-    reach, _ = _core.pool_radii_cm(parameters.pool)
-    if math.isinf(reach):  # Open water: as far as there are boats.
-        reach = float(np.nanmax(np.abs(recording.pose[..., :2])))
-    side = 2 * reach + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm
+    radius_cm, _ = _core.pool_radii_cm(parameters.pool)
+    if math.isinf(radius_cm):  # Open water: the box reaches as far as the boats.
+        radius_cm = float(np.nanmax(np.abs(recording.pose[..., :2])))
+    side_cm = 2 * radius_cm + 4 * (1 + parameters.boat_shape) * parameters.boat_radius_cm
     # The library opens paths, not open files.
     with atomic_write(path) as file, hoomd.open(file.name, "w") as frames:
         for sample in range(len(recording)):
             frame = hoomd.Frame()
             frame.configuration.step = sample
             frame.configuration.dimensions = 2
-            frame.configuration.box = [side, side, 0, 0, 0, 0]
+            frame.configuration.box = [side_cm, side_cm, 0, 0, 0, 0]
             frame.log["time_s"] = recording.time_s[[sample]]
             _put_boats(frame, recording, sample)
             frames.append(frame)
@@ -114,12 +116,13 @@ def _put_boats(frame: Any, recording: Recording, sample: int) -> None:
     """Put the boats that are present into a frame, each as a line swept by a disc."""
     parameters, particles = recording.parameters, frame.particles
     radius, half = parameters.boat_radius_cm, parameters.boat_shape * parameters.boat_radius_cm
-    ends = {"rounding_radius": radius, "vertices": [[-half, 0.0], [half, 0.0]]}
-    hull = {"type": "Polygon", **ends} if half else {"type": "Sphere", "diameter": 2 * radius}
+    ends = [[-half, 0.0], [half, 0.0]]
+    capsule = {"type": "Polygon", "rounding_radius": radius, "vertices": ends}
+    hull = capsule if half else {"type": "Sphere", "diameter": 2 * radius}
     pose = recording.pose[sample].astype(np.float64)
     boats = np.flatnonzero(np.isfinite(pose[:, 0]))
     pose, velocity = pose[boats], np.nan_to_num(recording.velocity[sample, boats])
-    turn, zero = pose[:, 2] / 2, np.zeros(len(boats))
+    half_heading, zero = pose[:, 2] / 2, np.zeros(len(boats))
     particles.N = len(boats)
     particles.types = ["boat", "leader"]
     particles.type_shapes = [hull] * 2
@@ -127,6 +130,7 @@ def _put_boats(frame: Any, recording: Recording, sample: int) -> None:
     particles.diameter = np.full(len(boats), 2 * radius)
     particles.position = np.column_stack([pose[:, :2], zero])
     particles.velocity = np.column_stack([velocity[:, :2], zero])
-    # A turn about z by the heading, from a hull along x.
-    particles.orientation = np.column_stack([np.cos(turn), zero, zero, np.sin(turn)])
+    # The hull lies along x and is rotated about z by the heading.
+    cosine, sine = np.cos(half_heading), np.sin(half_heading)
+    particles.orientation = np.column_stack([cosine, zero, zero, sine])
     frame.log["particles/boat"] = boats.astype(np.uint32)
