@@ -27,7 +27,7 @@ MOTION = {
 }
 """The columns of poses and velocities in tables, with their units."""
 PRECISIONS = (np.dtype(np.float64), np.dtype(np.float32))
-REACH = (-1e9, 1e9)
+MOTION_BOUNDS = (-1e9, 1e9)
 """Bounds of a flock's poses and velocities."""
 ORIGIN: dict[str, np.dtype[Any]] = {
     "noise_seed": np.dtype(np.uint64),
@@ -35,7 +35,7 @@ ORIGIN: dict[str, np.dtype[Any]] = {
     "start_sha256": np.dtype(np.str_),
     "schedule_sha256": np.dtype(np.str_),
 }
-"""Fields that set a run apart from another of its parameters, seed and policy; each may be None."""
+"""Fields in which runs of the same parameters, seed and policy may differ; each may be None."""
 CONTACTS = tuple(column.name for column in fields(ContactSeries))
 """The arrays of a `ContactSeries`, in its order."""
 
@@ -50,16 +50,20 @@ def check_array(
     gaps: bool = False,
     bounds: tuple[float, float] | None = None,
 ) -> None:
-    """Refuse a wrong shape or dtype, numbers out of bounds, and NaN where it is not allowed."""
+    """Refuse a wrong shape or dtype, numbers out of bounds, and NaN where it is not allowed.
+
+    With `gaps` NaN is allowed, in poses and velocities only for all three numbers of a boat. With
+    `all_nan` every number must be NaN.
+    """
     if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
-        found = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
-        raise ParameterError(f"{name} is of {found}, expected an array of {dtypes[0]}")
+        kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+        raise ParameterError(f"{name} is of {kind}, expected an array of {dtypes[0]}")
     if array.shape != shape:
         raise ParameterError(f"{name} has shape {array.shape}, expected {shape}")
     if gaps:
-        absent = np.isnan(array)
-        rows = absent.any(axis=-1) != absent.all(axis=-1) if array.ndim == 3 else np.zeros(1, bool)
-        if np.isinf(array).any() or rows.any():
+        is_nan = np.isnan(array)
+        has_partial_rows = array.ndim == 3 and (is_nan.any(axis=-1) != is_nan.all(axis=-1)).any()
+        if np.isinf(array).any() or has_partial_rows:
             raise ParameterError(f"{name} must be finite, except for missing boats")
     elif array.dtype.kind == "f" and not (np.isnan if all_nan else np.isfinite)(array).all():
         raise ParameterError(f"{name} must be {'undefined (NaN)' if all_nan else 'finite'}")
@@ -70,9 +74,9 @@ def check_array(
 
 def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
     """Refuse times that do not increase from 0 s to the end of the run."""
-    # Times are rounded to a nanosecond, so they may lie that much beyond the end.
-    ends = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
-    if not (np.diff(time_s) > 0).all() or not (np.diff(ends) >= 0).all():
+    # Times are rounded to a nanosecond, so the last one may lie that much beyond the end.
+    increasing = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
+    if not (np.diff(time_s) > 0).all() or not (np.diff(increasing) >= 0).all():
         raise ParameterError(
             "time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at "
             "least one time if that is not given"
@@ -82,11 +86,13 @@ def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
 def check_order(
     order: OrderSeries, times: tuple[int, ...], normal_boats: int, *, tracked: bool, posed: bool
 ) -> None:
-    """Refuse series that are not finite, unless too few boats are present to define them."""
+    """Refuse series that are not finite, unless too few boats are present to define them.
+
+    Without poses (`posed` is False) a series may be NaN at all times: the file lacked it.
+    """
     for quantity in RECORDED:
         values = getattr(order, quantity.name)
         undefined = normal_boats < quantity.least_boats
-        # As in a recording without poses whose file lacks this quantity.
         undefined |= not posed and bool(np.isnan(values).all())
         check_array(
             f"order.{quantity.name}",
@@ -120,8 +126,9 @@ def check_origin(origin: Mapping[str, Any]) -> None:
                     f"{name} = {short_repr(value)} is not accepted: a positive rate"
                 )
         elif not isinstance(value, str) or not re.fullmatch("[0-9a-f]{64}", value):
-            words = "a SHA-256 of 64 hexadecimal digits"
-            raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {words}")
+            raise ParameterError(
+                f"{name} = {short_repr(value)} is not accepted: a SHA-256 of 64 hexadecimal digits"
+            )
 
 
 def check_share(after: object) -> None:
@@ -131,7 +138,7 @@ def check_share(after: object) -> None:
 
 
 def check_ids(ids: object, boats: int) -> None:
-    """Refuse names unless there is one per boat and none twice."""
+    """Refuse names unless each boat has its own."""
     if not isinstance(ids, np.ndarray) or ids.dtype.kind != "U" or ids.shape != (boats,):
         raise ParameterError(f"ids must be an array of str of shape ({boats},)")
     if len(set(ids.tolist())) != boats:
@@ -140,12 +147,12 @@ def check_ids(ids: object, boats: int) -> None:
 
 def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParameters) -> None:
     """Refuse contacts that do not fit the number of samples or the flock's parameters."""
-    c = len(contacts.i) if np.ndim(contacts.i) else 0
-    shapes = {"count": (samples,), "normal": (c, 2), "point_cm": (c, 2)}
+    total = len(contacts.i) if np.ndim(contacts.i) else 0
+    shapes = {"count": (samples,), "normal": (total, 2), "point_cm": (total, 2)}
     dtypes = {"count": np.int64, "i": np.int32, "j": np.int32}
     for name in CONTACTS:
         array: object = getattr(contacts, name)
-        shape, dtype = shapes.get(name, (c,)), dtypes.get(name, np.float32)
+        shape, dtype = shapes.get(name, (total,)), dtypes.get(name, np.float32)
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             raise ParameterError(
                 f"contacts.{name} must be an array of {np.dtype(dtype)}, shape {shape}"
@@ -153,11 +160,12 @@ def check_contacts(contacts: ContactSeries, samples: int, parameters: FlockParam
         if not np.isfinite(array).all():
             raise ParameterError(f"contacts.{name} must be finite")
     count = contacts.count
-    if (count < 0).any() or (count > c).any() or count.sum() != c:
-        raise ParameterError(f"contacts.count must add up to the {c} contacts there are")
+    if (count < 0).any() or (count > total).any() or count.sum() != total:
+        raise ParameterError(f"contacts.count must add up to the {total} contacts there are")
     boats, obstacles = parameters.n_boats, sum(len(getattr(parameters, kind)) for kind in OBSTACLES)
-    pairs = np.concatenate([contacts.i, contacts.j])
-    if c and (contacts.i.min() < 0 or pairs.min() < -2 - obstacles or pairs.max() >= boats):
+    # Negative numbers in j stand for the two walls of the pool and the obstacles.
+    bodies = np.concatenate([contacts.i, contacts.j])
+    if total and (contacts.i.min() < 0 or bodies.min() < -2 - obstacles or bodies.max() >= boats):
         raise ParameterError(f"contacts.i and contacts.j must be among {boats} boats")
     if not (contacts.force > 0).all():
         raise ParameterError("contacts.force must be positive")

@@ -1,4 +1,4 @@
-"""User-defined quantities: functions of a recording, and their series by name."""
+"""User-defined quantities of a recording: functions, and the series that they return, by name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
@@ -14,17 +14,17 @@ from flockenv.recording.checks import MOTION, TIMES
 from flockenv.recording.stored import ARRAYS, OPTIONAL
 
 
-def check_names(quantities: object, of: str) -> None:
-    """Refuse a user's quantities that are not a dictionary, and names that are taken."""
+def check_names(quantities: object, values: str) -> None:
+    """Refuse a user's quantities that are not a dictionary, and names that are taken.
+
+    The error calls the dictionary's values `values`.
+    """
     if not isinstance(quantities, Mapping):
-        raise ParameterError(f"quantities = {short_repr(quantities)} is not accepted: {of} by name")
-    taken = {quantity.name for quantity in QUANTITIES} | {
-        *TIMES,
-        *MOTION,
-        "boat",
-        "id",
-        "is_leader",
-    }
+        raise ParameterError(
+            f"quantities = {short_repr(quantities)} is not accepted: {values} by name"
+        )
+    taken = {*TIMES, *MOTION, "boat", "id", "is_leader"}
+    taken |= {quantity.name for quantity in QUANTITIES}
     for name in quantities:
         if not isinstance(name, str) or not name.isidentifier() or name in taken:
             raise ParameterError(
@@ -34,7 +34,7 @@ def check_names(quantities: object, of: str) -> None:
 
 
 def checked_functions(functions: Mapping[str, object]) -> dict[str, Callable[[Any], Any]]:
-    """Return a user's functions by name, checked before the run that they are for."""
+    """Check a user's functions before a run, and return them by name."""
     check_names(functions, "functions")
     checked: dict[str, Callable[[Any], Any]] = {}
     for name, function in functions.items():
@@ -47,33 +47,33 @@ def checked_functions(functions: Mapping[str, object]) -> dict[str, Callable[[An
     return checked
 
 
-def own_series(
+def user_series(
     functions: Mapping[str, Callable[[Any], object]], recording: object
 ) -> dict[str, NDArray[np.float64]]:
-    """Evaluate a user's own quantities of a recording; each is an array, a number per sample."""
+    """Return the series of a user's quantities of a recording, by name."""
     checked = checked_functions(functions)
     return {name: _series(name, function, recording) for name, function in checked.items()}
 
 
 def _series(name: str, function: Callable[[Any], object], recording: object) -> NDArray[np.float64]:
+    """Return a function's values as float64, NaN for masked values; refuse too large numbers."""
     try:
         values = function(recording)
     except Exception as error:  # The user's function may raise anything.
         raise ParameterError(
             f"quantity {name!r} failed: {type(error).__name__}: {error}"
         ) from error
-    found = real_numbers(values, f"quantity {name!r}")
+    numbers = real_numbers(values, f"quantity {name!r}")
     with np.errstate(over="ignore"):
-        doubles = np.ma.asarray(found.astype(np.float64))
-    # Masked values are missing.
+        doubles = np.ma.asarray(numbers.astype(np.float64))
     series = np.ma.filled(doubles, np.nan).copy()
-    if (np.isinf(series) & np.isfinite(np.ma.filled(found, 0))).any():
+    if (np.isinf(series) & np.isfinite(np.ma.filled(numbers, 0))).any():
         raise ParameterError(f"quantity {name!r} is not accepted: numbers that fit float64")
     return series
 
 
 def check_quantities(quantities: Mapping[str, object], times: tuple[int, ...]) -> None:
-    """Refuse a user's quantities that are not series, and names that are taken."""
+    """Refuse a user's quantities that are not float64 series, and names that are taken."""
     check_names(quantities, "arrays")
     for name, values in quantities.items():
         if not isinstance(values, np.ndarray) or values.dtype != np.float64:
@@ -82,19 +82,20 @@ def check_quantities(quantities: Mapping[str, object], times: tuple[int, ...]) -
             raise ParameterError(f"quantity {name!r} has shape {values.shape}, expected {times}")
 
 
-def read_only(of_recording: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a recording's fields that hold arrays, with their arrays made read-only."""
-    present = (name for name in (*ARRAYS, *OPTIONAL) if of_recording[name] is not None)
-    sealed: dict[str, Any] = {name: _sealed(of_recording[name]) for name in present}
-    if (contacts := of_recording["contacts"]) is not None:
-        columns = (_sealed(getattr(contacts, column.name)) for column in fields(contacts))
-        sealed["contacts"] = type(contacts)(*columns)
-    sealed["order"] = OrderSeries(*map(_sealed, of_recording["order"].columns()))
-    own = of_recording["quantities"].items()
-    return {**sealed, "quantities": {name: _sealed(values) for name, values in own}}
+def read_only(recording_fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those fields of a recording that hold arrays, as read-only views."""
+    present = (name for name in (*ARRAYS, *OPTIONAL) if recording_fields[name] is not None)
+    views: dict[str, Any] = {name: _read_only_view(recording_fields[name]) for name in present}
+    if (contacts := recording_fields["contacts"]) is not None:
+        columns = (_read_only_view(getattr(contacts, column.name)) for column in fields(contacts))
+        views["contacts"] = type(contacts)(*columns)
+    views["order"] = OrderSeries(*map(_read_only_view, recording_fields["order"].columns()))
+    quantities = recording_fields["quantities"].items()
+    views["quantities"] = {name: _read_only_view(values) for name, values in quantities}
+    return views
 
 
-def _sealed(array: NDArray[Any]) -> NDArray[Any]:
+def _read_only_view(array: NDArray[Any]) -> NDArray[Any]:
     view = array.view()
     view.flags.writeable = False
     return view

@@ -1,4 +1,4 @@
-"""Runs, sampled at a fixed rate: saved and loaded."""
+"""Recordings: runs that are sampled at a fixed rate, saved and loaded."""
 
 import html
 import math
@@ -18,10 +18,10 @@ from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
 from flockenv.parameters import FlockParameters
 from flockenv.recording.checks import (
+    MOTION_BOUNDS,
     ORIGIN,
     PHASES,
     PRECISIONS,
-    REACH,
     check_array,
     check_contacts,
     check_ids,
@@ -31,7 +31,7 @@ from flockenv.recording.checks import (
     check_share,
     check_times,
 )
-from flockenv.recording.quantities import check_quantities, own_series, read_only
+from flockenv.recording.quantities import check_quantities, read_only, user_series
 from flockenv.recording.stored import ARRAYS, LayoutError, arrays_of, fields_from
 from flockenv.recording.tables import dataset_of, table_of
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import xarray
 
 DISCARDED_SHARE = 0.1
-"""The fraction of a run, at its start, that no figure uses."""
+"""Fraction of a run, from its start, that no figure uses."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -59,7 +59,7 @@ class Recording(HintsAtNames):
         [x cm, y cm, heading rad counter-clockwise from x, not wrapped], leaders first. Shape (t, 0,
         3) if poses were not kept.
     velocity : array of the same dtype and shape
-        [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the substep before.
+        [cm/s, cm/s, rad/s]. With the leapfrog scheme these are means over the previous substep.
     order : OrderSeries
         Order parameters of the normal boats, with these times; NaN only where they are undefined.
     parameters : FlockParameters
@@ -82,8 +82,8 @@ class Recording(HintsAtNames):
         Worst overlap, unsolved and halved substeps of the flock at the end; None if they are
         unknown, as for tracks.
     duration_s : float
-        When the run ended, in s from time 0; the samples may be a part of it. The time of the last
-        sample if not given.
+        End of the run in s from time 0, by default the time of the last sample. The samples may
+        cover only a part of the run.
     quantities : dict of float64 arrays, shape (t,)
         User-defined quantities, by name; see `with_quantities`.
     noise_seed : int or None
@@ -96,9 +96,9 @@ class Recording(HintsAtNames):
     schedule_sha256 : str or None
         Digest of the schedule (what changed, and when); None if `parameters` held throughout.
     ids : str array, shape (n,), or None
-        Names of tracked boats, leaders first; None for a simulated flock. Only with them rows of
-        `pose` and `velocity` may be NaN, for missing boats, quantities of too few boats are NaN,
-        and `phase` may be empty: unknown.
+        Names of tracked boats, leaders first; None for a simulated flock. Only with names may rows
+        of `pose` and `velocity` be NaN, for missing boats. Quantities of too few boats are then
+        NaN, and `phase` may be "", which means unknown.
 
     Raises
     ------
@@ -139,14 +139,14 @@ class Recording(HintsAtNames):
     def __post_init__(self) -> None:
         times = np.shape(self.time_s)[:1]
         with_poses = np.shape(self.pose)[1:2] != (0,)
-        state = (*times, self.parameters.n_boats if with_poses else 0, 3)
+        poses_shape = (*times, self.parameters.n_boats if with_poses else 0, 3)
         check_array("time_s", self.time_s, times, PRECISIONS[:1])
         check_array("phase", self.phase, times, (PHASES.dtype,))
         check_array("in_analysis_window", self.in_analysis_window, times, (np.dtype(np.bool_),))
         tracked = self.ids is not None
-        how: dict[str, Any] = {"gaps": tracked, "bounds": REACH}
-        check_array("pose", self.pose, state, PRECISIONS, **how)
-        check_array("velocity", self.velocity, state, (self.pose.dtype,), **how)
+        allowed: dict[str, Any] = {"gaps": tracked, "bounds": MOTION_BOUNDS}
+        check_array("pose", self.pose, poses_shape, PRECISIONS, **allowed)
+        check_array("velocity", self.velocity, poses_shape, (self.pose.dtype,), **allowed)
         if self.ids is not None:
             check_ids(self.ids, self.parameters.n_boats)
         if not np.isin(self.phase, [*PHASES, ""] if tracked else PHASES).all():
@@ -173,10 +173,10 @@ class Recording(HintsAtNames):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        mine, theirs = arrays_of(self._fields()), arrays_of(other._fields())
-        return mine.keys() == theirs.keys() and all(
-            np.array_equal(array, theirs[name], equal_nan=array.dtype.kind == "f")
-            for name, array in mine.items()
+        arrays, others = arrays_of(self._fields()), arrays_of(other._fields())
+        return arrays.keys() == others.keys() and all(
+            np.array_equal(array, others[name], equal_nan=array.dtype.kind == "f")
+            for name, array in arrays.items()
         )
 
     def __repr__(self) -> str:
@@ -185,14 +185,14 @@ class Recording(HintsAtNames):
         return f"<flockenv.Recording of {what}, {len(self)} samples to {self.duration_s} s>"
 
     def _fields(self) -> dict[str, Any]:
-        return {own.name: getattr(self, own.name) for own in fields(self)}
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def flock_at(self, time_s: float) -> Flock:
         """Return the flock at the last sample up to a time, as far as it was recorded.
 
-        It has the poses, the velocities and the time of the sample, but neither the contacts nor
-        the state of the noise, so it does not continue as the recorded flock did. Raises the errors
-        of `state_at`.
+        The flock has the poses, the velocities and the time of the sample. It lacks the contacts
+        and the state of the noise, so it continues differently from the recorded flock. Raises the
+        errors of `state_at`.
         """
         state = self.state_at(time_s)
         present = self._is_present(self._sample_at(time_s))
@@ -228,6 +228,7 @@ class Recording(HintsAtNames):
         }
 
     def _sample_at(self, time_s: float) -> int:
+        """Return the index of the last sample up to a time."""
         if len(self) == 0 or not self.has_poses:
             raise ParameterError("this recording holds no poses to make a flock of")
         start, end = self.time_s[0], self.time_s[-1]
@@ -328,8 +329,8 @@ class Recording(HintsAtNames):
             is this recording.
         """
         try:
-            found = own_series(functions, replace(self, **read_only(self._fields())))
-            return replace(self, quantities={**self.quantities, **found})
+            series = user_series(functions, replace(self, **read_only(self._fields())))
+            return replace(self, quantities={**self.quantities, **series})
         except ParameterError as error:
             vars(error)["recording"] = self
             raise
@@ -339,16 +340,18 @@ class Recording(HintsAtNames):
         return replace(self, pose=self.pose[:, :0], velocity=self.velocity[:, :0])
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
+        """Return the recording of the selected samples."""
         columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in ARRAYS}
         order = self.order.at(samples)
         contacts = None if self.contacts is None else self.contacts.at(samples)
         rudder = None if self.rudder is None else self.rudder[samples]
-        own = {name: values[samples] for name, values in self.quantities.items()}
-        columns |= {"order": order, "contacts": contacts, "rudder": rudder, "quantities": own}
+        quantities = {name: values[samples] for name, values in self.quantities.items()}
+        columns |= {"order": order, "contacts": contacts, "rudder": rudder}
+        columns["quantities"] = quantities
         return replace(self, **columns)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
-        """Write the recording to an ``.npz`` file, whole or not at all.
+        """Write the recording to an ``.npz`` file, completely or not at all.
 
         Its arrays have the names of this class's attributes (``order_psi_o`` … for the order
         parameters, ``contacts_i`` … for contacts), the parameters are TOML. An hour of 20 boats at
@@ -360,11 +363,13 @@ class Recording(HintsAtNames):
         ParameterError
             For a name that does not end in ``.npz``.
         OSError
-            If the file cannot be written; the old file is still there then.
+            If the file cannot be written; an existing file is then unchanged.
         """
         if Path(path).suffix.lower() != ".npz":
-            words = "a name that ends in .npz; to_dataframe() has to_csv(), to_parquet() and others"
-            raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: {words}")
+            raise ParameterError(
+                f"path = {os.fspath(path)!r} is not accepted: a name that ends in .npz; "
+                "to_dataframe() has to_csv(), to_parquet() and others"
+            )
         write_arrays(path, arrays_of(self._fields()), compressed=as_bool(compressed, "compressed"))
 
     @classmethod

@@ -1,6 +1,6 @@
-"""The file of a recording: its arrays, each by its name.
+"""The file of a recording: its arrays by name.
 
-Files of other builds can be read even if these have more or fewer quantities, parameters or arrays.
+Files of other builds can be read even if they have more or fewer quantities, parameters or arrays.
 A missing quantity is computed from the poses; without poses it is NaN, with a warning. An unknown
 array is dropped with a warning.
 """
@@ -27,8 +27,10 @@ OPTIONAL = ("rudder", "ids")
 FORMAT = "flockenv recording 1"
 """The format named in a recording's file."""
 
-_OWN = "quantity_"
-_STEPS = "statistics_"
+_QUANTITY = "quantity_"
+_STATISTIC = "statistics_"
+"""Start of the names of arrays that hold user-defined quantities, and step statistics."""
+
 _TEXTS = ("format", "version", "parameters", "policy")
 _DROPPED = "has {} that this flockenv does not know, and does not keep"
 _UNDEFINED = "has no poses, from which these quantities would be computed, and they are NaN"
@@ -43,15 +45,17 @@ class LayoutError(ParameterError):
 
 
 def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name in which a recording's file stores these fields."""
+    """Return the arrays by name that a recording's file holds for the recording's fields."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
-    arrays |= {f"{_OWN}{name}": values for name, values in fields["quantities"].items()}
+    arrays |= {f"{_QUANTITY}{name}": values for name, values in fields["quantities"].items()}
     arrays |= {name: fields[name] for name in OPTIONAL if fields[name] is not None}
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
     if (statistics := fields["statistics"]) is not None:
-        arrays |= {f"{_STEPS}{name}": np.array(value) for name, value in vars(statistics).items()}
+        arrays |= {
+            f"{_STATISTIC}{name}": np.array(value) for name, value in vars(statistics).items()
+        }
     texts = {
         "format": FORMAT,
         "version": fields["version"],
@@ -59,8 +63,8 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
         "policy": fields["policy"] or "",
     }
     arrays |= {name: np.array(text) for name, text in texts.items()}
-    given = {name: kind for name, kind in ORIGIN.items() if fields[name] is not None}
-    arrays |= {name: np.array(fields[name], kind) for name, kind in given.items()}
+    present = {name: dtype for name, dtype in ORIGIN.items() if fields[name] is not None}
+    arrays |= {name: np.array(fields[name], dtype) for name, dtype in present.items()}
     arrays["seed"] = np.array(fields["seed"], np.uint64)
     arrays["duration_s"] = np.array(fields["duration_s"], np.float64)
     return arrays
@@ -72,18 +76,18 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     if form is not None and str(form) != FORMAT:
         raise LayoutError(f"format = {str(form)!r} is not accepted: {FORMAT!r}")
     needed = [*ARRAYS, *_TEXTS, "seed", "duration_s"]
-    with_contacts = [f"contacts_{name}" for name in CONTACTS]
-    has_contacts = not arrays.keys().isdisjoint(with_contacts)
-    needed += with_contacts if has_contacts else []
+    contact_names = [f"contacts_{name}" for name in CONTACTS]
+    has_contacts = not arrays.keys().isdisjoint(contact_names)
+    needed += contact_names if has_contacts else []
     if missing := [name for name in needed if name not in arrays]:
         raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
-    own = [name for name in arrays if name.startswith(_OWN)]
-    steps = {
-        statistic.name: f"{_STEPS}{statistic.name}"
+    quantities = [name for name in arrays if name.startswith(_QUANTITY)]
+    statistics = {
+        statistic.name: f"{_STATISTIC}{statistic.name}"
         for statistic in dataclass_fields(StepStatistics)
     }
     orders = [f"order_{name}" for name in ORDER]
-    known = {*needed, *orders, *OPTIONAL, *own, *steps.values(), *ORIGIN}
+    known = {*needed, *orders, *OPTIONAL, *quantities, *statistics.values(), *ORIGIN}
     _warn_of(_DROPPED.format("arrays"), arrays.keys() - known)
     if any(arrays[name].ndim or arrays[name].dtype.kind != "U" for name in _TEXTS):
         raise ParameterError(f"{', '.join(_TEXTS)} must each be one string")
@@ -91,7 +95,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     check_array("duration_s", arrays["duration_s"], (), PRECISIONS[:1])
     version, stored, policy = (str(arrays[name]) for name in _TEXTS[1:])
     parameters = _parameters(stored)
-    contacts = (arrays[name] for name in with_contacts) if has_contacts else None
+    contacts = (arrays[name] for name in contact_names) if has_contacts else None
     return {
         **{name: arrays[name] for name in ARRAYS},
         "order": _order(arrays, parameters),
@@ -100,29 +104,32 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         **_origin(arrays),
         "version": version,
         "policy": policy or None,
-        "quantities": {name.removeprefix(_OWN): arrays[name] for name in own},
+        "quantities": {name.removeprefix(_QUANTITY): arrays[name] for name in quantities},
         "duration_s": float(arrays["duration_s"]),
         **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),
-        "statistics": _statistics(arrays, steps),
+        "statistics": _statistics(arrays, statistics),
     }
 
 
 def _origin(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
     """Return the noise seed, the rate and the digests of a run; None for each that is missing."""
-    found: dict[str, Any] = dict.fromkeys(ORIGIN)
+    origin: dict[str, Any] = dict.fromkeys(ORIGIN)
     for name in ORIGIN.keys() & arrays.keys():
-        array, kind = arrays[name], ORIGIN[name]
-        if array.ndim or array.dtype.kind != kind.kind:
-            raise ParameterError(f"{name} must be one {kind.type.__name__.rstrip('_')}")
-        found[name] = array.item()
-    return found
+        array, dtype = arrays[name], ORIGIN[name]
+        if array.ndim or array.dtype.kind != dtype.kind:
+            raise ParameterError(f"{name} must be one {dtype.type.__name__.rstrip('_')}")
+        origin[name] = array.item()
+    return origin
 
 
 def _statistics(
     arrays: Mapping[str, NDArray[Any]], names: Mapping[str, str]
 ) -> StepStatistics | None:
-    """Return whether the run kept its tolerance; None if the file does not say."""
+    """Return the run's step statistics; None if the file lacks one of them.
+
+    `names` holds the name of the array by field of `StepStatistics`.
+    """
     if not all(name in arrays for name in names.values()):
         return None
     for name in names.values():
@@ -132,12 +139,14 @@ def _statistics(
 
 
 def _warn_of(words: str, names: Iterable[str]) -> None:
+    """Warn in these words about the names, if there are any."""
     # Python prints the same text only once, and a sweep may read thousands of such files.
     if listed := ", ".join(sorted(names)):
         warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
 
 
 def _parameters(toml: str) -> FlockParameters:
+    """Return the parameters in a text; unknown ones are dropped with a warning."""
     values = read_toml(toml, "the text of parameters")
     known = FlockParameters.__dataclass_fields__
     _warn_of(_DROPPED.format("parameters"), values.keys() - known.keys())
@@ -150,7 +159,7 @@ def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> O
     if missing := [name for name in ORDER if name not in stored]:
         pose, velocity = arrays["pose"], arrays["velocity"]
         k, undefined = parameters.n_leaders, np.full(arrays["time_s"].size, np.nan)
-        # The recording itself refuses other shapes.
+        # Poses of other shapes are refused later, by the recording.
         if pose.ndim == 3 and pose.shape == velocity.shape and pose.shape[1] > k:
             computed = order_series(pose[:, k:], velocity[:, k:])
             stored |= {name: getattr(computed, name) for name in missing}

@@ -48,8 +48,8 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
         name: (("time_s", "boat"), values, attributes[name])
         for name, values in _motion(recording).items()
     }
-    kinds = {"policy": np.dtype(np.str_), **ORIGIN}
-    origin = {name: (getattr(recording, name), kind) for name, kind in kinds.items()}
+    dtypes = {"policy": np.dtype(np.str_), **ORIGIN}
+    origin = {name: (getattr(recording, name), dtype) for name, dtype in dtypes.items()}
     is_leader = ("boat", boats < recording.parameters.n_leaders)
     return dataset(
         variables,
@@ -64,8 +64,8 @@ def dataset_of(recording: Any) -> "xarray.Dataset":
             "version": recording.version,
             "parameters": recording.parameters.to_toml(),
             **{
-                name: kind.type(value)
-                for name, (value, kind) in origin.items()
+                name: dtype.type(value)
+                for name, (value, dtype) in origin.items()
                 if value is not None
             },
         },
