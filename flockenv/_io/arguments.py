@@ -1,4 +1,4 @@
-"""Arguments that hold several values, also iterators."""
+"""Checks and conversions of arguments: sequences, iterators, arrays, numbers, bools and bytes."""
 
 import operator
 from collections.abc import Iterable, Iterator, Mapping, MappingView, Sequence, Set
@@ -25,28 +25,28 @@ def items(values: object, name: str) -> Sequence[Any]:
     unordered = isinstance(values, Set) and not isinstance(values, MappingView)
     if unordered or isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
         raise TypeError(f"{name} must be a sequence, not {short_repr(values)}")
-    found = tuple(islice(_iterated(values, name), _MOST_ITEMS + 1))
-    if len(found) > _MOST_ITEMS:
+    first_items = tuple(islice(_iterator(values, name), _MOST_ITEMS + 1))
+    if len(first_items) > _MOST_ITEMS:
         raise ParameterError(f"{name} has more than {_MOST_ITEMS} items: too many")
-    return found
+    return first_items
 
 
-def _iterated(values: Iterable[object], name: str) -> Iterator[object]:
+def _iterator(values: Iterable[object], name: str) -> Iterator[object]:
     try:
         return iter(values)
-    except TypeError as error:  # An array of one number.
+    except TypeError as error:  # A 0-dimensional array is an Iterable, too.
         raise TypeError(f"{name} must be a sequence, not {short_repr(values)}") from error
 
 
 def by_name(values: object, name: str) -> dict[Any, Any]:
-    """Return a copy of a dictionary; raise TypeError for anything else."""
+    """Return a mapping as a new dictionary; raise TypeError for anything else."""
     if not isinstance(values, Mapping):
         raise TypeError(f"{name} must be a dictionary, not {short_repr(values)}")
     return dict(values)
 
 
 def check_function(value: object, name: str) -> None:
-    """Refuse a value that cannot be called, before hours of work."""
+    """Raise TypeError for a value that cannot be called."""
     if not callable(value):
         raise TypeError(f"{name} must be a function, not {short_repr(value)}")
 
@@ -59,14 +59,14 @@ def materialized(values: object) -> Any:
 def listed(value: object) -> object:
     """Return an array as a list or a number, and any other value as `materialized` does.
 
-    Arrays of other libraries are arrays too. Masked arrays, tables, and arrays larger than any
-    option are returned unchanged: a later check refuses them by name.
+    This includes arrays of other libraries. Masked arrays, tables and arrays of more than a million
+    numbers are returned unchanged: a later check refuses them by name.
     """
     if not hasattr(value, "__array__") or hasattr(value, "columns") or np.ma.is_masked(value):
         return materialized(value)
     try:
         array = np.asarray(value)
-    except Exception:  # Arrays of other libraries raise what they like.
+    except Exception:  # Arrays of other libraries may raise anything.
         return value
     return array.tolist() if array.size <= _MOST_ITEMS else value
 
@@ -74,9 +74,9 @@ def listed(value: object) -> object:
 def as_int(value: Any, name: str) -> int:
     """Return a whole number, such as 8 or 8.0, as an int.
 
-    Raises ParameterError for other real numbers, and TypeError for everything else, bools included.
+    Raises ParameterError for other floats, and TypeError for everything else, bools included.
     """
-    # As in the core, NumPy's integers and 0-dimensional arrays of one integer are accepted, too.
+    # NumPy's integers and 0-dimensional arrays of an integer are accepted too, as in the core.
     try:
         if not isinstance(value, bool | np.bool_):
             return operator.index(value)
@@ -93,7 +93,8 @@ def as_int(value: Any, name: str) -> int:
 
 
 def _check_no_table(values: object, name: str) -> None:
-    if hasattr(values, "columns"):  # The names of columns would be ignored.
+    """Refuse a table, whose names of columns would be ignored."""
+    if hasattr(values, "columns"):
         raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
 
 
@@ -104,32 +105,32 @@ def real_numbers(values: object, name: str) -> np.ma.MaskedArray[Any, Any]:
     """
     _check_no_table(values, name)
     try:
-        found: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
-    except Exception as error:  # Arrays of other libraries raise what they like.
+        array: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
+    except Exception as error:  # Arrays of other libraries may raise anything.
         raise ParameterError(f"{name} is not accepted: real numbers") from error
-    if found.dtype.kind not in "biuf":
-        raise ParameterError(f"{name} is not accepted: real numbers, not {found.dtype}")
-    return found
+    if array.dtype.kind not in "biuf":
+        raise ParameterError(f"{name} is not accepted: real numbers, not {array.dtype}")
+    return array
 
 
 def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """Return a copy as an array of real numbers, with NaN for masked values and None."""
     _check_no_table(values, name)
     try:
-        found: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
-        if found.dtype.kind == "O":
-            found = np.ma.asarray(values, np.float64)
+        array: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
+        if array.dtype.kind == "O":
+            array = np.ma.asarray(values, np.float64)
     except (TypeError, ValueError) as error:
         raise ParameterError(f"{name} is not accepted: real numbers") from error
-    return np.array(np.ma.filled(real_numbers(found, name).astype(np.float64), np.nan))
+    return np.array(np.ma.filled(real_numbers(array, name).astype(np.float64), np.nan))
 
 
 def series(values: object, name: str) -> NDArray[np.float64]:
     """Return a sequence of numbers as an array, shape (n,); refuse anything else."""
-    found = with_gaps(items(values, name), name)
-    if found.ndim != 1:
-        raise ParameterError(f"{name} has shape {found.shape}, expected (n,)")
-    return found
+    array = with_gaps(items(values, name), name)
+    if array.ndim != 1:
+        raise ParameterError(f"{name} has shape {array.shape}, expected (n,)")
+    return array
 
 
 def number(value: object, name: str) -> Any:
@@ -140,7 +141,7 @@ def number(value: object, name: str) -> Any:
 
 
 def as_bool(value: object, name: str) -> bool:
-    """Return True or False; raise TypeError for all else, such as "no", which would be true."""
+    """Return a bool; raise TypeError for anything else, such as "no", which would count as true."""
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} must be True or False, not {short_repr(value)}")
     return bool(value)

@@ -1,4 +1,4 @@
-"""Named arrays in an ``.npz`` file, written whole or not at all, and read without trust."""
+"""Named arrays in an ``.npz`` file, written completely or not at all, and checked when read."""
 
 import io
 import os
@@ -18,9 +18,10 @@ _MOST_TIMES, _FREE_BYTES = 100, 64 << 20
 
 
 def most_content(size: int) -> int:
-    """Return the largest number of bytes that the entries of a file of this size may hold.
+    """Return the largest accepted size of a file's decompressed content, given the file's size.
 
-    Compression makes the numbers of a run at most ten times smaller, but zeros a thousand times.
+    Sizes are in bytes. Compression makes the numbers of a run at most ten times smaller, but zeros
+    a thousand times.
     """
     return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_TIMES * size))
 
@@ -33,11 +34,11 @@ def write_arrays(
     If compression would make the file so small that `read_arrays` would refuse it, the arrays are
     not compressed.
     """
-    held = sum(array.nbytes for array in arrays.values())
+    content_bytes = sum(array.nbytes for array in arrays.values())
     with atomic_write(path) as file:
         if compressed:
             np.savez_compressed(file, allow_pickle=False, **dict(arrays))
-        if not compressed or held > most_content(file.tell()):
+        if not compressed or content_bytes > most_content(file.tell()):
             file.seek(0)
             file.truncate()
             np.savez(file, allow_pickle=False, **dict(arrays))
@@ -56,12 +57,12 @@ def read_arrays(
         most = most_bytes or most_content(os.fstat(file.fileno()).st_size)
         try:
             with zipfile.ZipFile(file) as archive:
-                held = sum(entry.file_size for entry in archive.infolist())
-                if held > most:
-                    raise ValueError(f"it holds {held} bytes of {most} that are accepted")
+                content_bytes = sum(entry.file_size for entry in archive.infolist())
+                if content_bytes > most:
+                    raise ValueError(f"it holds {content_bytes} bytes of {most} that are accepted")
                 return _arrays_in(archive)
         except Exception as error:
-            # zipfile, zlib and NumPy raise very different things for damaged bytes.
+            # zipfile, zlib and NumPy raise errors of unrelated classes for damaged bytes.
             reason = str(error) or type(error).__name__
             raise ParameterError(
                 f"{path} is not a complete, undamaged .npz file: {reason}"
@@ -74,10 +75,9 @@ def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
         name = entry.filename.removesuffix(".npy")
         if name in arrays:
             raise ValueError(f"it holds {name!r} twice")
-        # Read to the end, so that the checksum is compared; NumPy may stop before.
+        # The entry is read to its end, since only then zipfile compares the checksum. The limit to
+        # its declared size keeps a false declaration from filling the memory.
         with archive.open(entry) as stream:
-            # Reads only as many bytes as the entry declares; without a number the whole entry would
-            # be unpacked.
             data = stream.read(entry.file_size)
         arrays[name] = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
         if arrays[name].dtype.kind not in "biufU":

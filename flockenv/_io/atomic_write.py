@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Files that are written completely or not at all."""
 
 import atexit
 import importlib
@@ -25,24 +25,24 @@ except ImportError:  # On Windows an open file can be neither renamed nor remove
 
 _NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
 
-# A name is registered before its file exists, so that no file is missed.
 _temporary: set[Path] = set()
+"""Temporary files of this process; each is listed before it is created."""
 
 
 @contextmanager
 def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """Open a temporary file for writing bytes, renamed to the path if all goes well.
+    """Open a temporary file for writing bytes, and rename it to the path if the block succeeds.
 
-    It is removed when the block ends or, at the latest, when Python ends, unless the process is
-    killed. The new file keeps the old one's mode. A link stays a link, and the file that it names
-    is replaced. If the file cannot be written, an OSError is raised and the old file is still
-    there. Raises ParameterError if the path is a device, a pipe or a socket.
+    Otherwise the temporary file is removed when the block ends, or when Python ends; only a killed
+    process leaves it behind. The new file gets the mode of the old one. A link stays a link, and
+    the file that it names is replaced. Raises OSError if the file cannot be written; the old file
+    is then unchanged. Raises ParameterError if the path is a device, a pipe or a socket.
     """
     check_writable(path)
     target = Path(os.path.realpath(path))
     try:
         temporary, file = _locked_file(target.parent)
-    except OSError as error:  # The temporary file's name would tell a reader nothing.
+    except OSError as error:  # The user knows the path, but not the temporary file.
         error.filename = os.fspath(path)
         raise
     try:
@@ -61,7 +61,10 @@ def atomic_write(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
 
 def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
-    """Return a new temporary file, locked so that no process removes it as a leftover."""
+    """Return the path of a new temporary file, and the file.
+
+    It is locked, so that no other process removes it as a leftover.
+    """
     while True:
         temporary = folder / f".{secrets.token_hex(8)}.tmp"
         _temporary.add(temporary)
@@ -73,7 +76,7 @@ def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
             raise
         if _is_locked(file) is not False and os.fstat(file.fileno()).st_nlink > 0:
             return temporary, file
-        # Before the file was locked, another process removed it as a leftover.
+        # Another process removed the file as a leftover before it was locked.
         file.close()
         _temporary.discard(temporary)
 
@@ -84,13 +87,16 @@ def _copy_mode(target: Path, file: IO[bytes]) -> None:
         return
     before, now = target.stat(), os.fstat(file.fileno())
     if (before.st_uid, before.st_gid) != (now.st_uid, now.st_gid):
-        with suppress(OSError):  # Only root gives files away.
+        with suppress(OSError):  # Only root may change a file's owner.
             os.fchown(file.fileno(), before.st_uid, before.st_gid)
     os.fchmod(file.fileno(), stat.S_IMODE(before.st_mode))
 
 
 def _is_locked(file: IO[bytes]) -> bool | None:
-    """Lock a file until it is closed; False if another process has the lock, None without locks."""
+    """Lock a file until it is closed, and return whether that succeeded.
+
+    False means that another process has the lock, None that the system has no locks.
+    """
     if fcntl is None:
         return None
     try:
@@ -103,12 +109,12 @@ def _is_locked(file: IO[bytes]) -> bool | None:
 
 
 def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) -> None:
-    """Remove the temporary files of killed processes from a folder, and from those within it.
+    """Remove the temporary files of killed processes from a folder.
 
-    Files that a process still writes are kept.
+    With `within` its subfolders are searched, too. Files that a process still writes are kept.
     """
-    found = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
-    for path in found:
+    paths = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
+    for path in paths:
         if _NAME.fullmatch(path.name) is None:
             continue
         try:
@@ -116,14 +122,14 @@ def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) ->
                 if _is_locked(file):
                     path.unlink(missing_ok=True)
         except OSError:
-            continue  # It has just been renamed to its final name, or is not ours to remove.
+            continue  # It was just renamed to its final name, or belongs to another user.
 
 
 @atexit.register
 def remove_temporary_files() -> None:
-    """Remove what unfinished writing left, before the process ends."""
+    """Remove the temporary files of unfinished writing before the process ends."""
     for path in tuple(_temporary):
-        with suppress(OSError):  # If one cannot be removed, the others still are.
+        with suppress(OSError):  # If one cannot be removed, go on with the next.
             path.unlink(missing_ok=True)
 
 

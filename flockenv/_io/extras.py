@@ -6,8 +6,8 @@ from types import ModuleType
 from flockenv.errors import FlockError
 
 IS_PUBLISHED = False
-"""Whether ``pip install flockenv`` gets this package: until the first release anybody may have the
-name. The release sets it, and a test then asks every page to say the same."""
+"""Whether ``pip install flockenv`` installs this package. Before the first release it may install
+somebody else's. The release sets this to True, and a test compares every page with it."""
 
 
 class MissingExtraError(FlockError, ImportError):
@@ -15,14 +15,14 @@ class MissingExtraError(FlockError, ImportError):
 
 
 def install(extra: str) -> str:
-    """Return a sentence that says how to install an extra."""
+    """Return a text that says how to install an extra."""
     if IS_PUBLISHED:
         return f"pip install 'flockenv[{extra}]'"
     return f"pip install '.[{extra}]' in a clone of flockenv, 'FILE.whl[{extra}]' with its wheel"
 
 
 def require(module: str, extra: str) -> ModuleType:
-    """Import a module of an optional extra; a MissingExtraError says how to install it."""
+    """Import a module of an extra; raise MissingExtraError if its package is not installed."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:

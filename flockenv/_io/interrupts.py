@@ -1,10 +1,10 @@
 """One rule for Ctrl-C: a command finishes the work under way, keeps it, and ends.
 
-While a command runs the signal is only noted. Work calls `end_if_interrupted` where nothing is half
-done, and executors start no further run. A second signal ends the process at once. A request to
-end, such as Slurm's before a job's time is over, counts as Ctrl-C, as does the end of the terminal.
-Both the system and the shell report the end of a terminal, so this second signal does not end the
-process at once.
+While a command runs, the first signal is only noted. Work calls `end_if_interrupted` where nothing
+is half done, and executors start no further run. A second signal ends the process at once. A
+request to end (SIGTERM, such as Slurm's before a job's time is over) counts as Ctrl-C, as does the
+end of the terminal (SIGHUP). Both the system and the shell send SIGHUP, so a second SIGHUP does not
+end the process at once.
 """
 
 import os
@@ -39,27 +39,30 @@ def end_if_interrupted() -> None:
 
 @contextmanager
 def noted_interrupts() -> Iterator[None]:
-    """Note Ctrl-C within a `with` block; a second one ends the process and its temporary files.
+    """Note Ctrl-C within a `with` block; a second one removes temporary files and ends the process.
 
-    Outside the main thread, or if Ctrl-C is ignored as under nohup, nothing changes.
+    Outside the main thread nothing changes. Signals that are ignored, as under nohup, stay ignored.
     """
     global _is_noted
-    found = {number: signal.getsignal(number) for number in _SIGNALS}
-    before = {number: now for number, now in found.items() if now not in (signal.SIG_IGN, None)}
-    if _note in before.values() or current_thread() is not main_thread():
+    handlers = {number: signal.getsignal(number) for number in _SIGNALS}
+    replaced = {
+        n: handler for n, handler in handlers.items() if handler not in (signal.SIG_IGN, None)
+    }
+    if _note in replaced.values() or current_thread() is not main_thread():
         yield
         return
-    for number in before:
+    for number in replaced:
         signal.signal(number, _note)
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in replaced.items():
             signal.signal(number, handler)
         _is_noted = False
 
 
 def _note(number: int, frame: object) -> None:
+    """Handle a signal: note the first one, and end the process at the second one."""
     global _is_noted
     if not _is_noted or number == _HANGUP:
         _is_noted = True

@@ -1,4 +1,4 @@
-"""Ordinary files. Devices, pipes and sockets, which may be read or written forever, are refused."""
+"""Ordinary files. Devices, pipes and sockets are refused: reading them might never end."""
 
 import errno
 import os
@@ -29,16 +29,16 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
     Raises ParameterError for a device, a pipe or a socket, and OSError for a folder or a missing
     file.
     """
-    words = f"{os.fspath(path)} is not a file but a device, a pipe or a socket"
+    refusal = ParameterError(f"{os.fspath(path)} is not a file but a device, a pipe or a socket")
     if is_special(path):
-        raise ParameterError(words)
-    # Without waiting, in case a pipe was created meanwhile.
+        raise refusal
+    # O_NONBLOCK: if the path has become a pipe since the check, opening it must not wait.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)
     try:
         mode = os.fstat(descriptor).st_mode
         if _is_special(mode):
-            raise ParameterError(words)
+            raise refusal
         if stat.S_ISDIR(mode):
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
         return os.fdopen(descriptor, "rb")
@@ -48,10 +48,10 @@ def open_plain(path: str | os.PathLike[str]) -> BinaryIO:
 
 
 def check_writable(path: str | os.PathLike[str]) -> None:
-    """Refuse to replace a device, a pipe, a socket or a protected file.
+    """Refuse to replace a device, a pipe, a socket or a write-protected file.
 
-    Raises PermissionError for a write-protected file, for root too: renaming another file to its
-    name would bypass the protection.
+    Raises ParameterError for the first three. Raises PermissionError for a write-protected file,
+    even for root: renaming another file to its name would bypass the protection.
     """
     if not Path(path).exists():
         return
@@ -61,5 +61,5 @@ def check_writable(path: str | os.PathLike[str]) -> None:
         )
     is_protected = not stat.S_IMODE(os.stat(path).st_mode) & _WRITABLE
     if is_protected or not os.access(path, os.W_OK):
-        words = "it is protected against writing"
-        raise PermissionError(errno.EACCES, words, os.fspath(path))
+        reason = "it is protected against writing"
+        raise PermissionError(errno.EACCES, reason, os.fspath(path))

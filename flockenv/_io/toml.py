@@ -1,4 +1,4 @@
-"""TOML as a dictionary, with one kind of error for text that is not TOML."""
+"""TOML as a dictionary, with a ParameterError for text that is not TOML."""
 
 import os
 import tomllib
@@ -10,17 +10,20 @@ from flockenv.errors import ParameterError
 _MOST_BYTES = 1 << 20
 
 
-def read_limited(path: str | os.PathLike[str], otherwise: str) -> bytes:
-    """Return the content of a file of at most 1 MiB; errors start with `otherwise`."""
+def read_limited(path: str | os.PathLike[str], failure: str) -> bytes:
+    """Return the content of a file; raise ParameterError for more than 1 MiB.
+
+    The error's message starts with `failure`.
+    """
     with open_plain(path) as file:
         data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        raise ParameterError(f"{otherwise}: it is larger than {_MOST_BYTES} bytes")
+        raise ParameterError(f"{failure}: it is larger than {_MOST_BYTES} bytes")
     return data
 
 
 def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
-    """Return the values in a TOML file of at most 1 MiB; ParameterErrors call the file `what`."""
+    """Return the values in a TOML file of at most 1 MiB; messages call the file `what`."""
     try:
         return read_toml(read_limited(path, f"{what} is not TOML").decode("utf-8-sig"), what)
     except OSError as error:
@@ -30,9 +33,9 @@ def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
 
 
 def read_toml(text: str, what: str) -> dict[str, Any]:
-    """Return the values in a TOML text; errors call the text `what`.
+    """Return the values in a TOML text; messages call the text `what`.
 
-    Raises ParameterError also for numbers that are too large and nesting that is too deep.
+    Raises ParameterError for text that is not TOML, or has too large numbers or too deep nesting.
     """
     if not isinstance(text, str):
         raise TypeError(f"{what} must be a string, not {type(text).__name__}")
