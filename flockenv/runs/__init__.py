@@ -2,6 +2,6 @@
 
 A `RunSpec` holds everything on which a run depends, and `execute` makes that run. `run_missing`
 makes the runs that a `RunStore` lacks, on an engine of `flockenv.runs.executors`, so interrupted
-work resumes. `Shard` shares them among machines. `read_sweep` and `run_sweep` make a table of a
-grid. `POLICY_SEEDS` is the one table of seed ranges by use.
+work resumes. `Shard` divides runs among machines. `read_sweep` reads a grid of parameters, and
+`run_sweep` makes a table of its runs. `POLICY_SEEDS` is the one table of seed ranges by use.
 """

@@ -1,7 +1,8 @@
 """Executors: threads, processes or machines that make many independent runs.
 
-All have the interface of `concurrent.futures.Executor`, like those of other libraries. Functions
-must be pure and, except for threads, picklable; then results do not depend on the executor.
+All have the interface of `concurrent.futures.Executor`, like those of other libraries. The
+functions that they call must be pure, so that results do not depend on the executor. Except for
+threads they must be picklable, too.
 """
 
 import functools
@@ -20,11 +21,11 @@ Item = TypeVar("Item")
 Value = TypeVar("Value")
 
 Engine = Callable[[int | None], Executor]
-"""Function that makes an executor with this many workers; None: one for each core."""
+"""Function that makes an executor of a number of workers; None means one for each core."""
 
 
 def cores() -> int:
-    """Return how many cores this process may use; a container or a queue may limit them."""
+    """Return the number of cores that this process may use; a container or a queue may limit it."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -39,7 +40,7 @@ class RayExecutor(Executor):
     """Ray tasks of one core each, on any cluster whose nodes all have flockenv.
 
     The cluster is the one connected already, or the one that ``RAY_ADDRESS`` names. Otherwise a
-    local Ray is started, and stopped again. If a node dies, other nodes repeat its tasks.
+    local Ray is started, and `shutdown` stops it. If a node dies, other nodes repeat its tasks.
 
     Parameters
     ----------
@@ -54,13 +55,13 @@ class RayExecutor(Executor):
 
     def __init__(self, workers: int | None = None) -> None:
         self._ray: ModuleType = require("ray", "ray")
-        self._is_ours = not self._ray.is_initialized()
-        if self._is_ours:
+        self._started_ray = not self._ray.is_initialized()
+        if self._started_ray:
             options: dict[str, Any] = {"log_to_driver": False}
             if not os.environ.get("RAY_ADDRESS"):
                 options |= {"num_cpus": workers or cores(), "include_dashboard": False}
             self._ray.init(**options)
-        # The function is sent to the cluster once.
+        # Each function is sent to the cluster only once.
         self._remote = functools.cache(self._ray.remote(num_cpus=1, max_retries=-1))
 
     @property
@@ -69,15 +70,15 @@ class RayExecutor(Executor):
         return max(2, 2 * int(self._ray.cluster_resources().get("CPU", 0)))
 
     def submit(
-        self, function: Callable[..., Value], /, *arguments: object, **named: object
+        self, function: Callable[..., Value], /, *arguments: object, **keywords: object
     ) -> "Future[Value]":
         """Start a task, which is repeated whenever its node is lost."""
-        future: Future[Value] = self._remote(function).remote(*arguments, **named).future()
+        future: Future[Value] = self._remote(function).remote(*arguments, **keywords).future()
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Stop Ray if it was started here; its unfinished tasks end with it."""
-        if self._is_ours:
+        if self._started_ray:
             self._ray.shutdown()
 
 
@@ -100,7 +101,7 @@ def finished(
     """Yield each item's index and the function's value for it, in the order in which they finish.
 
     After Ctrl-C no further item is started, and those in progress are finished. An error of the
-    function ends the work, too.
+    function is raised, and ends the work in the same manner.
     """
     waiting = itertools.takewhile(lambda _: not interrupted(), enumerate(items))
     indices: dict[Future[Value], int] = {}

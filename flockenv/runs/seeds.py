@@ -1,4 +1,4 @@
-"""One table of seed ranges by use: none of the seeds that made a policy is used to judge it."""
+"""One table of seed ranges by use, so that no policy is judged by a seed that it was made with."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from flockenv.errors import ParameterError, short_repr
 
 FIRST_TRAINING_SEED = 1 << 32
-"""Seeds from this one on make policies; the seeds below it judge them."""
+"""Seeds from this one on make policies; smaller seeds judge them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,13 +17,13 @@ class SeedRange:
     use: str
     #: First seed of run 0.
     first: int
-    #: Seeds of each run, and number of runs.
+    #: Number of seeds of each run, and number of runs.
     of_a_run: int
     runs: int = 1
 
     @property
     def every(self) -> range:
-        """All seeds of all runs."""
+        """The seeds of all runs."""
         return range(self.first, self.first + self.runs * self.of_a_run)
 
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
@@ -41,12 +41,13 @@ class SeedRange:
         return range(first, first + count)
 
 
-# Runs are numbered by 32 bits, as CMA-ES and NumPy take them. A search takes at most 2^24 seeds.
+# Runs are numbered by 32 bits, the size of seeds in CMA-ES and NumPy. A search has 2^24 seeds.
 _RUNS = 1 << 32
 _FIRST_JUDGMENT = FIRST_TRAINING_SEED - (1 << 16)
 
 
 def _search(use: str, index: int) -> SeedRange:
+    """Return the range of a search that makes policies; searches of different indices differ."""
     return SeedRange(use, FIRST_TRAINING_SEED + index * (_RUNS << 24), 1 << 24, _RUNS)
 
 
@@ -54,11 +55,10 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
     seeds.use: seeds
     for seeds in (
         SeedRange("evaluation", 0, 3_000_000_000),
-        # Seeds of studies; no policy was made with them. `release_seeds` may return seeds in this
-        # range, too. For "train_leaders" it does, so some of them judged trainings.
+        # Seeds of studies; no policy was made with them. `release_seeds` may return seeds of this
+        # range, too. It does for "train_leaders", so some of these seeds judged trainings.
         SeedRange("paper", 3_000_000_000, _FIRST_JUDGMENT - 3_000_000_000),
-        # Used to judge the model's constants, which were searched and chosen with the two ranges
-        # below.
+        # Used to judge the model's constants, which the last two ranges searched and chose.
         SeedRange("calibration judgment", _FIRST_JUDGMENT, 1 << 16),
         SeedRange("training", FIRST_TRAINING_SEED, 1 << 20, _RUNS),
         _search("law tuning", 1),
@@ -78,7 +78,7 @@ POLICY_SEEDS: Mapping[str, SeedRange] = {
 
 def check_evaluation_seeds(seeds: Iterable[int]) -> None:
     """Refuse seeds that policies are trained on."""
-    # For a range it is enough to check both ends.
+    # All seeds of a range lie between its ends.
     for seed in (*seeds[:1], *seeds[-1:]) if isinstance(seeds, range) else seeds:
         if not 0 <= seed < FIRST_TRAINING_SEED:
             raise ParameterError(
@@ -91,7 +91,7 @@ def release_seeds(tag: str, count: int) -> range:
     """Return the seeds for the final tables of a release, given its tag.
 
     The first seed is the first eight bytes of the tag's SHA-256 as a big-endian number, modulo 2^32
-    minus the count. So nobody can choose these seeds, which are for evaluation.
+    minus the count. So nobody can choose these seeds for a good result.
     """
     if not 1 <= count < FIRST_TRAINING_SEED:
         raise ParameterError(f"count = {short_repr(count)} is not accepted: from 1 to 2^32 - 1")

@@ -23,18 +23,18 @@ _DEFAULTS = FlockParameters().to_dict()
 
 @cache
 def _named(name: str, pool: Pool) -> Policy:
-    """Return the policy of a name; refuse a pool that it was not made for."""
+    """Return the policy with a name; refuse a pool that it was not made for."""
     return policy(name, pool)
 
 
 KEEP = ("window", "order", "poses")
-"""Stored parts of a run: order parameters of the samples in the analysis window after the
-first tenth; of all samples; or these and all poses and velocities."""
+"""Stored parts of a run. "window": order parameters of the samples in the analysis window after
+the first tenth; "order": of all samples; "poses": these and all poses and velocities."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSpec:
-    """A run to be made: everything that its result depends on, hashable and picklable.
+    """Everything on which the result of a run depends, hashable and picklable.
 
     Raises ParameterError for a value out of range, and for an unknown name.
 
@@ -67,8 +67,8 @@ class RunSpec:
                 f"parameters must be FlockParameters, not {short_repr(self.parameters)}"
             )
         refuse_unknown((self.policy,), NAMES, "policy of a run")
-        steers = _named(self.policy, self.parameters.pool).control_hz is not None
-        if steers and self.parameters.n_leaders == 0:
+        steers_leaders = _named(self.policy, self.parameters.pool).control_hz is not None
+        if steers_leaders and self.parameters.n_leaders == 0:
             raise ParameterError(
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
             )
@@ -88,11 +88,11 @@ class RunSpec:
 
         Defaults are left out, so that a new field changes no run's text.
         """
-        given = {own.name: (getattr(self, own.name), own.default) for own in fields(self)}
-        plain = {name: value for name, (value, default) in given.items() if value != default}
-        changed = self.parameters.to_dict().items() - _DEFAULTS.items()
-        text = json.dumps(plain | {"parameters": dict(changed)}, sort_keys=True)
-        # -0.0 equals 0.0, so both get one text.
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        changed = {f.name: values[f.name] for f in fields(self) if values[f.name] != f.default}
+        parameters = dict(self.parameters.to_dict().items() - _DEFAULTS.items())
+        text = json.dumps(changed | {"parameters": parameters}, sort_keys=True)
+        # Adding 0.0 turns -0.0 into 0.0: they are equal, so they need the same text.
         return json.dumps(json.loads(text, parse_float=lambda number: float(number) + 0.0))
 
     @property
@@ -107,7 +107,7 @@ class RunSpec:
 
     @property
     def cost(self) -> float:
-        """A rough measure of the run's work, for progress bars and the order of starts."""
+        """A rough measure of the run's work: its duration in s times boats to the power 1.2."""
         return float(self.duration_s * self.parameters.n_boats**1.2)
 
 
@@ -129,7 +129,7 @@ def execute(spec: RunSpec) -> Recording:
         spec.checked_policy,
         dtype=np.float32,
     )
-    # Rudders of a law need not be stored: they follow from the poses.
+    # Rudders are not stored.
     run = replace(run, duration_s=spec.duration_s, rudder=None)
     if spec.keep == "window":
         run = run.analyzed()

@@ -1,4 +1,4 @@
-"""Finished runs on disk, each a recording named by the hash of its spec, so that work resumes."""
+"""Finished runs on disk: recordings named by the hash of their spec, so that work resumes."""
 
 import math
 import os
@@ -23,11 +23,11 @@ RUNS_FOLDER = "runs"
 """Folder of finished runs, inside a folder of results."""
 
 RESULTS_VERSION = 8
-"""Rises when the same specs give other numbers than before; stored runs are then made again."""
+"""Increased when a spec gives other numbers than before; stored runs are then made again."""
 
 
 class StorageError(FlockError, OSError):
-    """A folder or file cannot be written; earlier finished runs are kept."""
+    """A folder or file cannot be written; runs finished before are kept."""
 
 
 class StoreWarning(UserWarning):
@@ -39,18 +39,18 @@ def _warn(message: str) -> None:
 
 
 class RunStore:
-    """A folder of finished runs, each a recording's file that is written whole or not at all.
+    """A folder of finished runs, each a recording's file, written completely or not at all.
 
-    A run lies in ``<version>/<first two digits>/<key>.npz`` (see `RunSpec.key`), where the version
-    is that of flockenv and `RESULTS_VERSION`: runs of other versions count as missing.
+    A run is stored in ``<version>/<first two digits>/<key>.npz`` (see `RunSpec.key`). The version
+    joins that of flockenv and `RESULTS_VERSION`: runs of other versions count as missing.
 
     Parameters
     ----------
     folder
         The folder. It is created with the first run.
     notify
-        Called with a line of text for each damaged file. It is renamed to end in ``.damaged``, and
-        its run counts as missing. By default a `StoreWarning`.
+        Called with a line of text for each damaged file. The file is renamed to end in
+        ``.damaged``, and its run counts as missing. The default gives a `StoreWarning`.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class RunStore:
             ) from error
 
     def load(self, spec: RunSpec) -> Recording | None:
-        """Return the stored run of a spec, or None if there is none that can be used.
+        """Return the stored run of a spec, or None if it is missing or damaged.
 
         Raises StorageError for a file that can neither be read nor renamed, and ParameterError for
         an undamaged file that lacks an array or has another format; that file is left unchanged.
@@ -95,9 +95,9 @@ class RunStore:
         except LayoutError:
             raise
         except ParameterError as error:
-            aside = path.with_suffix(".damaged")
-            path.replace(aside)
-            self._notify(f"{error}; it is done again, and the old file is now {aside}")
+            damaged = path.with_suffix(".damaged")
+            path.replace(damaged)
+            self._notify(f"{error}; it is done again, and the old file is now {damaged}")
             return None
         except OSError as error:
             raise StorageError(f"{path} cannot be read: {error.strerror or error}") from error
@@ -106,24 +106,25 @@ class RunStore:
 
 def _difference(run: Recording, spec: RunSpec) -> str | None:
     """Return how a recording differs from the run of a spec; None if it is that run."""
-    step_s, kept = 1.0 / spec.sample_hz, spec.keep
-    gap_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
-    # A shorter window may hold no two successive samples.
-    window_s = math.inf if kept != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
+    step_s, keep = 1.0 / spec.sample_hz, spec.keep
+    shortest_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
+    # A window of less than two steps may hold no two successive samples.
+    window_s = math.inf if keep != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
     is_sampled = np.allclose(run.time_s, step_s * np.round(run.time_s / step_s), rtol=0, atol=1e-8)
-    is_sampled &= abs(gap_s - step_s) < 1e-8 or step_s > 0.5 * window_s
-    is_whole = kept == "window" or len(run) == int(spec.duration_s * spec.sample_hz + 1e-6) + 1
-    differs = {
+    is_sampled &= abs(shortest_s - step_s) < 1e-8 or step_s > 0.5 * window_s
+    is_complete = keep == "window" or len(run) == int(spec.duration_s * spec.sample_hz + 1e-6) + 1
+    is_window = keep != "window" or run.in_analysis_window.all()
+    differences = {
         "other parameters": run.parameters != spec.parameters,
         f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,
         f"{run.duration_s:g} s, not {spec.duration_s:g} s": run.duration_s != spec.duration_s,
         f"a policy {run.policy}, not {spec.policy}": run.policy != spec.checked_policy.name,
         **{f"{name} {getattr(run, name)}": getattr(run, name) is not None for name in ORIGIN},
         f"other samples than {spec.sample_hz:g} per second": not is_sampled,
-        f"not what {kept!r} keeps": run.has_poses != (kept == "poses")
-        or not (is_whole and (kept != "window" or run.in_analysis_window.all())),
+        f"not what {keep!r} keeps": run.has_poses != (keep == "poses")
+        or not (is_complete and is_window),
     }
-    return next((words for words, does in differs.items() if does), None)
+    return next((difference for difference, exists in differences.items() if exists), None)
 
 
 def run_missing(
@@ -141,14 +142,14 @@ def run_missing(
         The runs; repeated ones are made once. Expensive ones start first.
     store
         Where finished runs are stored. A full disk ends the work and loses only the runs in
-        progress. So does Ctrl-C, except in a command, which waits for them.
+        progress. So does Ctrl-C, but a command of flockenv first finishes these runs.
     engine
-        Where to run, one of `flockenv.runs.executors.ENGINES`, or another function that makes an
+        Where to run: one of `flockenv.runs.executors.ENGINES`, or another function that makes an
         executor. The results are the same on each.
     progress
-        Called with each spec once its run is in the store.
+        Called with each spec once its run is stored or has failed.
     workers
-        How many runs at a time, all cores by default.
+        Number of runs at a time, by default the number of cores.
 
     Returns
     -------
@@ -185,10 +186,10 @@ def run_missing(
 
 
 def _attempt(spec: RunSpec) -> Recording | FlockError:
-    # One run that fails must not cost the others.
+    """Make a run; return its error instead of raising it, so that the other runs go on."""
     try:
         return execute(spec)
     except FlockError as error:
-        # Keeping the partial run of each error would fill a sweep's memory.
+        # The partial runs of many errors would fill the memory.
         vars(error).pop("recording", None)
         return error

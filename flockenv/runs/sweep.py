@@ -1,7 +1,7 @@
-"""Sweeps: any grid of parameters and seeds, resumable, as one table.
+"""Sweeps: runs over grids of parameters and seeds, resumable, as one table.
 
-`docs/runs.md` describes the TOML file of a sweep. It has the fields of `FlockParameters`. In a
-grid even a single value is a list, and all grids name the same fields.
+`docs/runs.md` describes the TOML file of a sweep. Its parameters have the names of the fields of
+`FlockParameters`. In a grid even a single value is a list, and all grids name the same fields.
 """
 
 import itertools
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MOST_RUNS = 1_000_000
-"""Largest number of runs of a sweep. A larger sweep has a mistake in a list, or must be split."""
+"""Largest number of runs of a sweep. More are probably a mistake; otherwise split the sweep."""
 
 _KEYS = ("preset", "minutes", "seeds", "sample_hz", "policy", "keep", "fixed", "grid")
 _AVERAGED = tuple(quantity.name for quantity in QUANTITIES if quantity.is_averaged)
@@ -62,7 +62,7 @@ class SweepSpec:
 
 
 def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
-    """Read and check a sweep's file; every value is checked before anything runs.
+    """Read a sweep's file, and check every value.
 
     Raises ParameterError for a file that cannot be read or is not TOML, for unknown keys and fields
     (with the nearest name), for axes that are not lists, and for values that `FlockParameters` or
@@ -76,9 +76,10 @@ def read_sweep(path: str | os.PathLike[str]) -> SweepSpec:
 
 
 def _parse(values: Mapping[str, object]) -> SweepSpec:
-    known = FlockParameters.__dataclass_fields__
+    """Return the checked sweep of a file's values."""
+    parameter_names = FlockParameters.__dataclass_fields__
     for key in values:
-        if key not in _KEYS and key in known:
+        if key not in _KEYS and key in parameter_names:
             raise ParameterError(
                 f"{key!r} is not a key of a sweep: it is a field of the parameters, which belongs "
                 "under [fixed] or [[grid]]"
@@ -92,7 +93,7 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     for name in axes:
         if name in fixed:
             raise ParameterError(f"{name!r} is both under [fixed] and in a grid")
-    refuse_unknown([*fixed, *axes], known, "field of FlockParameters")
+    refuse_unknown([*fixed, *axes], parameter_names, "field of FlockParameters")
     count = len(seeds) * sum(math.prod(map(len, grid.values())) for grid in grids)
     if count > MOST_RUNS:
         raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
@@ -108,23 +109,24 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
 def _runs(
     values: Mapping[str, object], flocks: Sequence[FlockParameters], seeds: Sequence[int]
 ) -> tuple[RunSpec, ...]:
-    run: dict[str, Any] = {
+    """Return a run for each flock and seed, with the duration, policy and so on of the file."""
+    led_run: dict[str, Any] = {
         "duration_s": 60.0 * _number("minutes", values.get("minutes")),
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    # Flocks without leaders, which others are compared with, have no policy.
-    leaderless = (
-        run | {"policy": EVERY_SUBSTEP} if any(flock.n_leaders for flock in flocks) else run
-    )
+    # Flocks without leaders take no policy if they are there for comparison with led flocks.
+    has_leaders = any(flock.n_leaders for flock in flocks)
+    leaderless_run = led_run | {"policy": EVERY_SUBSTEP} if has_leaders else led_run
     return tuple(
-        RunSpec(parameters=flock, seed=seed, **(run if flock.n_leaders else leaderless))
+        RunSpec(parameters=flock, seed=seed, **(led_run if flock.n_leaders else leaderless_run))
         for flock in flocks
         for seed in seeds
     )
 
 
 def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
+    """Return the checked grids of a sweep's file: lists of values by field."""
     grids = values.get("grid")
     grids = [grids] if isinstance(grids, dict) else grids
     if not isinstance(grids, list) or not grids or not all(isinstance(g, dict) for g in grids):
@@ -144,7 +146,7 @@ def _grids(values: Mapping[str, object]) -> list[dict[str, list[object]]]:
 
 
 def _check_pools(pools: list[object], example: str) -> None:
-    """Refuse radii in the spelling of Python or of the command line."""
+    """Refuse pools that are a single number, or a text with numbers such as "130x70"."""
     for pool in pools:
         is_text = isinstance(pool, str) and any(map(str.isdigit, pool))
         if is_text or isinstance(pool, int | float):
@@ -155,6 +157,7 @@ def _check_pools(pools: list[object], example: str) -> None:
 
 
 def _seeds(seeds: object) -> tuple[int, ...]:
+    """Return the seeds in a list, or as many seeds from 0 on as a number says."""
     if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
         return tuple(range(seeds))
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
@@ -181,8 +184,8 @@ def summary(run: Recording) -> dict[str, float]:
         ``<name>_mean`` and ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v
         (cm/s), C_v (cm²/s²), the nematic order, milling, the signed order and the rotation m =
         Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
-        turns round. A mean is over the frames in which its quantity is defined, NaN if there are
-        none. The last entries are the run's ``worst_overlap_cm``, ``unsolved`` and
+        reverses its rotation. A mean is over the frames in which its quantity is defined, NaN if
+        there are none. The last entries are the run's ``worst_overlap_cm``, ``unsolved`` and
         ``halved_substeps``, NaN if they are unknown.
     """
     used = run.analyzed()
@@ -240,8 +243,8 @@ def run_sweep(
         run, failure = store.load(spec), str(failures.get(spec, ""))
         if run is None and not failure:
             raise FlockError(f"{store.path(spec)} has been lost since it was written")
-        found: dict[str, float] = {"frames": 0} if run is None else summary(run)
-        rows.append({**fields, "seed": spec.seed, **found, "failure": failure})
+        means: dict[str, float] = {"frames": 0} if run is None else summary(run)
+        rows.append({**fields, "seed": spec.seed, **means, "failure": failure})
     table: pd.DataFrame = pandas.DataFrame(rows, columns=[*sweep.axes, "seed", *_COLUMNS])
     try:
         write_csv(folder / "sweep.csv", table)
@@ -253,8 +256,11 @@ def run_sweep(
 
 
 def _as_cell(value: object) -> object:
-    # A pool is a name or two radii, and a target is one word or several. A column that mixed them
-    # would have no single type.
+    """Return tuples as text, and other values unchanged.
+
+    A pool is a name or two radii, and a target is one word or several, but a column of Parquet has
+    one type.
+    """
     if not isinstance(value, tuple):
         return value
     if all(isinstance(item, str) for item in value):
@@ -265,21 +271,21 @@ def _as_cell(value: object) -> object:
 
 
 def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
-    """Return where each flock of a sweep loses its order, as `flockenv.statistics.critical_noise`.
+    """Return the noise at which each flock of a sweep loses its order.
 
     Parameters
     ----------
     table
-        The table of `run_sweep` or `load_sweep`. Runs that failed do not count.
+        The table of `run_sweep` or `load_sweep`. Failed runs are left out.
 
     Returns
     -------
     pandas.DataFrame
         One row per combination of the varied fields except ``bw_s``: these fields,
-        ``critical_bw_s`` with the ends of its interval, ``critical_bw_s_low`` and
-        ``critical_bw_s_high`` in s, and ``rotation_size``, the largest of any noise. NaN without
-        order to lose or with fewer than three runs of a noise. No rows if the sweep has fewer than
-        two noises.
+        ``critical_bw_s`` of `flockenv.statistics.critical_noise` with the ends of its interval,
+        ``critical_bw_s_low`` and ``critical_bw_s_high`` in s, and the largest mean
+        ``rotation_size`` of any noise. NaN without order to lose or with fewer than three runs of a
+        noise. No rows if the sweep has fewer than two noises.
     """
     pandas = require("pandas", "plot")
     runs = table[table["failure"] == ""]
@@ -292,11 +298,11 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
             noises = group[["bw_s", "psi_o_mean", "rotation_size"]].groupby("bw_s")
             if len(levels) > 1:
                 means = [noise.drop(columns="bw_s") for _, noise in noises]
-                found = critical_noise(levels, means)
-                row = dict(zip(fields, key, strict=True)) | dict(zip(names, found, strict=True))
+                critical = critical_noise(levels, means)
+                row = dict(zip(fields, key, strict=True)) | dict(zip(names, critical, strict=True))
                 rows.append(row | {"rotation_size": noises["rotation_size"].mean().max()})
-    found_noises: pd.DataFrame = pandas.DataFrame(rows, columns=[*fields, *names, "rotation_size"])
-    return found_noises
+    result: pd.DataFrame = pandas.DataFrame(rows, columns=[*fields, *names, "rotation_size"])
+    return result
 
 
 def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
@@ -311,8 +317,8 @@ def load_sweep(path: str | os.PathLike[str]) -> "pd.DataFrame":
     -------
     pandas.DataFrame
         One row per run: the varied fields (a pool without a name as "180x97", a list of targets as
-        "cw,cw,ccw"), ``seed``, the columns of `summary`, and ``failure``, which is empty or says
-        why there are no numbers.
+        "cw,cw,ccw"), ``seed``, the columns of `summary`, and ``failure``: the error of a failed
+        run, otherwise empty.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Splits many runs among machines, and tells how much work is left."""
+"""Shards, which divide many runs among machines, and the amount of work that remains."""
 
 import re
 import time
@@ -14,10 +14,10 @@ _TRIAL_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of several parts of many runs, for machines that do not talk to each other.
+    """One of several parts of many runs, for machines that do not communicate.
 
-    The hash of a run's spec decides which shard makes it. Shards never overlap, hold about equally
-    many runs, and are the same at each call and on each machine. Raises ParameterError for a number
+    The hash of a run's spec determines the shard that makes the run. Shards never overlap, hold
+    about equally many runs, and are the same on each machine. Raises ParameterError for a number
     outside 1 to `of`.
 
     Attributes
@@ -41,12 +41,12 @@ class Shard:
 
         Raises ParameterError for any other text and number.
         """
-        found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
-        if found is None:
+        match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text, re.ASCII)
+        if match is None:
             raise ParameterError(
                 f"shard {text!r} is not accepted: a number and how many there are, such as 3/8"
             )
-        return cls(*(int(digits) for digits in found.groups()))
+        return cls(*(int(digits) for digits in match.groups()))
 
     def runs_of(self, specs: Iterable[RunSpec]) -> list[RunSpec]:
         """Return the runs of this shard, in their order."""
@@ -80,7 +80,7 @@ class Workload:
 
 
 def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
-    """Return the amount of work that remains, measured by a trial run for each policy.
+    """Return the amount of work that remains, estimated from a trial run for each policy.
 
     Parameters
     ----------
@@ -95,19 +95,22 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     for spec in missing:
         by_policy.setdefault(spec.policy, []).append(spec)
     seconds = [_core_seconds(specs) for specs in by_policy.values()]
-    known = [time_s for time_s in seconds if time_s is not None]
+    measured = [time_s for time_s in seconds if time_s is not None]
     return Workload(
         runs=len(specs),
         stored=len(specs) - len(missing),
         flock_hours=sum(spec.duration_s for spec in missing) / 3600,
-        core_hours=sum(known) / 3600 if len(known) == len(seconds) else None,
+        core_hours=sum(measured) / 3600 if len(measured) == len(seconds) else None,
     )
 
 
 def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
-    """Return the processor time of runs, extrapolated from a trial of the median run."""
-    middle = sorted(specs, key=lambda spec: spec.cost)[len(specs) // 2]
-    trial = replace(middle, duration_s=min(_TRIAL_S, middle.duration_s))
+    """Return the processor time of runs in s, extrapolated from a trial of the median run.
+
+    None means that the trial failed.
+    """
+    median = sorted(specs, key=lambda spec: spec.cost)[len(specs) // 2]
+    trial = replace(median, duration_s=min(_TRIAL_S, median.duration_s))
     start = time.process_time()
     try:
         execute(trial)
