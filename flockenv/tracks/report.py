@@ -151,7 +151,7 @@ def report_of(
 def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
     """Return boats that stay at exactly one point in many samples, as `TrackReport.stuck`."""
     counts = used.value_counts(["id", "x", "y"]).reset_index()
-    share = counts["id"].map(used["id"].value_counts()) / 10
+    share = counts.groupby("id")["count"].transform("sum") / 10
     # Two boats are never at one point.
     shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
     is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])

@@ -295,7 +295,7 @@ def poses_of(
         )
     pose = np.full((len(time_s), len(names), 3), np.nan)
     stamps = np.tile(time_s[:, None], len(names))
-    entries = used["frame"], used["id"].map({name: index for index, name in enumerate(names)})
+    entries = used["frame"], require("pandas", "plot").Index(names).get_indexer(used["id"])
     pose[entries], stamps[entries] = used[["x", "y", "heading"]], used["time"]
     return names, time_s - time_s[0], stamps, pose
 

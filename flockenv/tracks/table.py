@@ -242,13 +242,17 @@ def long_table(
     table: pd.DataFrame = pandas.DataFrame({layout.frame: times, **columns}, times.index)
     if ids is None and not layout.is_wide:
         return table, None
-    texts = pandas.Series(np.repeat(boats, len(rows)), times.index) if ids is None else ids
-    names = texts.astype(object).where(texts.notna(), "").astype(str).str.strip()
+    names = _texts(pandas.Series(np.repeat(boats, len(rows)), times.index) if ids is None else ids)
     if names.str.lower().isin(NO_NUMBER).all():
         return table, None
     names = names.str.replace(r"^(-?\d+)\.0+$", r"\1", regex=True)
     nobody = {name.strip().casefold() for name in layout.unassigned} | {""}
     return table, names.mask(names.str.casefold().isin(nobody), None)
+
+
+def _texts(column: "pd.Series[Any]") -> "pd.Series[str]":
+    """Return the cells of a column as texts without blanks around them, "" for missing cells."""
+    return column.astype(object).where(column.notna(), "").astype(str).str.strip()
 
 
 def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
@@ -314,7 +318,7 @@ def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
     """Return a column as numbers, NaN for missing and infinite ones; refuse other texts."""
     to_numeric, parsed = require("pandas", "plot").to_numeric, column
     if column.dtype.kind not in "iuf":
-        texts = column.astype(object).where(column.notna(), "").astype(str).str.strip()
+        texts = _texts(column)
         parsed = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
         missing_texts = NO_NUMBER | {word.strip().lower() for word in layout.missing}
         other_texts = texts[parsed.isna() & ~texts.str.lower().isin(missing_texts)]
