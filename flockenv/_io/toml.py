@@ -22,26 +22,26 @@ def read_limited(path: str | os.PathLike[str], failure: str) -> bytes:
     return data
 
 
-def read_toml_file(path: str | os.PathLike[str], what: str) -> dict[str, Any]:
-    """Return the values in a TOML file of at most 1 MiB; messages call the file `what`."""
+def read_toml_file(path: str | os.PathLike[str], label: str) -> dict[str, Any]:
+    """Return the values in a TOML file of at most 1 MiB; messages call the file `label`."""
     try:
-        return read_toml(read_limited(path, f"{what} is not TOML").decode("utf-8-sig"), what)
+        return read_toml(read_limited(path, f"{label} is not TOML").decode("utf-8-sig"), label)
     except OSError as error:
-        raise ParameterError(f"{what} cannot be read: {error.strerror}") from error
+        raise ParameterError(f"{label} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise ParameterError(f"{what} is not TOML: {error}") from error
+        raise ParameterError(f"{label} is not TOML: {error}") from error
 
 
-def read_toml(text: str, what: str) -> dict[str, Any]:
-    """Return the values in a TOML text; messages call the text `what`.
+def read_toml(text: str, label: str) -> dict[str, Any]:
+    """Return the values in a TOML text; messages call the text `label`.
 
     Raises ParameterError for text that is not TOML, or has too large numbers or too deep nesting.
     """
     if not isinstance(text, str):
-        raise TypeError(f"{what} must be a string, not {type(text).__name__}")
+        raise TypeError(f"{label} must be a string, not {type(text).__name__}")
     try:
         return tomllib.loads(text.removeprefix("\ufeff"))
     except RecursionError as error:
-        raise ParameterError(f"{what} is not TOML: it is nested too deeply") from error
+        raise ParameterError(f"{label} is not TOML: it is nested too deeply") from error
     except ValueError as error:  # Integers of thousands of digits raise it, too.
-        raise ParameterError(f"{what} is not TOML: {error}") from error
+        raise ParameterError(f"{label} is not TOML: {error}") from error

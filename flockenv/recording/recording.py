@@ -180,9 +180,9 @@ class Recording(HintsAtNames):
         )
 
     def __repr__(self) -> str:
-        boats = self.parameters.n_boats
-        what = f"{boats} boats, seed {self.seed}" if self.ids is None else f"{boats} tracked boats"
-        return f"<flockenv.Recording of {what}, {len(self)} samples to {self.duration_s} s>"
+        n = self.parameters.n_boats
+        boats = f"{n} boats, seed {self.seed}" if self.ids is None else f"{n} tracked boats"
+        return f"<flockenv.Recording of {boats}, {len(self)} samples to {self.duration_s} s>"
 
     def _fields(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}

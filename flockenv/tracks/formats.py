@@ -37,7 +37,6 @@ FORMATS = (
     Format(
         "Motive", {"frame": "Time (Seconds)", "x": "{id}.Position_X"}, _RIGID_BODY, levels=_BODIES
     ),
-    Format("TrackMate", {"frame": "FRAME", "id": "TRACK_ID", "x": "POSITION_X"}),
     Format("ROS", {"frame": "%time", "x": "*position.x"}, {"fps": 1e9}),
     Format("ROS 2", {"frame": "*rosbagTimestamp", "x": "*position.x"}, {"fps": 1e9}),
     Format("AnimalTA", {"frame": "Time", "x": "X_{id}"}),
@@ -64,7 +63,7 @@ _ANIMALS = ("body", "boat", "robot", "animal", "fish", "individual", "particle",
 _THINGS = (*_ANIMALS, "marker", "tag", "subject", "object", "insect", "rover", "vehicle", "blob")
 WORDS: Mapping[str, tuple[str, ...]] = {
     "frame": (
-        *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp", "position_t"),
+        *("time_s", "seconds", "second", "trial_time", "time", "t", "timestamp"),
         *("rosbagtimestamp", "*time", "*stamp", "step", "image", "frames", "frame", "frame_*"),
         *("time_*", "*_frame", "framenumber", "sample", "index"),
         *("zeit", "bild", "bild_*"),
