@@ -70,6 +70,7 @@ def read_arrays(
 
 
 def _arrays_in(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
+    """Return the arrays of an archive by name; raise ValueError for a wrong or repeated array."""
     arrays: dict[str, NDArray[Any]] = {}
     for entry in archive.infolist():
         name = entry.filename.removesuffix(".npy")

@@ -26,6 +26,26 @@ def dataset_table(
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
     such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
     """
+    data = _positions_of(dataset)
+    boats, points = (_names_along(data, name) for name in _DIMENSIONS[2:])
+    stems = {point: f"{point}_" for point in points}
+    if points == ["0"] and "keypoints" not in data.coords:
+        stems = {"": ""}
+    columns: dict[str, Any] = {
+        "time": np.repeat(data["time"].values, len(boats)),
+        "individuals": np.tile(boats, len(data["time"])),
+    }
+    data = data.transpose("time", "individuals", "keypoints", "space")
+    values = {axis: data["position"].sel(space=axis).values for axis in "xy"}
+    values |= {"confidence": data["confidence"].values} if "confidence" in data else {}
+    for index, stem in enumerate(stems.values()):
+        columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
+    rows: pd.DataFrame = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
+    return rows, _completed(dataset, layout, stems)
+
+
+def _positions_of(dataset: "xarray.Dataset") -> "xarray.Dataset":
+    """Return the checked variables position and confidence, with all dimensions in the plural."""
     if "position" not in dataset.data_vars:
         raise ParameterError(
             f"the dataset has no variable 'position'; there are {listed([*dataset.data_vars])}"
@@ -43,21 +63,7 @@ def dataset_table(
             )
     if missing := {"x", "y"} - {*map(str, data["space"].values)}:
         raise ParameterError(f"position has no {' and no '.join(sorted(missing))} in space")
-    boats, points = (_names_along(data, name) for name in _DIMENSIONS[2:])
-    stems = {point: f"{point}_" for point in points}
-    if points == ["0"] and "keypoints" not in data.coords:
-        stems = {"": ""}
-    columns: dict[str, Any] = {
-        "time": np.repeat(data["time"].values, len(boats)),
-        "individuals": np.tile(boats, len(data["time"])),
-    }
-    data = data.transpose("time", "individuals", "keypoints", "space")
-    values = {axis: data["position"].sel(space=axis).values for axis in "xy"}
-    values |= {"confidence": data["confidence"].values} if "confidence" in data else {}
-    for index, stem in enumerate(stems.values()):
-        columns |= {f"{stem}{kind}": array[..., index].ravel() for kind, array in values.items()}
-    rows: pd.DataFrame = require("pandas", "plot").DataFrame(columns).rename_axis(index="row")
-    return rows, _completed(dataset, layout, stems)
+    return data
 
 
 def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
