@@ -104,8 +104,8 @@ def direction(vectors: NDArray[np.complex128]) -> Floats:
 def motion_with_bows(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
     """Return the motion of poses after changing their headings in place.
 
-    Missing headings become directions of motion, axes become headings of the bows, and jumps of
-    full turns are removed.
+    If the layout has no headings, they become directions of motion. Axes become headings of the
+    bows, and jumps of full turns are removed.
     """
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if not layout.has_headings:
