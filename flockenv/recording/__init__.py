@@ -1,4 +1,4 @@
-"""Recordings: runs that are sampled at a fixed rate, saved and loaded."""
+"""Runs, sampled at a fixed rate: saved and loaded."""
 
 from flockenv.recording.checks import PHASES, PRECISIONS
 from flockenv.recording.quantities import checked_functions
