@@ -72,7 +72,7 @@ impl ContactResolver {
             match solution {
                 Solution::Exhausted => break,
                 Solution::Solved if self.solver.has_islands() => {
-                    self.predict_again(&overlapping, motion)
+                    self.predict_again(&overlapping, motion);
                 }
                 _ => self.predict(motion),
             }
