@@ -1,512 +1,315 @@
 """Numbers of docs/speed_vs_error.md, and rows of its tables that other pages quote, too."""
 
 import math
-from collections.abc import Callable
-from typing import Any
-
-import numpy as np
-import pandas as pd
 
 from docs.scripts.quoted import Number, interval
+from docs.scripts.speed_quantities import (
+    BOX2D,
+    OURS,
+    Values,
+    box2d,
+    box2d_over_linear,
+    contact_exponents,
+    impact_ratios,
+    largest_shift,
+    least,
+    megabytes,
+    million_agent_steps,
+    most,
+    overlap_over_ours,
+    samples,
+    speed_over_ours,
+    substep_ratios,
+    substep_ratios_in_flocks,
+    time_over_ours,
+    time_per_boat,
+    time_ratios,
+    time_spread,
+)
 
 PAGE = "docs/speed_vs_error.md"
 SPEED = "docs/speed_vs_error/"
-OURS = {"engine": "flockenv", "setting": "leapfrog / block-pivoting / 1e-4 cm", "dt_s": 0.01}
+TIMES = f"{SPEED}speed.csv"
 MOREAU = OURS | {"setting": "moreau / block-pivoting / 1e-4 cm"}
 RAPIER = {"engine": "rapier2d-f64", "setting": "4 iterations / unit 10 cm", "dt_s": 0.01}
-BOX2D = {"engine": "Box2D (f32)", "setting": "4 substeps / unit 10 cm", "dt_s": 0.01}
 JAM = {"scene": "jam", "n": 27, **OURS}
 CYCLE = JAM | {"scene": "cycle"}
 LARGE = {"scene": "jam", "n": 1000}
 LARGE_JAM = JAM | LARGE
+TRAINING = {"engine, setting": "leapfrog / exact / 1e-4 cm", "dt, s": 0.1}
 
 
-def throughput() -> list[Number]:
-    """List the speeds of environments in a batch and alone."""
-    page, table = PAGE, "docs/throughput/environments.csv"
-    rows = {pool: {"row": f"64 flocks, {pool}"} for pool in ("wide", "narrow")}
-
-    def agent_steps(rows: Any) -> float:
-        leaders = 4
-        return leaders * rows["median"].iloc[0] / 1e6
-
-    single = "step of a single environment over a flock's in a batch of 64, "
-    wide, narrow = ({"row": f"{single}{pool}"} for pool in ("wide", "narrow"))
+def extremes(words: str, file: str, values: Values, forms: tuple[str, str]) -> list[Number]:
+    """List the least and the largest of some values; ``{}`` in the words stands for both."""
+    least_form, most_form = forms
     return [
-        Number(page, "environment takes {} times as long", table, wide, "median", ".1f"),
-        Number(page, "in `wide` and {} times in `narrow`, by", table, narrow, "median", ".1f"),
-        *(
-            Number(page, words, table, rows[pool], "median", ",.0f")
-            for words, pool in (
-                ("makes {} control steps of a flock", "wide"),
-                ("through Gymnasium, and {} in `narrow`", "narrow"),
-            )
-        ),
-        Number(page, "That is {} and # million agent steps", table, rows["wide"], agent_steps),
-        Number(page, "That is # and {} million agent steps", table, rows["narrow"], agent_steps),
-    ]
-
-
-def box2d(rows: Any) -> float:
-    """Return the time of Box2D's step over ours."""
-    theirs, ours = (
-        rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["us_per_step"].item()
-        for row in (BOX2D, OURS)
-    )
-    return theirs / ours
-
-
-def two_digits(value: float) -> float:
-    """Round to two significant digits."""
-    return float(f"{value:.2g}")
-
-
-def deeper(engine: dict[str, Any], digits: Callable[[float], float] = two_digits) -> Any:
-    """Return a function for the ratio of another engine's mean overlap to ours."""
-
-    def times(rows: Any) -> float:
-        theirs, ours = (
-            rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["overlap_mean_cm"].mean()
-            for row in (engine, OURS)
+        Number(PAGE, words.replace("{}", shown), file, {}, column, form)
+        for shown, column, form in (
+            ("{} to #", least(values), least_form),
+            ("# to {}", most(values), most_form),
         )
-        return digits(theirs / ours)
-
-    return times
-
-
-def speed() -> list[Number]:
-    """List our times and memory, and how other engines compare."""
-    page, table, threads = PAGE, f"{SPEED}speed.csv", f"{SPEED}threads.csv"
-    numbers = [
-        Number(page, "takes {} µs of one core", table, JAM, "us_per_step", ".1f"),
-        Number(page, "and {} µs if they move", table, CYCLE, "us_per_step", ".1f"),
-        Number(page, "rapier needs {} and # times", table, JAM, "faster", ".1f"),
-        Number(page, "rapier needs # and {} times", table, CYCLE, "faster", ".0f"),
-        Number(
-            page,
-            "10 000 boats runs {} times",
-            f"{SPEED}growth.csv",
-            {"n": 10_000},
-            "times_real_time",
-            ".1f",
-        ),
-        Number(
-            page,
-            "on one thread, in {} MB",
-            f"{SPEED}growth.csv",
-            {"n": 10_000},
-            lambda rows: rows["bytes"].item() / 1e6,
-            ".0f",
-        ),
     ]
-    scenes = (("jam", 27, ".1f"), ("cycle", 27, ".0f"), ("jam", 1000, ".1f"))
-    cells = ("{} | # | #", "# | {} | #", "# | # | {}")
-    for cell, (scene, n, form) in zip(cells, scenes, strict=True):
-        row = {"scene": scene, "n": n}
-        numbers += [
-            Number(page, f"| rapier2d-f64 | 1 | {cell} |", table, row | OURS, "faster", form),
-            Number(page, f"| Box2D | 1 | {cell} |", table, row, box2d, form),
-        ]
-    drake = {"engine, setting": "Drake SAP"}
-    numbers += [
-        Number(page, words, f"{SPEED}short_engines.csv", drake, column, "g")
+
+
+def batch_speeds() -> list[Number]:
+    """List the speeds of environments in a batch and alone."""
+    flocks = "64 flocks, "
+    alone = "step of a single environment over a flock's in a batch of 64, "
+    steps = million_agent_steps
+    return [
+        Number(PAGE, words, "docs/throughput/environments.csv", {"row": row}, column, form)
+        for words, row, column, form in (
+            ("environment takes {} times as long", f"{alone}wide", "median", ".1f"),
+            ("in `wide` and {} times in `narrow`, by", f"{alone}narrow", "median", ".1f"),
+            ("makes {} control steps of a flock", f"{flocks}wide", "median", ",.0f"),
+            ("through Gymnasium, and {} in `narrow`", f"{flocks}narrow", "median", ",.0f"),
+            ("That is {} and # million agent steps", f"{flocks}wide", steps, ".2f"),
+            ("That is # and {} million agent steps", f"{flocks}narrow", steps, ".2f"),
+        )
+    ]
+
+
+def samples_of_learners() -> list[Number]:
+    """List how many samples the batch makes for a learner."""
+    file, row = "docs/throughput/learners.csv", {"interface": "the batch itself"}
+    return [Number(PAGE, "the batch alone makes {} per second", file, row, samples, ",.0f")]
+
+
+def speeds_of_other_environments() -> list[Number]:
+    """List how fast other environments are relative to ours."""
+    flocking = "VMAS flocking, discs that push"
+    boids, dropout = "PufferLib boids in C, no collisions", "VMAS dropout, no collisions"
+    return [
+        Number(PAGE, words, "docs/throughput/many_agents.csv", {}, ratio, ".0f")
+        for words, ratio in (
+            ("task with collisions takes {} times", time_over_ours(flocking)),
+            ("collisions are {} and # times as fast", speed_over_ours(boids)),
+            ("collisions are # and {} times as fast", speed_over_ours(dropout)),
+        )
+    ]
+
+
+def our_times() -> list[Number]:
+    """List the times of our steps, and how they grow with the number of boats."""
+    steps, growth = f"{SPEED}short_steps.csv", f"{SPEED}growth.csv"
+    jams = {"scene": "jam", **OURS}
+    return [
+        Number(PAGE, words, file, row, column, form)
+        for words, file, row, column, form in (
+            ("takes {} µs of one core", TIMES, JAM, "us_per_step", ".1f"),
+            ("and {} µs if they move", TIMES, CYCLE, "us_per_step", ".1f"),
+            ("and time by a factor of {}, because", TIMES, jams, time_per_boat, ".1f"),
+            ("10 000 boats runs {} times", growth, {"n": 10_000}, "times_real_time", ".1f"),
+            ("27 boats {} (jam) to # times", steps, TRAINING, "jam, × real time", ".0f"),
+            ("27 boats # (jam) to {} times", steps, TRAINING, "cycle, × real time", ",.0f"),
+        )
+    ]
+
+
+def memory() -> list[Number]:
+    """List the memory of a large flock."""
+    file, row = f"{SPEED}growth.csv", {"n": 10_000}
+    return [Number(PAGE, "on one thread, in {} MB", file, row, megabytes, ".0f")]
+
+
+def times_of_other_engines() -> list[Number]:
+    """List how long steps of other engines take relative to ours."""
+    return [
+        Number(PAGE, words, TIMES, row, column, form)
+        for words, row, column, form in (
+            ("rapier needs {} and # times", JAM, "faster", ".1f"),
+            ("rapier needs # and {} times", CYCLE, "faster", ".0f"),
+            ("where this one has {}, # and # (", JAM, "faster", ".1f"),
+            ("where this one has #, {} and # (", CYCLE, "faster", ".0f"),
+            ("where this one has #, # and {} (", LARGE_JAM, "faster", ".1f"),
+            ("takes {} times as long as the default", LARGE, box2d, ".1f"),
+            ("and {} times as long as gaps", LARGE, box2d_over_linear, ".1f"),
+        )
+    ]
+
+
+def table_of_other_engines() -> list[Number]:
+    """List the page's table of times of other engines relative to ours."""
+    scenes = (
+        ("{} | # | #", {"scene": "jam", "n": 27}, ".1f"),
+        ("# | {} | #", {"scene": "cycle", "n": 27}, ".0f"),
+        ("# | # | {}", {"scene": "jam", "n": 1000}, ".1f"),
+    )
+    threads = f"{SPEED}threads.csv"
+    rapier, box = {"engine": "rapier2d-f64"}, {"engine": "Box2D (f32)"}
+    return [
+        Number(PAGE, f"| {engine} | {cell} |", file, scene | row, column, form)
+        for engine, file, row, column in (
+            ("rapier2d-f64 | 1", TIMES, OURS, "faster"),
+            ("Box2D | 1", TIMES, {}, box2d),
+            ("rapier2d-f64, `parallel` | 2", threads, rapier, "times_as_long"),
+            ("Box2D | 2", threads, box, "times_as_long"),
+        )
+        for cell, scene, form in scenes
+    ]
+
+
+def times_of_drake() -> list[Number]:
+    """List the times of a step of Drake."""
+    file, row = f"{SPEED}short_engines.csv", {"engine, setting": "Drake SAP"}
+    return [
+        Number(PAGE, words, file, row, column, "g")
         for words, column in (
             ("SAP accepts: a step takes {} µs", "jam, µs"),
             ("in the jam and {} µs in the cycle", "cycle, µs"),
         )
     ]
-    engines = {"rapier2d-f64, `parallel`": "rapier2d-f64", "Box2D": "Box2D (f32)"}
-    for words, engine in engines.items():
-        for cell, (scene, n, form) in zip(cells, scenes, strict=True):
-            row = {"engine": engine, "scene": scene, "n": n}
-            row_words = f"| {words} | 2 | {cell} |"
-            numbers.append(Number(page, row_words, threads, row, "times_as_long", form))
-    paper = "docs/software/paper.md"
+
+
+def spread_of_times() -> list[Number]:
+    """List the interquartile ranges of rapier's times."""
     return [
-        *numbers,
-        Number(paper, "27 jammed boats take {} µs per step", table, JAM, "us_per_step", ".1f"),
-        Number(paper, "and {} times as long in rapier", table, JAM, "faster", ".1f"),
-        *(
-            Number(paper, words, f"{SPEED}slide.csv", row, "slide_median_cm", form)
-            for words, row, form in (
-                ("the default scheme is {} cm and", OURS, ".5f"),
-                ("that of rapier {} cm, since", RAPIER, ".2g"),
-                ("of `flockenv` comes to {} cm.", MOREAU, ".2g"),
-            )
-        ),
+        Number(PAGE, words, TIMES, scene | RAPIER, time_spread, ".0f")
+        for words, scene in (
+            ("interquartile range of {} % in the jam and", JAM),
+            ("of # % in the jam and {} % in the cycle", CYCLE),
+        )
+    ]
+
+
+def overlaps_of_other_engines() -> list[Number]:
+    """List the overlaps of hulls in other engines relative to ours."""
+    file, row = f"{SPEED}overlap.csv.gz", {"scene": "jam", "n": 27}
+    own_unit = RAPIER | {"setting": "4 iterations / unit 1 cm"}
+    return [
+        Number(PAGE, words, file, row, overlap_over_ours(engine), ".0f")
+        for words, engine in (
+            ("its hulls overlap {} times as much.", RAPIER),
+            ("its hulls overlap {} times as much as ours. **", own_unit),
+            ("its hulls overlap {} times as much as ours. A", BOX2D),
+        )
     ]
 
 
 def overlap_rates() -> list[Number]:
     """List in how many runs overlaps are deep, with a tolerance and without one."""
-    page, table = PAGE, f"{SPEED}overlap_rates.csv"
     scenes = {
         "cycle": "| cycle with bw = # s, a minute |",
         "wide": "| `wide`, bw = # s, # s |",
         "narrow": "| `narrow`, bw = # s, # s |",
     }
-    shown = (
-        "{} | # cm | # | # cm",
-        "# | {} cm | # | # cm",
-        "# | # cm | {} | # cm",
-        "# | # cm | # | {} cm",
+    cells = (
+        ("{} | # cm | # | # cm", 1e-4, "beyond_0.0001_cm", "d"),
+        ("# | {} cm | # | # cm", 1e-4, "deepest_cm", "g"),
+        ("# | # cm | {} | # cm", math.inf, "beyond_0.1_cm", "d"),
+        ("# | # cm | # | {} cm", math.inf, "deepest_cm", "g"),
     )
-    cells = ((1e-4, "beyond_0.0001_cm", "d"), (1e-4, "deepest_cm", "g"))
-    cells += ((math.inf, "beyond_0.1_cm", "d"), (math.inf, "deepest_cm", "g"))
     return [
-        Number(page, f"{words} {cell} |", table, row | {"tolerance_cm": cm}, column, form)
+        Number(
+            PAGE,
+            f"{words} {cell} |",
+            f"{SPEED}overlap_rates.csv",
+            {"scene": scene, "scheme": "leapfrog", "tolerance_cm": tolerance_cm},
+            column,
+            form,
+        )
         for scene, words in scenes.items()
-        for row in ({"scene": scene, "scheme": "leapfrog"},)
-        for cell, (cm, column, form) in zip(shown, cells, strict=True)
+        for cell, tolerance_cm, column, form in cells
     ]
 
 
-def steps() -> list[Number]:
+def errors_by_step() -> list[Number]:
+    """List how errors fall with the step."""
+    exponents, impact = f"{SPEED}short_exponents.csv", f"{SPEED}impact.csv"
+    return [
+        *extremes("the exponents are {}.", exponents, contact_exponents, (".1f", ".1f")),
+        *extremes("`leapfrog` errs {} times", impact, impact_ratios, (".1f", ".0f")),
+    ]
+
+
+def order_by_step() -> list[Number]:
+    """List by how much the step and the scheme change the order."""
+    file = f"{SPEED}short_order_errors.csv"
+    change, width = "error of Ψ_o", "± (Ψ_o)"
+    halved, paper = TRAINING | {"dt, s": 0.05}, {"engine, setting": "paper / exact / linear"}
+    before = "Ψ_o changes by # ± # at dt = 0.05 s, and by"
+    return [
+        Number(PAGE, words, file, row, column, form)
+        for words, row, column, form in (
+            ("Ψ_o changes by {} ± # at dt", halved, change, ".2f"),
+            ("Ψ_o changes by # ± {} at dt", halved, width, ".2f"),
+            (f"{before} {{}} ± # at", TRAINING, change, ".2f"),
+            (f"{before} # ± {{}} at", TRAINING, width, ".2f"),
+            ("`paper` raises Ψ_o by {} to #.", paper, least(change), ".2f"),
+            ("`paper` raises Ψ_o by # to {}.", paper, most(change), ".2f"),
+            ("at 0.005 s in {} seeds", TRAINING, "runs", "d"),
+            ("(pymunk and MuJoCo {};", {"engine, setting": "MuJoCo Newton"}, "runs", "d"),
+        )
+    ]
+
+
+def study_of_steps() -> list[Number]:
     """List what a step of 0.1 s changes, from the study of step sizes."""
-    page, table = PAGE, "studies/step_size/claims.csv"
-    at = "at dt = 0.1 s minus that at 0.005 s"
+    file, at = "studies/step_size/claims.csv", "at dt = 0.1 s minus that at 0.005 s"
     alone = {"reading": "20 boats in wide, no leaders, physics training", "quantity": f"Ψ_o {at}"}
-
-    def largest_shift(rows: Any) -> float:
-        shifts = rows[rows["quantity"].str.startswith("noise of the same")]
-        return shifts[["low", "high"]].abs().max(axis=None)
-
     return [
-        *interval(page, "8 minutes show a change of {} at 0.1 s", table, alone, form=".3f"),
-        Number(page, "order is lost by at most {} s", table, {}, largest_shift),
+        *interval(PAGE, "8 minutes show a change of {} at 0.1 s", file, alone, form=".3f"),
+        Number(PAGE, "order is lost by at most {} s", file, {}, largest_shift),
     ]
 
 
-def other_engines() -> list[Number]:
-    """List overlaps of other engines relative to ours, and the spread of rapier's times."""
-    table, jam = f"{SPEED}overlap.csv.gz", {"scene": "jam", "n": 27}
-    own_unit = RAPIER | {"setting": "4 iterations / unit 1 cm"}
-
-    def spread(rows: Any) -> float:
-        return (100 * (rows["us_q3"] - rows["us_q1"]) / rows["us_per_step"]).item()
-
-    def over_linear(rows: Any) -> float:
-        theirs, ours = (
-            rows[(rows[list(row)] == pd.Series(row)).all(axis=1)]["us_per_step"].item()
-            for row in (BOX2D, OURS | {"setting": "leapfrog / block-pivoting / linear"})
-        )
-        return theirs / ours
-
+def substeps_of_controlled_steps() -> list[Number]:
+    """List how many substeps a step that follows its error saves and costs."""
+    file, impact = f"{SPEED}step_control.csv", {"scene": "impact"}
+    smallest = impact | {"setting": "1e-05 cm"}
+    in_impact = (
+        ("0.001 cm or less: {} times the substeps", impact, least(substep_ratios), ".1f"),
+        ("the substeps at an error of {} cm", smallest, "error_cm", "g"),
+    )
     return [
-        Number(PAGE, "its hulls overlap {} times as much.", table, jam, deeper(RAPIER), ".0f"),
-        Number(
-            PAGE,
-            "its hulls overlap {} times as much as ours. **",
-            table,
-            jam,
-            deeper(own_unit),
-            ".0f",
-        ),
-        Number(
-            PAGE, "its hulls overlap {} times as much as ours. A", table, jam, deeper(BOX2D), ".0f"
-        ),
-        Number(
-            PAGE,
-            "of # % in the jam and {} % in the cycle",
-            f"{SPEED}speed.csv",
-            CYCLE | RAPIER,
-            spread,
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "interquartile range of {} % in the jam and",
-            f"{SPEED}speed.csv",
-            JAM | RAPIER,
-            spread,
-            ".0f",
-        ),
-        Number(
-            PAGE, "takes {} times as long as the default", f"{SPEED}speed.csv", LARGE, box2d, ".1f"
-        ),
-        Number(
-            PAGE, "and {} times as long as gaps", f"{SPEED}speed.csv", LARGE, over_linear, ".1f"
-        ),
-        *(
-            Number(
-                PAGE,
-                f"where this one has {words} (",
-                f"{SPEED}speed.csv",
-                row | OURS,
-                "faster",
-                form,
-            )
-            for words, row, form in (
-                ("{}, # and #", JAM, ".1f"),
-                ("#, {} and #", CYCLE, ".0f"),
-                ("#, # and {}", LARGE, ".1f"),
-            )
-        ),
+        *extremes("slides it takes {} times", file, substep_ratios_in_flocks, (".1f", ".0f")),
+        *(Number(PAGE, words, file, row, column, form) for words, row, column, form in in_impact),
     ]
 
 
-def our_settings() -> list[Number]:
-    """List what our steps and tolerances cost, and how errors fall with the step."""
-    training = {"engine, setting": "leapfrog / exact / 1e-4 cm", "dt, s": 0.1}
-    steps, falls = f"{SPEED}short_steps.csv", f"{SPEED}short_exponents.csv"
-    changes = f"{SPEED}short_order_errors.csv"
-
-    def contact_exponents(rows: Any) -> Any:
-        both = rows[rows["scheme"].isin(["leapfrog", "moreau"])]
-        return both[["0.5 s of the jam", "0.5 s of the cycle"]]
-
-    def impact_ratios(rows: Any) -> Any:
-        by_scheme = rows.set_index("scheme")
-        return by_scheme.loc["leapfrog / linear"] / by_scheme.loc["moreau / linear"]
-
-    def per_boat(rows: Any) -> float:
-        us_per_step = rows.set_index("n")["us_per_step"]
-        return us_per_step[1000] / 1000 / (us_per_step[27] / 27)
-
-    rise, width = "error of Ψ_o", "± (Ψ_o)"
-    return [
-        Number(PAGE, "27 boats {} (jam) to # times", steps, training, "jam, × real time", ".0f"),
-        Number(PAGE, "27 boats # (jam) to {} times", steps, training, "cycle, × real time", ",.0f"),
-        Number(
-            PAGE,
-            "the exponents are {} to #.",
-            falls,
-            {},
-            lambda rows: contact_exponents(rows).min(axis=None),
-            ".1f",
-        ),
-        Number(
-            PAGE,
-            "the exponents are # to {}.",
-            falls,
-            {},
-            lambda rows: contact_exponents(rows).max(axis=None),
-            ".1f",
-        ),
-        Number(
-            PAGE,
-            "`leapfrog` errs {} to # times",
-            f"{SPEED}impact.csv",
-            {},
-            lambda rows: impact_ratios(rows).min(),
-            ".1f",
-        ),
-        Number(
-            PAGE,
-            "`leapfrog` errs # to {} times",
-            f"{SPEED}impact.csv",
-            {},
-            lambda rows: impact_ratios(rows).max(),
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "and time by a factor of {}, because",
-            f"{SPEED}speed.csv",
-            {"scene": "jam", **OURS},
-            per_boat,
-            ".1f",
-        ),
-        *(
-            Number(PAGE, f"Ψ_o changes by {words}", changes, training | {"dt, s": dt_s}, column)
-            for dt_s, column, words in (
-                (0.05, rise, "{} ± # at dt"),
-                (0.05, width, "# ± {} at dt"),
-                (0.1, rise, "# ± # at dt = 0.05 s, and by {} ± # at"),
-                (0.1, width, "# ± # at dt = 0.05 s, and by # ± {} at"),
-            )
-        ),
-        *(
-            Number(
-                PAGE,
-                f"`paper` raises Ψ_o by {words}.",
-                changes,
-                {"engine, setting": "paper / exact / linear"},
-                end(rise),
-            )
-            for words, end in (("{} to #", least), ("# to {}", most))
-        ),
-        Number(PAGE, "at 0.005 s in {} seeds", changes, training, "runs", "d"),
-        Number(
-            PAGE,
-            "(pymunk and MuJoCo {};",
-            changes,
-            {"engine, setting": "MuJoCo Newton"},
-            "runs",
-            "d",
-        ),
-    ]
-
-
-def least(column: str) -> Callable[[Any], float]:
-    """Return a function for the least number of a column."""
-    return lambda rows: rows[column].min()
-
-
-def most(column: str) -> Callable[[Any], float]:
-    """Return a function for the largest number of a column."""
-    return lambda rows: rows[column].max()
-
-
-def controlled_steps() -> list[Number]:
-    """List what a step that follows its error saves and costs."""
-    table = f"{SPEED}step_control.csv"
-
-    def substep_ratios(rows: Any) -> Any:
-        """Return the ratio of the substeps of controlled steps to those of fixed ones, by setting.
-
-        Both have the same error, interpolated between fixed steps. A setting with a smaller error
-        than every fixed step is left out.
-        """
-        fixed = rows[rows["step"] == "fixed"].sort_values("error_cm")
-        controlled = rows[rows["step"] == "controlled"]
-        is_covered = controlled["error_cm"].between(
-            fixed["error_cm"].min(), fixed["error_cm"].max()
-        )
-        controlled = controlled[is_covered]
-        error, substeps = np.log(fixed[["error_cm", "substeps"]].to_numpy().T)
-        fixed_substeps = np.exp(np.interp(np.log(controlled["error_cm"]), error, substeps))
-        return controlled["substeps"] / fixed_substeps
-
-    def in_a_flock(rows: Any) -> Any:
-        return pd.concat(
-            [
-                substep_ratios(scene_rows)
-                for scene, scene_rows in rows.groupby("scene")
-                if scene != "impact"
-            ]
-        )
-
-    impact = {"scene": "impact"}
-    return [
-        Number(
-            PAGE,
-            "slides it takes {} to # times",
-            table,
-            {},
-            lambda rows: in_a_flock(rows).min(),
-            ".1f",
-        ),
-        Number(
-            PAGE,
-            "slides it takes # to {} times",
-            table,
-            {},
-            lambda rows: in_a_flock(rows).max(),
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "0.001 cm or less: {} times the substeps",
-            table,
-            impact,
-            lambda rows: substep_ratios(rows).min(),
-            ".1f",
-        ),
-        Number(
-            PAGE,
-            "the substeps at an error of {} cm",
-            table,
-            impact | {"setting": "1e-05 cm"},
-            "error_cm",
-            "g",
-        ),
-    ]
-
-
-def controlled_times() -> list[Number]:
+def times_of_controlled_steps() -> list[Number]:
     """List how much longer a step that follows its error takes for an error."""
-    table = f"{SPEED}work.csv"
-
-    def longer(column: str) -> Callable[[Any], Any]:
-        """Return a function for the ratio of controlled to fixed times at the same error."""
-
-        def ratios(rows: Any) -> Any:
-            by_scene = []
-            for _, scene_rows in rows[rows["engine"] == "flockenv"].groupby("scene"):
-                is_controlled = scene_rows["setting"].str.startswith("controlled")
-                controlled = scene_rows[is_controlled]
-                fixed = scene_rows[~is_controlled].sort_values("error_median_cm")
-                error, time = np.log(fixed[["error_median_cm", "us_per_s"]].to_numpy().T)
-                controlled_error = np.log(controlled["error_median_cm"])
-                assert controlled_error.between(error.min(), error.max()).all()
-                fixed_time = np.exp(np.interp(controlled_error, error, time))
-                by_scene.append(controlled[column] / fixed_time)
-            return pd.concat(by_scene)
-
-        return ratios
-
-    calls, whole = longer("call_us_per_s"), longer("us_per_s")
-    words, tried = "a controlled step takes {} times as long", "as we tried it, it takes {} times"
+    file = f"{SPEED}work.csv"
+    calls, whole = time_ratios("call_us_per_s"), time_ratios("us_per_s")
     return [
-        Number(PAGE, words.format("{} to #"), table, {}, lambda rows: calls(rows).min(), ".1f"),
-        Number(PAGE, words.format("# to {}"), table, {}, lambda rows: calls(rows).max(), ".1f"),
-        Number(PAGE, tried.format("{} to #"), table, {}, lambda rows: whole(rows).min(), ".1f"),
-        Number(PAGE, tried.format("# to {}"), table, {}, lambda rows: whole(rows).max(), ".0f"),
+        *extremes("a controlled step takes {} times as long", file, calls, (".1f", ".1f")),
+        *extremes("as we tried it, it takes {} times", file, whole, (".1f", ".0f")),
     ]
 
 
-def learners() -> list[Number]:
-    """List the speeds of other environments and of the learners' interfaces."""
-    many, own = "docs/throughput/many_agents.csv", "docs/throughput/learners.csv"
-
-    def best(rows: Any) -> Any:
-        return rows.groupby("environment")["steps per second of one core"].max()
-
-    def times(theirs: str, *, faster: bool) -> Callable[[Any], float]:
-        def ratio_to_ours(rows: Any) -> float:
-            ratio = best(rows)[theirs] / best(rows)["flockenv, hulls with exact contacts"]
-            return ratio if faster else 1 / ratio
-
-        return ratio_to_ours
-
-    boids, dropout = "PufferLib boids in C, no collisions", "VMAS dropout, no collisions"
+def software_paper() -> list[Number]:
+    """List the times and errors that the paper on the software quotes."""
+    slide = f"{SPEED}slide.csv"
     return [
-        Number(
-            PAGE,
-            "task with collisions takes {} times",
-            many,
-            {},
-            times("VMAS flocking, discs that push", faster=False),
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "collisions are {} and # times as fast",
-            many,
-            {},
-            times(boids, faster=True),
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "collisions are # and {} times as fast",
-            many,
-            {},
-            times(dropout, faster=True),
-            ".0f",
-        ),
-        Number(
-            PAGE,
-            "the batch alone makes {} per second",
-            own,
-            {"interface": "the batch itself"},
-            lambda rows: two_digits(rows["samples/s"].item()),
-            ",.0f",
-        ),
+        Number("docs/software/paper.md", words, file, row, column, form)
+        for words, file, row, column, form in (
+            ("27 jammed boats take {} µs per step", TIMES, JAM, "us_per_step", ".1f"),
+            ("and {} times as long in rapier", TIMES, JAM, "faster", ".1f"),
+            ("the default scheme is {} cm and", slide, OURS, "slide_median_cm", ".5f"),
+            ("that of rapier {} cm, since", slide, RAPIER, "slide_median_cm", ".2g"),
+            ("of `flockenv` comes to {} cm.", slide, MOREAU, "slide_median_cm", ".2g"),
+        )
     ]
 
 
 def every() -> list[Number]:
     """List the numbers of all functions above."""
     return [
-        *speed(),
-        *other_engines(),
-        *our_settings(),
-        *controlled_steps(),
-        *controlled_times(),
+        *batch_speeds(),
+        *samples_of_learners(),
+        *speeds_of_other_environments(),
+        *our_times(),
+        *memory(),
+        *times_of_other_engines(),
+        *table_of_other_engines(),
+        *times_of_drake(),
+        *spread_of_times(),
+        *overlaps_of_other_engines(),
         *overlap_rates(),
-        *steps(),
-        *throughput(),
-        *learners(),
+        *errors_by_step(),
+        *order_by_step(),
+        *study_of_steps(),
+        *substeps_of_controlled_steps(),
+        *times_of_controlled_steps(),
+        *software_paper(),
     ]

@@ -30,11 +30,10 @@ from docs.scripts.quoted_speed import (
     LARGE,
     LARGE_JAM,
     MOREAU,
-    OURS,
     RAPIER,
     SPEED,
-    box2d,
 )
+from docs.scripts.speed_quantities import OURS, box2d
 from flockenv.statistics import critical_noise
 
 
