@@ -98,31 +98,10 @@ class EnvOptions:
         flocks_argument
             Name of the argument that sets the number of flocks; None for one flock.
         """
-        for name in (option for option in options if option not in NAMES):
-            # TorchRL searches messages for "unexpected keyword argument".
-            raise UnknownOptionError(
-                f"got an unexpected keyword argument {name!r}, which is not an option of the "
-                f"environment: {_suggestion(name, flocks_argument)}"
-            )
+        _check_names(options, flocks_argument)
         values: dict[str, Any] = {name: listed(value) for name, value in options.items()}
-        own_reward = _pop_function(values)
-        if own_reward is not None and not takes_function:
-            raise ParameterError(
-                f"reward = {short_repr(own_reward)} is not accepted: weights by name. "
-                "LeadersVectorEnv and LeaderVecEnv also take a function. For a single flock, "
-                "compute your own reward in a subclass or a wrapper"
-            )
-        settings = {name: values.pop(name) for name in _SETTINGS if name in values}
-        if isinstance(values.get("bw_s"), tuple | list):
-            settings["bw_s"] = tuple(values.pop("bw_s"))
-        for name in ("observation", "reward"):
-            if name in settings:
-                settings[name] = _as_dictionaries(settings[name])
-        target = settings.get("target")
-        targets = target if isinstance(target, list | tuple) else (target,)
-        # Other targets, such as "random", are settings alone; the core checks them.
-        if targets and all(direction in ("cw", "ccw") for direction in targets):
-            values["target"] = target
+        own_reward = _pop_function(values, takes_function)
+        settings = _pop_settings(values)
         stepping = _pop_physics(values)
         parameters = _flock_parameters({**values, **stepping})
         if parameters.n_leaders == 0:
@@ -134,13 +113,14 @@ class EnvOptions:
         return cls(parameters, settings, own_reward)
 
 
-def _pop_function(values: dict[str, Any]) -> Callable[[Any], ArrayLike] | None:
-    """Remove a reward function from the options, and return it; None without one."""
-    if not callable(values.get("reward")):
-        return None
-    function: Callable[[Any], ArrayLike] = values.pop("reward")
-    values["reward"] = {}
-    return function
+def _check_names(options: Mapping[str, Any], flocks_argument: str | None) -> None:
+    """Refuse unknown names of options."""
+    for name in (option for option in options if option not in NAMES):
+        # TorchRL searches messages for "unexpected keyword argument".
+        raise UnknownOptionError(
+            f"got an unexpected keyword argument {name!r}, which is not an option of the "
+            f"environment: {_suggestion(name, flocks_argument)}"
+        )
 
 
 def _suggestion(name: str, flocks_argument: str | None) -> str:
@@ -152,6 +132,45 @@ def _suggestion(name: str, flocks_argument: str | None) -> str:
     if flocks_argument is None:
         return "this is one flock; gymnasium.make_vec(id, num_envs=...) makes many"
     return f"the number of flocks is {flocks_argument!r} here"
+
+
+def _pop_function(
+    values: dict[str, Any], takes_function: bool
+) -> Callable[[Any], ArrayLike] | None:
+    """Remove a reward function from the options, and return it; None without one.
+
+    Refuses a function where the environment takes none.
+    """
+    if not callable(values.get("reward")):
+        return None
+    function: Callable[[Any], ArrayLike] = values.pop("reward")
+    if not takes_function:
+        raise ParameterError(
+            f"reward = {short_repr(function)} is not accepted: weights by name. "
+            "LeadersVectorEnv and LeaderVecEnv also take a function. For a single flock, "
+            "compute your own reward in a subclass or a wrapper"
+        )
+    values["reward"] = {}
+    return function
+
+
+def _pop_settings(values: dict[str, Any]) -> dict[str, Any]:
+    """Remove the settings of the environment from the options, and return them.
+
+    A target that is a direction also stays: it is one of the flock's parameters.
+    """
+    settings = {name: values.pop(name) for name in _SETTINGS if name in values}
+    if isinstance(values.get("bw_s"), tuple | list):
+        settings["bw_s"] = tuple(values.pop("bw_s"))
+    for name in ("observation", "reward"):
+        if name in settings:
+            settings[name] = _as_dictionaries(settings[name])
+    target = settings.get("target")
+    targets = target if isinstance(target, list | tuple) else (target,)
+    # Other targets, such as "random", are settings alone; the core checks them.
+    if targets and all(direction in ("cw", "ccw") for direction in targets):
+        values["target"] = target
+    return settings
 
 
 def _as_dictionaries(value: object) -> object:
