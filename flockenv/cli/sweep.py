@@ -2,7 +2,8 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,24 +73,8 @@ def sweep(options: SweepOptions) -> None:
     if options.dry_run:
         _show_workload(options, runs, store)
         return
-    copy = folder / "sweep.toml"
-    if not options.force:
-        _check_same(copy, spec)
-    prepare(copy)
-    write_text(copy, options.spec.read_text("utf-8"))
-    stored_note = f"The runs that were finished are stored in {folder}: the same command resumes."
-    total = sum(run.cost for run in runs)
-    with progress(
-        f"{len(runs)} runs",
-        total,
-        options.hides_progress,
-        interruptible=False,
-        stored_note=stored_note,
-    ) as advance:
-
-        def finished(run: RunSpec) -> None:
-            advance(run.cost)
-
+    _store_spec(options, folder / "sweep.toml", spec)
+    with _progress_of(options, runs, folder) as finished:
         if shard is not None:
             failures = run_missing(runs, store, engine, finished, options.workers)
         else:
@@ -101,6 +86,31 @@ def sweep(options: SweepOptions) -> None:
     if failed:
         echo(f"{failed} of {len(runs)} runs failed: {reasons}", errors)
         raise typer.Exit(1)
+
+
+def _store_spec(options: SweepOptions, copy: Path, spec: "SweepSpec") -> None:
+    """Copy the TOML file into the folder of the sweep; refuse that of another one."""
+    if not options.force:
+        _check_same(copy, spec)
+    prepare(copy)
+    write_text(copy, options.spec.read_text("utf-8"))
+
+
+@contextmanager
+def _progress_of(
+    options: SweepOptions, runs: list[RunSpec], folder: Path
+) -> Iterator[Callable[[RunSpec], None]]:
+    """Show the progress of runs, and yield the function to call after each of them."""
+    total = sum(run.cost for run in runs)
+    stored_note = f"The runs that were finished are stored in {folder}: the same command resumes."
+    with progress(
+        f"{len(runs)} runs",
+        total,
+        options.hides_progress,
+        interruptible=False,
+        stored_note=stored_note,
+    ) as advance:
+        yield lambda run: advance(run.cost)
 
 
 def _show_shard(
