@@ -125,18 +125,7 @@ def rollout_of(
 ) -> tuple[dict[str, torch.Tensor], np.ndarray, float]:
     """Return a rollout with advantages, the observations after it, and its mean reward."""
     settings = learner.settings
-    steps: dict[str, list[torch.Tensor]] = {
-        name: []
-        for name in (
-            "observations",
-            "features",
-            "actions",
-            "log_probs",
-            "rewards",
-            "next_values",
-            "continues",
-        )
-    }
+    steps: list[dict[str, torch.Tensor]] = []
     for _ in range(settings.steps):
         observed = torch.from_numpy(observations)
         features = torch.from_numpy(env.flock_features())
@@ -147,29 +136,40 @@ def rollout_of(
         next_values = learner.values(torch.from_numpy(env.flock_features()))
         if truncated.any():
             observations, _ = env.reset(options={"reset_mask": truncated})
-        for name, value in (
-            ("observations", observed),
-            ("features", features),
-            ("actions", actions),
-            ("log_probs", distribution.log_prob(actions)),
-            ("rewards", torch.from_numpy(rewards.astype(np.float32))),
-            ("next_values", next_values),
-            ("continues", torch.from_numpy(~truncated).float()),
-        ):
-            steps[name].append(value)
-    stacked = {name: torch.stack(values) for name, values in steps.items()}
+        steps.append(
+            {
+                "observations": observed,
+                "features": features,
+                "actions": actions,
+                "log_probs": distribution.log_prob(actions),
+                "rewards": torch.from_numpy(rewards.astype(np.float32)),
+                "next_values": next_values,
+                "continues": torch.from_numpy(~truncated).float(),
+            }
+        )
+    stacked = {name: torch.stack([step[name] for step in steps]) for name in steps[0]}
     values = learner.values(stacked["features"])
-    # Generalized advantage estimation (Schulman et al. 2016, eq. 16), backward in time.
-    errors = stacked["rewards"] + settings.gamma * stacked["next_values"] - values
-    advantages, advantage = torch.empty_like(values), torch.zeros(env.num_envs)
-    decay = settings.gamma * settings.gae_lambda
-    for step in reversed(range(settings.steps)):
-        advantage = errors[step] + decay * stacked["continues"][step] * advantage
-        advantages[step] = advantage
+    advantages = advantages_of(stacked, values, settings)
     rollout = {name: stacked[name] for name in ("observations", "features", "actions", "log_probs")}
     rollout |= {"advantages": advantages, "returns": advantages + values}
     flat = {name: values.flatten(0, 1) for name, values in rollout.items()}
     return flat, observations, float(stacked["rewards"].mean())
+
+
+def advantages_of(
+    steps: dict[str, torch.Tensor], values: torch.Tensor, settings: Settings
+) -> torch.Tensor:
+    """Return the advantages of the actions of each step, shape (steps, flocks).
+
+    They are generalized advantage estimates (Schulman et al. 2016, eq. 16), backward in time.
+    """
+    errors = steps["rewards"] + settings.gamma * steps["next_values"] - values
+    advantages, advantage = torch.empty_like(values), torch.zeros_like(values[0])
+    decay = settings.gamma * settings.gae_lambda
+    for step in reversed(range(len(values))):
+        advantage = errors[step] + decay * steps["continues"][step] * advantage
+        advantages[step] = advantage
+    return advantages
 
 
 def train(settings: Settings, out: Path, report=print) -> NetworkPolicy:
