@@ -102,6 +102,46 @@ def ascent(
     return (advantage * ratio * is_unclipped * now / spread) @ features / len(chosen)
 
 
+class Adam:
+    """The optimizer of Kingma and Ba (2015), uphill."""
+
+    def __init__(self, size: int) -> None:
+        self.steps, self.moment_1, self.moment_2 = 0, np.zeros(size), np.zeros(size)
+
+    def step(self, gradient: np.ndarray, rate: float) -> np.ndarray:
+        """Return the change of the weights by the next gradient."""
+        self.steps += 1
+        self.moment_1 = DECAY_1 * self.moment_1 + (1 - DECAY_1) * gradient
+        self.moment_2 = DECAY_2 * self.moment_2 + (1 - DECAY_2) * gradient**2
+        mean = self.moment_1 / (1 - DECAY_1**self.steps)
+        return rate * mean / (np.sqrt(self.moment_2 / (1 - DECAY_2**self.steps)) + 1e-8)
+
+
+def explore(
+    weights: np.ndarray,
+    flocks: BranchingFlocks,
+    random: np.random.Generator,
+    settings: Settings,
+) -> tuple[np.ndarray, ...]:
+    """Return the order of each branch, led by its own weights, and the decisions in all of them.
+
+    The weights are drawn about the policy's. The decisions are four arrays: the leans, their
+    features, their standard deviations and their advantages.
+    """
+    size = (settings.groups * settings.size, len(weights))
+    explored = weights + settings.sigma * random.standard_normal(size)
+    orders, observations = branch(explored, flocks, settings.judged_s)
+    ones = np.ones_like(observations[..., :1])
+    features = np.concatenate([observations, ones], axis=-1).astype(float)
+    chosen = np.einsum("tfls,fs->tfl", features, explored).ravel()
+    shape = observations.shape[:-1]
+    advantage = np.broadcast_to(advantages(orders, settings)[:, None], shape).ravel()
+    features = features.reshape(len(chosen), -1)
+    # Decisions of a branch are treated as independent, each with its own distribution.
+    spread = settings.sigma * np.linalg.norm(features, axis=1)
+    return orders, chosen, features, spread, advantage
+
+
 def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the average weights, and the mean order of the branches of each round."""
     flocks = BranchingFlocks(
@@ -115,31 +155,15 @@ def train(settings: Settings, seed: int, flock_hours: float) -> tuple[np.ndarray
     random = np.random.default_rng([seed, 0])
     rounds = max(1, round(flock_hours / flocks.branch_hours))
     weights = np.zeros(len(LEAN_FEATURES) + 1)
-    moment_1, moment_2, total = weights.copy(), weights.copy(), weights.copy()
-    curve, steps = [], 0
+    total, adam, curve = weights.copy(), Adam(len(weights)), []
     for number in range(rounds):
-        shape = (settings.groups * settings.size, len(weights))
-        changes = settings.sigma * random.standard_normal(shape)
-        orders, observations = branch(weights + changes, flocks, settings.judged_s)
-        features = np.concatenate(
-            [observations, np.ones_like(observations[..., :1])], axis=-1
-        ).astype(float)
-        chosen = np.einsum("tfls,fs->tfl", features, weights + changes).ravel()
-        shape = observations.shape[:-1]
-        advantage = np.broadcast_to(advantages(orders, settings)[:, None], shape).ravel()
-        features = features.reshape(len(chosen), -1)
-        # Decisions of a branch are treated as independent, each with its own distribution.
-        spread = settings.sigma * np.linalg.norm(features, axis=1)
+        orders, chosen, features, spread, advantage = explore(weights, flocks, random, settings)
         start, rate = weights.copy(), settings.learning_rate * (1 - number / rounds)
         for _ in range(settings.epochs):
             for part in np.array_split(random.permutation(len(chosen)), settings.minibatches):
-                decisions = (array[part] for array in (chosen, features, spread))
+                decisions = (chosen[part], features[part], spread[part])
                 objective = (start, advantage[part], settings.clip_range)
-                gradient, steps = ascent(weights, *decisions, *objective), steps + 1
-                moment_1 = DECAY_1 * moment_1 + (1 - DECAY_1) * gradient
-                moment_2 = DECAY_2 * moment_2 + (1 - DECAY_2) * gradient**2
-                step = moment_1 / (1 - DECAY_1**steps)
-                weights = weights + rate * step / (np.sqrt(moment_2 / (1 - DECAY_2**steps)) + 1e-8)
+                weights = weights + adam.step(ascent(weights, *decisions, *objective), rate)
         if number >= rounds // 2:
             total += weights
         curve.append(orders.mean())
