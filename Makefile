@@ -229,8 +229,8 @@ ifeq ($(and $(wildcard flockenv/_core.*.so flockenv/_core.*.pyd),$(shell grep -l
 .PHONY: $(CORE)
 endif
 
-# The profile of a checkout compiles in half the time, with the same results to the bit. Wheels, pinned counts and the
-# comparison with engines are compiled as a release.
+# The profile of a checkout shares its dependencies with the Rust tests, and gives the same bits. Wheels, pinned counts and
+# the comparison with engines are compiled as a release.
 $(CORE): $(RUST_SOURCES) pyproject.toml | $(STAMPS)/venv
 	VIRTUAL_ENV="$(CURDIR)/.venv" PATH="$(CURDIR)/$(BIN):$$PATH" maturin develop --locked --uv $(CODEGEN)
 	@touch $@
