@@ -131,34 +131,44 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The touch of an end of core a with the nearest point of core b. With `only_nearest` it is `None` if that point is
-    /// an end of b to which another point of core a is nearer.
-    fn end_of_a(&self, side: f64, only_nearest: bool) -> Option<Touch> {
+    /// Coordinate along core b, possibly past its ends, of the point on its line that is nearest to an end of core a.
+    #[inline]
+    fn end_of_a_along_b(&self, side: f64) -> f64 {
+        side * self.hull_a.half_length * self.cosine - self.offset_along_b
+    }
+
+    /// The touch of an end of core a with the nearest point of core b.
+    fn end_of_a(&self, side: f64) -> Touch {
+        let h_b = self.hull_b.half_length;
+        let nearest = self.end_of_a_along_b(side).clamp(-h_b, h_b);
+        self.touch(side * self.hull_a.half_length, nearest)
+    }
+
+    /// As [`Self::end_of_a`]; `None` if the nearest point is an end of core b to which another point of core a is nearer.
+    fn facing_end_of_a(&self, side: f64) -> Option<Touch> {
         let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
-        let along_b = side * h_a * self.cosine - self.offset_along_b;
+        let along_b = self.end_of_a_along_b(side);
         let nearest = along_b.clamp(-h_b, h_b);
-        if only_nearest
-            && along_b.abs() > h_b
-            && (self.offset_along_a + nearest * self.cosine) * side < h_a
-        {
+        if along_b.abs() > h_b && (self.offset_along_a + nearest * self.cosine) * side < h_a {
             return None;
         }
         Some(self.touch(side * h_a, nearest))
     }
 
     /// The touch of an end of core b with the flank of hull a; `None` if the end lies past an end of core a.
-    fn end_of_b(&self, side: f64) -> Option<Touch> {
+    fn facing_end_of_b(&self, side: f64) -> Option<Touch> {
         let h_b = self.hull_b.half_length;
         let along_a = self.offset_along_a + side * h_b * self.cosine;
         (along_a.abs() <= self.hull_a.half_length).then(|| self.touch(along_a, side * h_b))
     }
 
-    /// The nearer touch of the two ends, one of each hull, on one side of hull a; `None` if neither faces the other core.
+    /// The touch at the bow (`side` +1) or stern (−1) of hull a. Two ends are there, one of each hull, and the nearer one
+    /// counts. `None` if neither faces the other core.
     // Inlined into its callers: otherwise touches would pass through memory.
     #[inline(always)]
     fn nearest_towards(&self, side: f64) -> Option<Touch> {
         let side_b = if self.cosine >= 0.0 { side } else { -side };
-        match (self.end_of_a(side, true), self.end_of_b(side_b)) {
+        match (self.facing_end_of_a(side), self.facing_end_of_b(side_b)) {
             (Some(a), Some(b)) => {
                 let is_b_nearer = b.separation.norm_squared() < a.separation.norm_squared();
                 Some(if is_b_nearer { b } else { a })
@@ -172,13 +182,13 @@ impl<'a> Pair<'a> {
     fn squared_distance_towards(&self, side: f64) -> f64 {
         let square = |touch: Touch| touch.separation.norm_squared();
         let side_b = if self.cosine >= 0.0 { side } else { -side };
-        let square_a = self.end_of_a(side, true).map_or(f64::INFINITY, square);
-        let square_b = self.end_of_b(side_b).map_or(f64::INFINITY, square);
+        let square_a = self.facing_end_of_a(side).map_or(f64::INFINITY, square);
+        let square_b = self.facing_end_of_b(side_b).map_or(f64::INFINITY, square);
         smaller(square_a, square_b)
     }
 
-    /// Whether the cores cross, or are too near for a normal. `squares` are the squared distances of the cores at both
-    /// groups of ends.
+    /// Whether the cores cross, or are too near for a normal. `squares` are the squared distances of the cores at the stern
+    /// and at the bow of hull a.
     #[inline]
     fn are_crossed(&self, squares: [f64; 2]) -> bool {
         let lengths = self.hull_a.half_length + self.hull_b.half_length;
@@ -233,7 +243,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut visit: impl FnM
     }
 }
 
-/// The gap of the contact at `feature` of the first hull, whatever its size.
+/// The gap of the contact at `feature` of the first hull, however wide it is.
 #[inline]
 pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let ((a, hull_a), (b, hull_b)) = (first, second);
@@ -241,26 +251,25 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     let Some(side) = feature.side() else {
         return crossed_gap(a, hull_a, b, hull_b);
     };
-    // If no end of the group faces the other hull any more, use the distance of the first hull's end.
+    // If neither hull's end on this side faces the other hull any more, the distance of the first hull's end counts.
     let touch = pair
         .nearest_towards(side)
-        .or_else(|| pair.end_of_a(side, false));
-    touch
-        .and_then(|touch| pair.gap(&touch))
+        .unwrap_or_else(|| pair.end_of_a(side));
+    pair.gap(&touch)
         .unwrap_or_else(|| crossed_gap(a, hull_a, b, hull_b))
 }
 
 /// One of the two touches of two hulls: its position and its gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EndTouch {
-    /// The gap in cm; infinite if no end of the group faces the other hull.
+    /// The gap in cm; infinite if the touch is missing.
     pub(crate) gap: f64,
     /// The coordinates along both cores, as in [`Gap::along`] and [`Gap::along_j`].
     pub(crate) along: [f64; 2],
 }
 
 impl EndTouch {
-    /// No end of the group faces the other hull.
+    /// A missing touch: no end on this side of the first hull faces the other hull.
     pub(crate) const MISSING: Self = Self {
         gap: f64::INFINITY,
         along: [0.0; 2],
@@ -276,7 +285,7 @@ impl From<&Gap> for EndTouch {
     }
 }
 
-/// The touches of the two groups of ends, at the stern and at the bow of the first hull. Crossed cores count for both.
+/// The touches at the stern and at the bow of the first hull. If the cores cross, both are at their crossing.
 #[inline]
 pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     let ((a, hull_a), (b, hull_b)) = (first, second);
@@ -287,13 +296,13 @@ pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     if pair.are_crossed(squares) {
         return [EndTouch::from(&crossed_gap(a, hull_a, b, hull_b)); 2];
     }
-    [0, 1].map(|group| EndTouch {
-        gap: squares[group].sqrt() - (hull_a.radius + hull_b.radius),
-        along: touches[group].map_or([0.0; 2], |touch| [touch.along_a, touch.along_b]),
+    [0, 1].map(|end| EndTouch {
+        gap: squares[end].sqrt() - (hull_a.radius + hull_b.radius),
+        along: touches[end].map_or([0.0; 2], |touch| [touch.along_a, touch.along_b]),
     })
 }
 
-/// The smaller gap of the two groups of ends in cm, infinite if no end faces the other hull.
+/// The smaller of the gaps at the stern and at the bow of the first hull, in cm; infinite if no end faces the other hull.
 #[inline]
 pub(crate) fn smallest_gap(first: Placed, second: Placed) -> f64 {
     let ((a, hull_a), (b, hull_b)) = (first, second);
@@ -337,9 +346,13 @@ fn crossed_gap(a: &HullPose, hull_a: Hull, b: &HullPose, hull_b: Hull) -> Gap {
         let gap = gap_between(-depth.abs(), across_a * sign(depth), p, q);
         (depth.abs(), gap)
     };
-    let other_ends = [end_of_b(-1.0), end_of_a(1.0), end_of_b(1.0)].into_iter();
-    let (_, gap) = other_ends.fold(end_of_a(-1.0), |a, b| if b.0 < a.0 { b } else { a });
-    gap
+    let (mut least_depth, mut shallowest) = end_of_a(-1.0);
+    for (depth, gap) in [end_of_b(-1.0), end_of_a(1.0), end_of_b(1.0)] {
+        if depth < least_depth {
+            (least_depth, shallowest) = (depth, gap);
+        }
+    }
+    shallowest
 }
 
 fn sign(value: f64) -> f64 {

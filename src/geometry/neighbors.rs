@@ -66,7 +66,7 @@ impl NeighborList {
     /// Whether every center lies within `distance` of its reference.
     fn have_moved_at_most(&self, distance: f64, centers: impl Iterator<Item = Vec2>) -> bool {
         let pairs = centers.zip(&self.reference);
-        // No early exit, since nearly always all centers do; this saves a branch for each center.
+        // No early exit: nearly always all centers lie within the distance, and a branch for each center is saved.
         pairs.fold(true, |all, (now, then)| {
             all & ((now - then).norm_squared() <= distance * distance)
         })
@@ -137,6 +137,7 @@ impl NeighborList {
                     self.partners.push(other);
                 }
             });
+            // Partners are indices in `order` until they are sorted; then they become boats.
             let group = &mut self.partners[start..];
             group.sort_unstable();
             group
@@ -182,6 +183,7 @@ struct Grid {
 }
 
 impl Grid {
+    /// Sorts boats into cells. Within a cell they keep their order by polar angle, which `order` gives.
     fn sort(&mut self, centers: &[Vec2], order: &[u32], cutoff: f64) {
         let (mut low, mut high) = (centers[0], centers[0]);
         for center in centers {
@@ -218,6 +220,7 @@ impl Grid {
         }
     }
 
+    /// Column and row of the cell that holds a center.
     fn cell_of(&self, center: Vec2) -> (usize, usize) {
         let scaled = (center - self.low) / self.cell;
         (
@@ -226,6 +229,7 @@ impl Grid {
         )
     }
 
+    /// Calls `visit` with the index in the angular order of each boat in a center's cell and in the cells around it.
     fn for_each_near(&self, center: Vec2, mut visit: impl FnMut(u32)) {
         let (column, row) = self.cell_of(center);
         for near_row in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {

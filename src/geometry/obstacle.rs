@@ -24,7 +24,7 @@ pub enum Obstacle {
     },
 }
 
-/// Ends of walls nearer than this, in cm, are one point.
+/// Two ends of walls nearer to each other than this, in cm, are one point.
 const JOINED: f64 = 1e-6;
 /// Cosine below which a normal counts as perpendicular to a wall.
 const UPRIGHT: f64 = 1e-9;
@@ -149,7 +149,7 @@ impl Obstacle {
         }
     }
 
-    /// The gap of the contact at `feature` of the boat's hull, whatever its size.
+    /// The gap of the contact at `feature` of the boat's hull, however wide it is.
     pub fn gap(&self, feature: Feature, boat: &HullPose, hull: Hull) -> Gap {
         match self {
             Self::Disc { center, radius } => {
@@ -180,7 +180,7 @@ struct WallEnd {
     side: usize,
 }
 
-/// Links walls that share an end. If several walls do, a wall is linked to the one that continues it most nearly
+/// Links walls that share an end. If more than two walls share it, each is linked to the one that continues it most nearly
 /// straight.
 fn join(obstacles: &mut [Obstacle]) {
     let mut ends: Vec<WallEnd> = Vec::new();
@@ -219,8 +219,8 @@ fn wall_hull(half_length: f64) -> Hull {
     }
 }
 
-/// The gap to a straight wall, from that to a hull of its shape. The wall has no lever arm, since it does not turn. If its
-/// end touches the flank, turning the boat either way brings the flank into it, as at a disc.
+/// The gap to a straight wall. `gap` is that to a hull of the wall's shape. The wall has no lever arm, since it does not
+/// turn. If the wall's end touches the boat's flank, turning the boat either way brings the flank into the wall.
 fn wall_gap(feature: Feature, gap: Gap, hull: Hull) -> Gap {
     let is_flank = feature != Feature::Crossed && gap.along.abs() < hull.half_length;
     Gap {
