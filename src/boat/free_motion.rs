@@ -65,7 +65,7 @@ impl FreeMotion {
     /// The fraction of a spin that remains after damping at `rate` for `dt`; 0 if damping would reverse the spin. A
     /// reversed spin would be reversed again in the next step, and could grow without bound.
     #[inline]
-    fn damped(rate: f64, dt: f64) -> f64 {
+    fn remaining_fraction(rate: f64, dt: f64) -> f64 {
         (1.0 - rate * dt).max(0.0)
     }
 
@@ -82,7 +82,8 @@ impl FreeMotion {
         let along = axis.dot(&(velocity.linear - drive.water));
         let spin = velocity.angular;
         let rate = self.c1 * spin * spin + self.c3 * along;
-        let driven = spin * Self::damped(rate, dt) + self.c2 * drive.rudder * along * dt;
+        let driven =
+            spin * Self::remaining_fraction(rate, dt) + self.c2 * drive.rudder * along * dt;
         let relaxed_fraction = (self.c0 * dt).min(1.0);
         let preferred = axis * drive.preferred_speed + drive.water;
         Velocity {
@@ -111,8 +112,8 @@ impl FreeMotion {
         (axis * drive.preferred_speed + drive.water - velocity) * relaxed_fraction
     }
 
-    /// The spin after a step, limited for a backing boat. Eq. (9) never drives a spin past its equilibrium, so a step that
-    /// overshoots is limited to a bound of the equilibria.
+    /// Limits the spin of a backing boat after a step from `spin` to `driven`. Eq. (9) never drives a spin past its
+    /// equilibrium, so a step that overshoots is limited to a bound of the equilibria.
     #[inline]
     fn limited(&self, driven: f64, spin: f64, along: f64, rudder: f64) -> f64 {
         let overshoots =
@@ -163,7 +164,8 @@ impl FreeMotion {
         };
         let rate = self.c1 * spin * spin + self.c3 * along;
         let turn = self.c2 * drive.rudder * along * dt;
-        let driven = spin * Self::damped(rate, dt * angular_mobility) + turn * angular_mobility;
+        let driven =
+            spin * Self::remaining_fraction(rate, dt * angular_mobility) + turn * angular_mobility;
         let limited = self.limited(driven, spin, along, drive.rudder);
         FreeVelocity {
             velocity: Velocity {

@@ -108,7 +108,7 @@ impl DampedLaw {
     /// Checks the gains.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for gains that are not finite.
+    /// [`FlockError::Parameter`] for a gain that is not finite or exceeds 1e9 in magnitude.
     pub fn check(&self) -> Result<()> {
         self.gains().into_iter().try_for_each(|(name, value)| {
             FlockError::unless(value.abs() <= 1e9, name, value, "a finite number")

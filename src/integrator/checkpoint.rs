@@ -48,12 +48,10 @@ impl Integrator {
             .warm_start
             .extend_from_slice(self.contacts.warm_start_impulses());
         let neighbors = &self.contacts.detector.neighbors;
-        checkpoint.neighbor_reference.0.clear();
-        checkpoint
-            .neighbor_reference
-            .0
-            .extend_from_slice(neighbors.reference());
-        checkpoint.neighbor_reference.1 = neighbors.cutoff();
+        let (reference, cutoff) = &mut checkpoint.neighbor_reference;
+        reference.clear();
+        reference.extend_from_slice(neighbors.reference());
+        *cutoff = neighbors.cutoff();
         checkpoint.water_cm_s = self.water_cm_s;
         checkpoint.step_length_s = self.step_length_s;
         checkpoint.statistics = self.statistics;

@@ -19,7 +19,8 @@ impl Integrator {
     /// # Errors
     /// [`NotTaken`].
     pub(crate) fn step(&mut self, substep: &Substep) -> Result<(), NotTaken> {
-        if substep.start.next_multiple_of(SECOND) < substep.start + substep.length {
+        let next_second = substep.start.next_multiple_of(SECOND);
+        if next_second < substep.start + substep.length {
             self.bring_to_rest();
         }
         match self.parameters.scheme {

@@ -7,24 +7,34 @@ use crate::boat::{Drive, misalignment, steering_law};
 use crate::geometry::{Vec2, turned_left};
 
 impl Integrator {
-    /// Preferred speed in a phase, in cm/s, without the spread between boats.
-    fn phase_speed(&self, is_leader: bool, phase: Phase) -> f64 {
-        let p = &self.parameters;
-        let speed = match phase {
-            Phase::Forward => p.speed_cm_s,
-            Phase::Backward if !is_leader || p.leaders_reverse => -p.reverse_speed_cm_s,
-            Phase::Backward | Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
-        };
-        if is_leader {
-            speed * p.leader_speed_factor
-        } else {
-            speed
+    /// Preferred speed of normal boats in a phase, in cm/s, without the spread between boats.
+    fn normal_speed(&self, phase: Phase) -> f64 {
+        match phase {
+            Phase::Forward => self.parameters.speed_cm_s,
+            Phase::Backward => -self.parameters.reverse_speed_cm_s,
+            Phase::DriftAfterForward | Phase::DriftAfterBackward => 0.0,
         }
+    }
+
+    /// Preferred speed of leaders in a phase, in cm/s, without the spread between boats.
+    fn leader_speed(&self, phase: Phase) -> f64 {
+        let p = &self.parameters;
+        let is_stopped = phase == Phase::Backward && !p.leaders_reverse;
+        let speed = if is_stopped {
+            0.0
+        } else {
+            self.normal_speed(phase)
+        };
+        speed * p.leader_speed_factor
     }
 
     /// Preferred speed of a boat in a phase, in cm/s.
     pub(super) fn preferred_speed(&self, boat: usize, phase: Phase) -> f64 {
-        let speed = self.phase_speed(boat < self.parameters.n_leaders, phase);
+        let speed = if boat < self.parameters.n_leaders {
+            self.leader_speed(phase)
+        } else {
+            self.normal_speed(phase)
+        };
         self.speed_factors
             .get(boat)
             .map_or(speed, |factor| speed * factor)
@@ -55,7 +65,7 @@ impl Integrator {
     /// after the time of the present velocities.
     pub(super) fn fill_drives(&mut self, substep: &Substep, ahead_s: f64) {
         let normal = Drive {
-            preferred_speed: self.phase_speed(false, substep.phase),
+            preferred_speed: self.normal_speed(substep.phase),
             rudder: self.parameters.turning_bias,
             water: Vec2::zeros(),
             noise: 0.0,
@@ -67,7 +77,7 @@ impl Integrator {
                 .map(|&noise| Drive { noise, ..normal }),
         );
         for leader in 0..self.parameters.n_leaders {
-            self.drives[leader].preferred_speed = self.phase_speed(true, substep.phase);
+            self.drives[leader].preferred_speed = self.leader_speed(substep.phase);
             self.drives[leader].rudder = self.rudder(leader, substep.steering);
         }
         for (drive, factor) in self.drives.iter_mut().zip(&self.speed_factors) {
@@ -77,8 +87,8 @@ impl Integrator {
     }
 
     /// Sets the water's velocity in `drives` to that `ahead_s` after the time of the present velocities. `velocity` gives
-    /// the velocities of the boats that drive the water. It moves counter-clockwise at −κ·(mean tangential velocity of the
-    /// boats), capped (Section 4.5). Water with inertia approaches that speed exponentially.
+    /// the velocities of the boats that drive the water. The water moves counter-clockwise at −κ·(mean tangential
+    /// velocity of the boats), capped (Section 4.5). Water with inertia approaches that speed exponentially.
     pub(super) fn fill_water(&mut self, ahead_s: f64, velocity: impl Fn(&Self, usize) -> Vec2) {
         if self.parameters.current_gain == 0.0 && self.water_cm_s == 0.0 {
             return;

@@ -50,6 +50,7 @@ pub(super) fn step(flock: &mut Integrator, substep: &Substep) -> Result<(), NotT
 /// Replaces preferred speed and rudder by their means over the kick if they changed since the last substep.
 fn blend_drives(flock: &mut Integrator, substep: &Substep) {
     let last_phase = Phase::ALL[flock.last.phase];
+    // Moved out of `flock` while its drives change, and back below.
     let last_rudder = std::mem::take(&mut flock.last.rudder);
     let same_steering = match (substep.steering, &last_rudder) {
         (Steering::Law, None) => true,
@@ -60,13 +61,11 @@ fn blend_drives(flock: &mut Integrator, substep: &Substep) {
         let steering = last_rudder.as_deref().map_or(Steering::Law, Steering::Held);
         let last_share = flock.last.length as f64 / (flock.last.length + substep.length) as f64;
         for boat in 0..flock.drives.len() {
-            let (speed, rudder) = (
-                flock.preferred_speed(boat, last_phase),
-                flock.rudder(boat, steering),
-            );
+            let earlier_speed = flock.preferred_speed(boat, last_phase);
+            let earlier_rudder = flock.rudder(boat, steering);
             let drive = &mut flock.drives[boat];
-            drive.preferred_speed += last_share * (speed - drive.preferred_speed);
-            drive.rudder += last_share * (rudder - drive.rudder);
+            drive.preferred_speed += last_share * (earlier_speed - drive.preferred_speed);
+            drive.rudder += last_share * (earlier_rudder - drive.rudder);
         }
     }
     flock.last.rudder = last_rudder;

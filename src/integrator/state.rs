@@ -120,7 +120,7 @@ impl Integrator {
         (0..self.poses.len()).find(left)
     }
 
-    /// Whether every pose and velocity is one that a flock may hold.
+    /// Whether every component of poses and velocities is finite and within the range that a flock may hold.
     pub(crate) fn is_in_range(&self) -> bool {
         self.poses.iter().all(Pose::is_in_range)
             && self.velocities.iter().all(Velocity::is_in_range)
