@@ -19,7 +19,7 @@ const LARGEST_STEP: f64 = 0.2;
 /// Number of passes after which a substep accepts the remaining overlaps.
 const MOST_PASSES: u32 = 8;
 
-/// Called now and then during long work, which ends if the answer is false.
+/// Called now and then during long work. The work ends if it returns false.
 pub type KeepGoing<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Projects poses to open gaps, with its scratch space.
@@ -58,7 +58,7 @@ impl Depenetration {
     }
 
     /// Displaces poses until no overlap exceeds `allowed` (cm, positive), or for [`MOST_PASSES`]. At least one overlap
-    /// exceeds `allowed` at first. Then fills `contacts` with those nearer than `margin`.
+    /// exceeds `allowed` at first. Then fills `contacts` with the contacts whose gaps are below `margin` (cm).
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,

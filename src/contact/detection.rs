@@ -91,6 +91,7 @@ impl ContactDetector {
         contacts: &mut Vec<Contact>,
     ) -> f64 {
         let hull = self.hull;
+        // `reaches` first holds speeds in cm/s; the loop below turns them into reaches in cm.
         self.reaches.clear();
         self.reaches
             .extend(velocities.iter().map(|velocity| hull.speed(velocity)));
@@ -197,8 +198,8 @@ impl ContactDetector {
     }
 
     /// Whether boats move too far for one substep of `dt` at these velocities: they reach too many others, or might
-    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot pass through. After it
-    /// has, no gap shows from which side it came.
+    /// pass through a wall without thickness. A boat that moves by at most half its radius cannot pass through. After a boat
+    /// has passed through, no gap shows from which side it came.
     pub(crate) fn moves_too_far(&self, velocities: &[Velocity], dt: f64) -> bool {
         let farthest = 0.5 * self.hull.radius;
         self.is_crowded || self.obstacles.has_walls && self.fastest(velocities) * dt > farthest
@@ -236,7 +237,7 @@ impl ContactDetector {
     }
 
     /// Squared distances of a hull's center from the pool's center, in cm², at which the hull is farther than `margin`
-    /// from both walls. The range is empty if there are none.
+    /// from both walls. The range is empty if no center is so far from both.
     fn open_water(&self, margin: f64) -> RangeInclusive<f64> {
         let square = |distance: f64| distance.max(0.0) * distance;
         let reach = self.hull.reach() + margin;

@@ -39,7 +39,8 @@ impl Islands {
             *contact_island = *island;
             self.starts[*island as usize + 1] += 1;
         }
-        // Then it holds the index of the island's first member, and moves to the island's end as members are added.
+        // Then `starts[island + 1]` holds the index of the island's first member. It moves to the island's end as members are
+        // added.
         let mut first = 0;
         for start in &mut self.starts[1..] {
             first += std::mem::replace(start, first);
@@ -84,7 +85,7 @@ impl Islands {
 /// Joins the sets of two boats. The root of a set is its first boat.
 #[inline]
 pub(crate) fn join(parent: &mut [u32], a: u32, b: u32) {
-    // Two boats may touch twice, for example.
+    // Two boats that touch twice, for example, are already joined.
     if parent[a as usize] == parent[b as usize] {
         return;
     }

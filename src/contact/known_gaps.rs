@@ -32,8 +32,8 @@ impl ContactDetector {
         }
     }
 
-    /// The two touches between a contact's boat and its partner at other poses: first that of the stern's group of ends,
-    /// then that of the bow's. The partner is a boat or an obstacle. Crossed cores count for both.
+    /// The two touches between a contact's boat and its partner at other poses: first that at the boat's stern, then that at
+    /// its bow. The partner is a boat or an obstacle. If the cores cross, both are at their crossing.
     #[inline]
     pub(super) fn touches_at(&self, contact: &Contact, boats: &[HullPose]) -> [EndTouch; 2] {
         let boat = &boats[contact.boat as usize];

@@ -13,14 +13,14 @@ use super::velocity_bias::VelocityBias;
 /// `wide` and `narrow`, free or jammed, at dt = 0.01 to 0.05 s, it exceeded 0.01 in 6 of 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
-/// A quick check whether contacts might drive a boat. An impulse λ at a contact whose bias b makes it open, at the
-/// speed −b, adds at most the energy −b·λ.
+/// A quick check whether contacts might add energy to boats. An impulse λ at a contact whose bias b makes it open, at the
+/// speed −b, adds at most the energy −b·λ. The speed at which an overlap has to open is not counted.
 pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
     let adds_much = |k: usize| {
         let contact = &problem.contacts[k];
-        let added_speed = bias.for_gap(&contact.gap).min(0.0) - problem.biases[k];
+        let excess_speed = bias.for_gap(&contact.gap).min(0.0) - problem.biases[k];
         let energy = problem.energy(contact.boat as usize, problem.free);
-        added_speed > 0.0 && added_speed * impulses[k] > ALLOWED * energy
+        excess_speed > 0.0 && excess_speed * impulses[k] > ALLOWED * energy
     };
     (0..impulses.len()).any(|k| impulses[k] > 0.0 && adds_much(k))
 }
@@ -40,7 +40,7 @@ fn turns_back(island: &[u32], problem: &ContactProblem, impulses: &[f64]) -> boo
     pairs.any(|(a, b)| a.boat == b.boat && a.gap.normal.dot(&b.gap.normal) < 0.0)
 }
 
-/// Finds the islands whose contacts drive boats.
+/// Finds the islands whose contacts add energy to boats.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Passivity {
     /// Whether each boat's energy is already counted in its island's.
@@ -48,7 +48,8 @@ pub(super) struct Passivity {
 }
 
 impl Passivity {
-    /// Indices of the contacts of the islands in which contacts drive boats, or reverse a boat's turn between obstacles.
+    /// Indices of all contacts of each island whose contacts add energy to boats, or reverse a boat's turn between
+    /// obstacles.
     #[cold]
     pub(super) fn driven(
         &mut self,

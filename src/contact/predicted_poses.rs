@@ -67,8 +67,8 @@ impl PredictedPoses {
         self.is_current = true;
     }
 
-    /// Whether a boat moves beyond its reach, and bodies then overlap by more than the tolerance and than any of `contacts`
-    /// does at the substep's start.
+    /// Whether a boat moves beyond its reach, and bodies overlap at the predicted poses. Only overlaps count that exceed
+    /// the tolerance, and the deepest overlap of `contacts` at the substep's start.
     pub(super) fn overlaps_undetected(
         &self,
         detector: &mut ContactDetector,

@@ -80,10 +80,10 @@ impl ContactResolver {
     /// A resolver for checked parameters.
     pub(crate) fn new(parameters: &FlockParameters) -> Self {
         let penetration_slop = PENETRATION_SLOP * parameters.boat_radius_cm;
+        let solves_again = parameters.tolerance_cm < f64::INFINITY;
         Self {
             detector: ContactDetector::new(parameters),
-            solver: ContactSolver::new(parameters.solver)
-                .keeping_factors(parameters.tolerance_cm < f64::INFINITY),
+            solver: ContactSolver::new(parameters.solver).keeping_factors(solves_again),
             contacts: Vec::new(),
             skipped: SkippedContacts::default(),
             biases: Vec::new(),
@@ -212,7 +212,7 @@ impl ContactResolver {
     }
 
     /// Moves the boats to the end of the solved substep if their poses there are already predicted; returns whether they
-    /// are.
+    /// were.
     pub(crate) fn take_predicted_poses(
         &mut self,
         poses: &mut Vec<Pose>,

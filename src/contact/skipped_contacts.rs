@@ -26,8 +26,8 @@ impl SkippedContacts {
         self.contacts.is_empty()
     }
 
-    /// Moves the contacts that boats with these velocities do not close within `dt` from `contacts` to the skipped
-    /// ones. Both touches of two bodies are kept or skipped together, since closing one moves the other.
+    /// Moves contacts from `contacts` to the skipped ones if boats with these velocities do not close them within `dt`.
+    /// Both touches of two bodies are kept or skipped together, since closing one moves the other.
     pub(super) fn skip_open(
         &mut self,
         detector: &ContactDetector,
@@ -126,6 +126,7 @@ fn may_close_touch(
         None => (first.linear, first.angular.abs(), push_cm),
     };
     let swing = hull.half_length * spin * dt;
+    // The outer wall curves towards a boat that moves along it.
     let curve = if contact.partner == Partner::OuterWall {
         let displacement = linear.norm() * dt + swing;
         0.5 * displacement * displacement / (detector.pool.outer_radius_cm - hull.radius - gap.gap)

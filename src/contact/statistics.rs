@@ -39,7 +39,7 @@ pub struct Statistics {
     /// Sum of the absolute changes of angular momentum about the pool's center when deep overlaps were undone, in
     /// cm²/s. No displacement conserves it for hulls that slide past each other while they overlap.
     pub displaced_angular_momentum_cm2_s: f64,
-    /// Largest error in cm that an advance has estimated; 0 if none was asked for.
+    /// Largest error in cm that an advance has estimated; 0 if no estimate was asked for.
     pub worst_error_cm: f64,
 }
 

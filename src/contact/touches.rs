@@ -1,8 +1,8 @@
 //! Identity of touches: two bodies may touch at two points, and a contact describes one of them.
 //!
-//! A touch is identified by its position along both cores. Its group of ends identifies it at one pose only: without
-//! moving, a touch passes to the other group when an end slides past the other hull's end, or when two hulls turn past
-//! a right angle.
+//! A touch is identified by its position along both cores. That it is at the stern or at the bow identifies it at one pose
+//! only: without moving, a touch passes from one to the other when an end slides past the other hull's end, or when two
+//! hulls turn past a right angle.
 
 use super::Contact;
 use crate::geometry::{EndTouch, Gap};
@@ -40,9 +40,9 @@ pub(super) fn twin(contacts: &[Contact], k: usize) -> Option<usize> {
     first_of_two(contacts, k).map(|first| 2 * first + 1 - k)
 }
 
-/// Whether the touches of two bodies at other poses belong to their two contacts in reverse order. The order with the
-/// smaller change of positions and gaps counts. A missing touch has no position, so the other one goes to the nearer
-/// contact.
+/// Whether the touches of two bodies at other poses belong to their two contacts, the first two of `contacts`, in reverse
+/// order. The order with the smaller change of positions and gaps counts. A missing touch has no position, so the other
+/// one goes to the nearer contact.
 #[inline]
 pub(super) fn are_swapped(touches: &[EndTouch; 2], contacts: &[Contact]) -> bool {
     let change = |touch: usize, contact: usize| {

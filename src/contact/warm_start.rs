@@ -78,10 +78,11 @@ impl WarmStartCache {
         self.entries.extend(entries);
     }
 
-    /// The impulse that each contact carried, or 0. Each impulse goes to the nearest contact of the same two bodies.
+    /// Fills `impulses` with the impulse that each contact carried, or 0. Each impulse goes to the nearest
+    /// contact of the same two bodies.
     ///
-    /// Contacts mostly come in the order of the last substep, with a few gone and a few new. So each lookup starts
-    /// after the entries of the contact before.
+    /// Contacts mostly come in the order of the last substep, with a few gone and a few new. So the search for a
+    /// contact starts after the entries of the previous contact.
     pub(super) fn lookup(&mut self, contacts: &[Contact], impulses: &mut Vec<f64>) {
         impulses.clear();
         impulses.resize(contacts.len(), 0.0);
@@ -90,13 +91,13 @@ impl WarmStartCache {
         }
         let (mut next_entry, mut is_indexed, mut k) = (0, false, 0);
         while let Some(contact) = contacts.get(k) {
-            let last = self.entries.len().min(next_entry + AHEAD);
+            let end = self.entries.len().min(next_entry + AHEAD);
             let mut start = next_entry;
-            while start < last && !self.entries[start].has_same_bodies(contact) {
+            while start < end && !self.entries[start].has_same_bodies(contact) {
                 start += 1;
             }
-            let entries = if start < last {
-                let count = self.count_from(start, contact);
+            let entries = if start < end {
+                let count = self.count_entries(start, contact);
                 next_entry = start + count;
                 &self.entries[start..next_entry]
             } else {
@@ -117,9 +118,9 @@ impl WarmStartCache {
         }
     }
 
-    /// The number of entries with the same two bodies as a contact, one or two, of which `start` is the first.
+    /// Number of entries, one or two, with the same two bodies as `contact`. The first of them is at index `start`.
     #[inline]
-    fn count_from(&self, start: usize, contact: &Contact) -> usize {
+    fn count_entries(&self, start: usize, contact: &Contact) -> usize {
         let second = self.entries.get(start + 1);
         1 + usize::from(second.is_some_and(|entry| entry.has_same_bodies(contact)))
     }
@@ -156,7 +157,7 @@ impl WarmStartCache {
             index = self.previous[index as usize];
         }
         first.map_or(&[], |first| {
-            &self.entries[first..first + self.count_from(first, contact)]
+            &self.entries[first..first + self.count_entries(first, contact)]
         })
     }
 }

@@ -99,8 +99,9 @@ fn closing_curve(
     }
 }
 
-/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities; `None` at a straight wall, where a
-/// touch may come from the wall beside it. Meaningless for crossed cores, whose overlap is too deep for it to count.
+/// Second derivative of a contact's gap in cm/s² while its boats keep these velocities; `None` at a straight wall, since
+/// the touch may have come from an adjacent wall. Meaningless for crossed cores, but then the overlap is so deep that the
+/// value is not used.
 // `inline` alone does not suffice, since this is also called from a cold function.
 #[inline(always)]
 fn second_derivative(
@@ -111,7 +112,8 @@ fn second_derivative(
 ) -> Option<f64> {
     let moving = |boat: usize| (&boats[boat], &velocities[boat]);
     let (gap, hull, pool) = (&contact.gap, detector.hull(), detector.pool);
-    let from_center = match contact.partner {
+    // Negative at the outer wall, which curves around the hull.
+    let partner_radius = match contact.partner {
         Partner::Boat(_) => hull.radius,
         Partner::OuterWall => -pool.outer_radius_cm,
         Partner::InnerWall => pool.inner_radius_cm,
@@ -120,7 +122,7 @@ fn second_derivative(
             Obstacle::Wall { .. } => return None,
         },
     };
-    let distance = gap.gap + hull.radius + from_center;
+    let distance = gap.gap + hull.radius + partner_radius;
     let (first, second) = (moving(contact.boat as usize), contact.second().map(moving));
     Some(gap.second_derivative(hull, distance, first, second))
 }

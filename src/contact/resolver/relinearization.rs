@@ -14,7 +14,8 @@ const MOST_PASSES: u32 = 20;
 pub(super) struct Relinearization {
     /// Deepest overlap in cm that a substep may leave; infinite: gaps are linearized once.
     pub(super) tolerance: f64,
-    /// Whether the first solve of the last substep left overlaps. Then that of the next substep probably does, too.
+    /// Whether the first solve of the last substep left overlaps. Then the first solve of the next
+    /// substep probably does, too.
     had_overlaps: bool,
     /// Islands that overlap at the substep's end.
     overlapping: Vec<u32>,
@@ -43,9 +44,9 @@ impl Relinearization {
 
 impl ContactResolver {
     /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance. Each pass evaluates gaps
-    /// at the poses to which the last solve moves the boats, and chooses biases for which these gaps open to zero. The
-    /// factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome of the
-    /// first solve.
+    /// at the poses to which the last solve moves the boats, and chooses biases with which these gaps would not end below
+    /// zero. The factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome
+    /// of the first solve.
     pub(super) fn relinearize(
         &mut self,
         motion: &Motion,
@@ -67,7 +68,7 @@ impl ContactResolver {
                 break;
             }
             passes += 1;
-            self.aim_at_end_gaps(&overlapping, dt);
+            self.correct_biases(&overlapping, dt);
             solution = self.solve(Some(&overlapping), motion, statistics);
             match solution {
                 Solution::Exhausted => break,
@@ -96,9 +97,9 @@ impl ContactResolver {
                 .closing_overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Computes biases for which the gaps of these islands open to zero at the substep's end. The other islands keep the
-    /// biases with which they were solved: the check for driven boats needs those.
-    fn aim_at_end_gaps(&mut self, islands: &[u32], dt: f64) {
+    /// Computes biases with which the gaps of these islands would not end the substep below zero. The other islands keep the
+    /// biases with which they were solved: the check for added energy needs those.
+    fn correct_biases(&mut self, islands: &[u32], dt: f64) {
         let all_islands = self.solver.islands();
         let contacts = islands
             .iter()
@@ -177,8 +178,8 @@ impl ContactResolver {
             if start_gap >= -self.penetration_slop && self.predicted.may_close(contacts, k) {
                 let end_gap = self.predicted.gap(detector, contacts, k, &mut twin_gaps);
                 let is_deep = start_gap < -self.relinearization.tolerance;
-                let overlap =
-                    select_unpredictable(is_deep, left_fraction * start_gap, 0.0) - end_gap;
+                let least_gap = select_unpredictable(is_deep, left_fraction * start_gap, 0.0);
+                let overlap = least_gap - end_gap;
                 if overlap > deepest {
                     deepest = overlap;
                 }

@@ -18,9 +18,9 @@ pub(crate) enum NotTaken {
 /// Reasons for which a substep may be shortened.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Divisibility {
-    /// Contacts would add energy to boats, or are too much work.
+    /// Whether it may be shortened if contacts would add energy to boats, or are too much work.
     pub if_driven: bool,
-    /// Overlaps remain at the substep's end.
+    /// Whether it may be shortened if overlaps remain at the substep's end.
     pub if_overlapping: bool,
 }
 
@@ -34,7 +34,7 @@ pub(super) enum Solution {
     /// Contacts overlap at the substep's end by more than the tolerance.
     Overlapping,
     /// Skipped contacts overlap at the substep's end by more than the tolerance.
-    Closing,
+    SkippedOverlapping,
     /// Contacts would add energy to boats. The biases have been changed so that the next solve adds none.
     Driven,
 }
@@ -89,7 +89,7 @@ impl ContactResolver {
         loop {
             match self.solve_and_check(motion, statistics) {
                 Solution::Solved => return Ok(false),
-                Solution::Closing => self.restore_skipped(statistics),
+                Solution::SkippedOverlapping => self.restore_skipped(statistics),
                 Solution::Exhausted | Solution::Driven if divisibility.if_driven => {
                     return Err(NotTaken::TooLong);
                 }
@@ -142,7 +142,7 @@ impl ContactResolver {
         let velocities = &self.solver.velocities;
         let skipped = &self.skipped;
         if !skipped.stay_open(predicted, detector, velocities, motion.dt, tolerance) {
-            return Solution::Closing;
+            return Solution::SkippedOverlapping;
         }
         if self.stop_driving(motion) {
             return Solution::Driven;
@@ -195,8 +195,8 @@ impl ContactResolver {
         if report.converged {
             return Solution::Solved;
         }
-        // The overlaps cannot all be undone within the substep. If none has to be, boats at rest satisfy every
-        // constraint, and impulses stay bounded.
+        // The overlaps cannot all be undone within the substep. Without negative biases none has to be: boats at rest then
+        // satisfy every constraint, and impulses stay bounded.
         biases.iter_mut().for_each(|bias| *bias = bias.max(0.0));
         let problem = motion.problem(contacts, biases);
         let is_solved = solver.solve(&problem).converged;

@@ -84,13 +84,13 @@ impl BlockPivoting {
         }
     }
 
-    /// Solves the islands `which`. Call [`Self::set_free`] first. In islands of one or two contacts, `velocities` must hold
+    /// Solves the listed islands. Call [`Self::set_free`] first. In islands of one or two contacts, `velocities` must hold
     /// the free velocities.
     pub(super) fn solve(
         &mut self,
         problem: &ContactProblem,
         islands: &Islands,
-        which: &[u32],
+        listed: &[u32],
         active: &mut [bool],
         impulses: &mut [f64],
         velocities: &mut [Velocity],
@@ -100,7 +100,7 @@ impl BlockPivoting {
         self.rights.extend(rates.map(|(rate, bias)| rate + bias));
         let mut report = SolveReport::default();
         self.remaining.clear();
-        for &number in which {
+        for &number in listed {
             let contacts = islands.contacts(number as usize);
             if self.solve_directly(problem, contacts, active, impulses, velocities, &mut report) {
                 report.iterations += 1;
@@ -123,10 +123,10 @@ impl BlockPivoting {
         velocities: &mut [Velocity],
         report: &mut SolveReport,
     ) -> bool {
-        if let &[alone] = contacts {
-            self.solve_alone(
+        if let &[single] = contacts {
+            self.solve_single(
                 problem,
-                alone as usize,
+                single as usize,
                 active,
                 impulses,
                 velocities,

@@ -68,7 +68,7 @@ impl ContactSolver {
             islands: Islands::default(),
             all_islands: Vec::new(),
             pivoting: BlockPivoting::new(1e-13),
-            // Unbounded until the first substep sets a budget.
+            // The budget of `pivoting` is unlimited until the first substep sets one. These values make `work` 0 until then.
             most_work: 0,
             reserved: 0,
             work_before: i64::MAX,
@@ -117,12 +117,12 @@ impl ContactSolver {
         (self.pivoting.budget, self.reserved) = (budget, 0);
     }
 
-    /// Leaves at most a sixteenth of the full budget for the next contacts and reserves the remainder, if easier contacts
-    /// can replace them. Otherwise makes the whole remaining budget available.
-    pub(crate) fn reserve_budget(&mut self, has_easier: bool) {
+    /// If the substep may still be shortened, leaves at most a sixteenth of the full budget for its contacts and reserves
+    /// the remainder. Otherwise makes the whole remaining budget available.
+    pub(crate) fn reserve_budget(&mut self, is_divisible: bool) {
         let budget = self.pivoting.budget + self.reserved;
         let spare = (budget - self.most_work / 16).max(0);
-        self.reserved = if has_easier { spare } else { 0 };
+        self.reserved = if is_divisible { spare } else { 0 };
         self.pivoting.budget = budget - self.reserved;
     }
 
@@ -151,13 +151,13 @@ impl ContactSolver {
         self.kind == Solver::BlockPivoting
     }
 
-    /// Solves the islands `which` again, with other biases. Kept factors are reused as far as the active set stays the
+    /// Solves the listed islands again, with other biases. Kept factors are reused as far as the active set stays the
     /// same. A solver without islands solves the whole problem.
-    pub(crate) fn solve_again(&mut self, problem: &ContactProblem, which: &[u32]) -> SolveReport {
+    pub(crate) fn solve_again(&mut self, problem: &ContactProblem, listed: &[u32]) -> SolveReport {
         if !self.has_islands() {
             return self.solve(problem);
         }
-        for &island in which {
+        for &island in listed {
             let contacts = self.islands.contacts(island as usize);
             if contacts.len() <= 2 {
                 problem.reset_velocities(contacts, &mut self.velocities);
@@ -166,13 +166,13 @@ impl ContactSolver {
         let report = self.pivoting.solve(
             problem,
             &self.islands,
-            which,
+            listed,
             &mut self.active,
             &mut self.impulses,
             &mut self.velocities,
         );
         SolveReport {
-            islands: which.len() as u64,
+            islands: listed.len() as u64,
             ..report
         }
     }

@@ -9,8 +9,8 @@ use crate::geometry::Velocity;
 const INDEPENDENT: f64 = 1e-6;
 
 impl BlockPivoting {
-    /// A single contact pushes just enough not to overlap.
-    pub(super) fn solve_alone(
+    /// Solves an island of a single contact, which pushes just enough not to overlap.
+    pub(super) fn solve_single(
         &self,
         problem: &ContactProblem,
         k: usize,
@@ -63,7 +63,7 @@ impl BlockPivoting {
             let slack = problem.slack(contacts[side], velocities);
             residual(diagonals[side] * pushes[side], slack, self.regularization)
         });
-        // Pivoting then solves the island; it has to start from free velocities again.
+        // Pivoting then solves the island, and overwrites these velocities.
         if !residuals.iter().all(|residual| *residual <= 0.5 * EXACT) {
             return false;
         }

@@ -20,7 +20,9 @@ impl IslandSolver {
         let mut pushes: Vec<_> = rows.iter().map(|row| row.impulse.max(0.0)).collect();
         self.keep_strongest(&mut pushes);
         let is_warm = rows.len() > SWEPT_ROWS && pushes.iter().any(|&impulse| impulse > 0.0);
-        if !(is_warm && self.descend_from(pushes, regularization, report)) {
+        let is_solved = is_warm && self.descend_from(pushes, regularization, report);
+        if !is_solved {
+            // If this fails, too, the residual shows it.
             self.descend_from(vec![0.0; self.rows.rows.len()], regularization, report);
         }
     }
@@ -38,17 +40,19 @@ impl IslandSolver {
         if is_warm {
             self.approach(&mut current, regularization, report);
         }
-        // If a contact would have to pull as soon as it enters, it depends on the active ones.
+        // A contact that would have to pull as soon as it enters depends on the active ones. It is refused until the impulses
+        // move.
         let mut is_refused = vec![false; count];
         let mut enters_alone = !is_warm;
-        for _ in 0..50 + 10 * count {
+        let most_rounds = 50 + 10 * count;
+        for _ in 0..most_rounds {
             let largest = current.iter().copied().fold(0.0, f64::max);
             if !largest.is_finite() || largest > CONTRADICTION || self.factor.budget < 0 {
                 return false;
             }
             let Some(entering) = self.most_violated(&is_refused) else {
-                let closes = self.worst <= EXACT || regularization > TOLERANCE;
-                return closes && !self.rows.rows.iter().any(Row::is_violated);
+                let is_exact = self.worst <= EXACT || regularization > TOLERANCE;
+                return is_exact && !self.rows.rows.iter().any(Row::is_violated);
             };
             if enters_alone {
                 self.set_active(entering, true);
@@ -107,6 +111,7 @@ impl IslandSolver {
         }
     }
 
+    /// The inactive row that is not refused and whose gap closes fastest.
     fn most_violated(&self, is_refused: &[bool]) -> Option<usize> {
         let rows = self.rows.rows.iter().zip(is_refused).enumerate();
         rows.filter(|(_, (row, refused))| !row.is_active && !**refused && row.slack < -TOLERANCE)
@@ -122,14 +127,14 @@ impl IslandSolver {
         regularization: f64,
         report: &mut SolveReport,
     ) -> f64 {
-        let mut first = None;
+        let mut first_step = None;
         loop {
             report.iterations += 1;
             report.factored_rows += self.solve_active(regularization);
             self.refine(regularization);
             self.charge_round();
             let step = self.feasible_step(current);
-            first.get_or_insert(step);
+            first_step.get_or_insert(step);
             for (k, current) in current.iter_mut().enumerate() {
                 let target = self.rows.rows[k].impulse;
                 *current = (*current + step * (target - *current)).max(0.0);
@@ -141,7 +146,7 @@ impl IslandSolver {
                 }
             }
             if step == 1.0 || self.factor.budget < 0 {
-                return first.unwrap_or(0.0);
+                return first_step.unwrap_or(0.0);
             }
         }
     }

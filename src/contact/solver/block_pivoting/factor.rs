@@ -35,8 +35,9 @@ struct Node {
     parent: u32,
     is_factored: bool,
     is_dirty: bool,
-    /// The previous active row on either body, times two, plus the side on which that row has the body.
-    before: [u32; 2],
+    /// For each of the row's two bodies, the previous active row on that body: twice that row's index, plus 1 if the body is
+    /// that row's second one. [`NONE`] if there is no such row.
+    previous: [u32; 2],
     inverse_pivot: f64,
 }
 
@@ -47,7 +48,7 @@ const EMPTY: Node = Node {
     parent: NONE,
     is_factored: false,
     is_dirty: false,
-    before: [NONE; 2],
+    previous: [NONE; 2],
     inverse_pivot: 0.0,
 };
 
@@ -55,7 +56,7 @@ const EMPTY: Node = Node {
 #[derive(Debug, Clone, Copy)]
 struct Chain {
     first: u32,
-    /// As in [`Node::before`].
+    /// As in [`Node::previous`].
     last: u32,
     /// Whether the last row has just entered the active set.
     has_entered: bool,
@@ -118,27 +119,27 @@ impl Factor {
         let mut computed = 0;
         for (k, row) in rows.rows.iter().enumerate() {
             if row.is_active {
-                if self.visit(&rows.rows, k, regularization) {
+                if self.update_row(&rows.rows, k, regularization) {
                     computed += 1;
                     if self.budget < 0 {
                         break;
                     }
                 }
             } else if self.nodes[k].is_factored {
-                self.release(k);
+                self.detach(k);
                 self.nodes[k] = EMPTY;
             }
         }
         computed
     }
 
-    /// Puts an active row into the chains of its bodies, and computes it if it has changed.
-    fn visit(&mut self, rows: &[Row], k: usize, regularization: f64) -> bool {
+    /// Puts an active row into the chains of its bodies, and computes it if it has changed. Returns whether it has.
+    fn update_row(&mut self, rows: &[Row], k: usize, regularization: f64) -> bool {
         let row = &rows[k];
         let [a, b] = row.bodies.map(|body| body as usize);
         let chains = [self.chains[a], self.chains[b]];
         let node = &mut self.nodes[k];
-        node.before = chains.map(|chain| chain.last);
+        node.previous = chains.map(|chain| chain.last);
         let has_entered = !node.is_factored;
         let is_dirty = has_entered | node.is_dirty | chains[0].has_entered | chains[1].has_entered;
         for (side, body) in [a, b].into_iter().enumerate() {
@@ -148,19 +149,20 @@ impl Factor {
                 has_entered,
             };
         }
+        // Walls do not move, so the rows on them do not affect each other.
         self.chains[WALLS as usize] = NO_ROW;
         self.active.push(k as u32);
         if is_dirty {
             if !has_entered {
-                self.release(k);
+                self.detach(k);
             }
             self.compute(rows, k, chains.map(|chain| chain.first), regularization);
         }
         is_dirty
     }
 
-    /// Empties a row, and marks its parent as changed.
-    fn release(&mut self, k: usize) {
+    /// Removes a row from the elimination tree: its children lose their parent, and its own parent counts as changed.
+    fn detach(&mut self, k: usize) {
         let node = self.nodes[k];
         for entry in row_of(&self.groups, &node).as_flattened() {
             if let Some(child) = self.nodes.get_mut(entry.column as usize)
@@ -252,11 +254,11 @@ impl Factor {
         let (nodes, work) = (&self.nodes[..rows.len()], &mut self.work[..rows.len()]);
         let row = &rows[k];
         for side in 0..2 {
-            let mut link = nodes[k].before[side];
+            let mut link = nodes[k].previous[side];
             while link != NONE {
                 let (index, other_side) = (link as usize / 2, link as usize % 2);
                 work[index] += row.coupling(side, &rows[index], other_side);
-                link = nodes[index].before[other_side];
+                link = nodes[index].previous[other_side];
             }
         }
     }

@@ -126,6 +126,7 @@ impl IslandSolver {
             if self.rows.rows.len() > SWEPT_ROWS {
                 self.charge_round();
             }
+            // Flipping makes these rows active.
             if self.are_dependent(regularization, |row| row.is_active != row.is_violated()) {
                 return self.descend(regularization, report);
             }
@@ -190,6 +191,7 @@ impl IslandSolver {
         self.factor.budget -= (rows + ENTRY * self.factor.len()) as i64;
     }
 
+    /// Activates the inactive rows with a wrong sign, and deactivates the active ones.
     fn flip_violated(&mut self) {
         for k in 0..self.rows.rows.len() {
             if self.rows.rows[k].is_violated() {

@@ -161,16 +161,16 @@ impl Rows {
         self.rows.resize(contacts.len(), Row::default());
         for (number, &k) in contacts.iter().enumerate() {
             let contact = &problem.contacts[k as usize];
-            let first = self.body(contact.boat, problem, indices);
-            // A contact with a wall has its boat twice, the second time with zeros.
+            let first_body = self.body(contact.boat, problem, indices);
+            // The walls have no inertia: their side takes the boat's, and a row of J of zeros.
             let (sign, second) = match contact.second() {
                 Some(second) => (-1.0, second),
                 None => (0.0, contact.boat as usize),
             };
-            let index = self.body(second as u32, problem, indices);
+            let second_body = self.body(second as u32, problem, indices);
             let row = &mut self.rows[number];
             row.contact = k;
-            row.bodies = [first, if sign == 0.0 { WALLS } else { index }];
+            row.bodies = [first_body, if sign == 0.0 { WALLS } else { second_body }];
             let (normal, inertia) = (contact.gap.normal, problem.inertia);
             let first_jacobian = [normal.x, normal.y, contact.gap.arm_i];
             let second_jacobian =
@@ -194,14 +194,15 @@ impl Rows {
         *index
     }
 
-    /// Guesses the active rows by sweeps of projected Gauss–Seidel from the present impulses: those that then push. Most
+    /// Guesses the active rows: those that push after sweeps of projected Gauss–Seidel from the present impulses. Most
     /// changes in a substep are local, so that two sweeps find them.
     pub(super) fn sweep(&mut self, sweeps: u32) {
         self.set_velocities();
         let Self { rows, bodies } = self;
         for _ in 0..sweeps {
             for row in rows.iter_mut() {
-                // Only the division can overlap with the row before. `f64::max` would take longer than the comparison.
+                // Only the division can run while the previous row is computed. `f64::max` would take longer than this
+                // comparison.
                 let inverse = 1.0 / row.diagonal;
                 let (full, least) = (-row.slack(bodies) * inverse, -row.impulse);
                 let change = if full > least { full } else { least };
