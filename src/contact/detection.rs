@@ -119,7 +119,7 @@ impl ContactDetector {
     }
 
     /// Whether boats move so far in this substep that skipping contacts saves work.
-    pub(super) fn is_far(&self) -> bool {
+    pub(super) fn does_skipping_save_work(&self) -> bool {
         self.farthest > LONG * self.hull.radius
     }
 

@@ -116,13 +116,14 @@ impl PredictedPoses {
         allowed: f64,
     ) -> bool {
         // Most contacts are too far apart to close, so the check for a twin comes second.
-        let mut last: Option<&Contact> = None;
+        let mut last_checked: Option<&Contact> = None;
         contacts.iter().any(|contact| {
             if contact.gap.gap > self.summed_displacement(contact) {
                 return false;
             }
-            let is_checked = last.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
-            last = Some(contact);
+            let is_checked =
+                last_checked.is_some_and(|twin| contact.has_ends() && twin.is_twin(contact));
+            last_checked = Some(contact);
             !is_checked && detector.overlaps_at(contact, &self.hulls, allowed)
         })
     }

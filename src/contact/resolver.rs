@@ -150,7 +150,7 @@ impl ContactResolver {
             self.is_deep = smallest_gap(&self.contacts) < -self.penetration_slop;
         }
         self.skipped.clear();
-        if self.relinearization.is_on() && self.detector.is_far() {
+        if self.relinearization.is_on() && self.detector.does_skipping_save_work() {
             self.skipped
                 .skip_open(&self.detector, velocities, dt, &mut self.contacts);
         }

@@ -23,22 +23,24 @@ impl Gap {
         second: Option<Moving>,
     ) -> f64 {
         let tangent = turned_left(self.normal);
-        // What one body adds to the speed along the tangent, and to the acceleration along the normal.
+        // One body's part of the speed along the tangent, and of the acceleration along the normal.
         let contribution = |(pose, velocity): Moving, along: f64| {
             let spin = velocity.angular;
             let offset = along * pose.axis.dot(&self.normal);
             let slide = tangent.dot(&velocity.linear) + spin * offset;
             (slide, -spin * spin * offset)
         };
+        let (_, first_velocity) = first;
         let (mut slide, mut acceleration) = contribution(first, self.along);
         let is_flank = |along: f64| along.abs() < hull.half_length;
-        let mut flank_spin = is_flank(self.along).then_some(first.1.angular);
+        let mut flank_spin = is_flank(self.along).then_some(first_velocity.angular);
         if let Some(second) = second {
+            let (_, second_velocity) = second;
             let (second_slide, second_acceleration) = contribution(second, self.along_j);
             slide -= second_slide;
             acceleration -= second_acceleration;
             if is_flank(self.along_j) {
-                flank_spin = Some(second.1.angular);
+                flank_spin = Some(second_velocity.angular);
             }
         }
         let normal_spin = flank_spin.unwrap_or(slide / distance);

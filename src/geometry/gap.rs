@@ -166,7 +166,7 @@ impl<'a> Pair<'a> {
     /// counts. `None` if neither faces the other core.
     // Inlined into its callers: otherwise touches would pass through memory.
     #[inline(always)]
-    fn nearest_towards(&self, side: f64) -> Option<Touch> {
+    fn touch_towards(&self, side: f64) -> Option<Touch> {
         let side_b = if self.cosine >= 0.0 { side } else { -side };
         match (self.facing_end_of_a(side), self.facing_end_of_b(side_b)) {
             (Some(a), Some(b)) => {
@@ -177,7 +177,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The squared distance of the cores at [`Self::nearest_towards`], infinite if neither end faces the other core.
+    /// The squared distance of the cores at [`Self::touch_towards`]; infinite if neither end faces the other core.
     #[inline]
     fn squared_distance_towards(&self, side: f64) -> f64 {
         let square = |touch: Touch| touch.separation.norm_squared();
@@ -196,12 +196,13 @@ impl<'a> Pair<'a> {
             || (self.offset.norm_squared() <= lengths * lengths && self.cores_cross())
     }
 
+    /// Whether the cores share a point.
     fn cores_cross(&self) -> bool {
         let (h_a, h_b) = (self.hull_a.half_length, self.hull_b.half_length);
         let sine = cross(self.a.axis, self.b.axis);
         let s = cross(self.offset, self.b.axis);
         let t = cross(self.offset, self.a.axis);
-        // The lines meet at a + s/sine·axis_a = b + t/sine·axis_b. The cores do if that point lies within both.
+        // The lines meet at a + s/sine·axis_a = b + t/sine·axis_b. The cores cross if both hold that point.
         sine != 0.0 && s.abs() <= h_a * sine.abs() && t.abs() <= h_b * sine.abs()
     }
 }
@@ -224,7 +225,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut visit: impl FnM
     }
     let farthest = hull_a.radius + hull_b.radius + margin;
     for (feature, side) in Feature::ENDS.into_iter().zip([-1.0, 1.0]) {
-        let Some(touch) = pair.nearest_towards(side) else {
+        let Some(touch) = pair.touch_towards(side) else {
             continue;
         };
         if touch.separation.norm_squared() >= farthest * farthest {
@@ -237,6 +238,7 @@ pub fn pair_gaps(first: Placed, second: Placed, margin: f64, mut visit: impl FnM
                 return;
             }
         }
+        // The stern and the bow of a disc are the same.
         if hull_a.half_length == 0.0 {
             return;
         }
@@ -253,7 +255,7 @@ pub fn pair_gap(feature: Feature, first: Placed, second: Placed) -> Gap {
     };
     // If neither hull's end on this side faces the other hull any more, the distance of the first hull's end counts.
     let touch = pair
-        .nearest_towards(side)
+        .touch_towards(side)
         .unwrap_or_else(|| pair.end_of_a(side));
     pair.gap(&touch)
         .unwrap_or_else(|| crossed_gap(a, hull_a, b, hull_b))
@@ -290,7 +292,7 @@ impl From<&Gap> for EndTouch {
 pub(crate) fn end_touches(first: Placed, second: Placed) -> [EndTouch; 2] {
     let ((a, hull_a), (b, hull_b)) = (first, second);
     let pair = Pair::new(first, second);
-    let touches = [-1.0, 1.0].map(|side| pair.nearest_towards(side));
+    let touches = [-1.0, 1.0].map(|side| pair.touch_towards(side));
     let squares =
         touches.map(|touch| touch.map_or(f64::INFINITY, |touch| touch.separation.norm_squared()));
     if pair.are_crossed(squares) {

@@ -150,7 +150,9 @@ impl NeighborList {
     fn sort_by_angle(&mut self) {
         let keys = self.reference.iter().map(polar_key);
         let mut keyed: Vec<(f64, u32)> = keys.zip(0..).collect();
-        keyed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        keyed.sort_unstable_by(|(key, boat), (other_key, other_boat)| {
+            key.total_cmp(other_key).then(boat.cmp(other_boat))
+        });
         self.order.clear();
         self.order.extend(keyed.iter().map(|&(_, boat)| boat));
     }

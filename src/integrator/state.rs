@@ -25,8 +25,11 @@ pub(crate) struct Integrator {
     pub(super) noise: Option<BrownianPaths>,
     /// Change of each boat's angular velocity by noise over the substep.
     pub(crate) noise_increments: Vec<f64>,
+    /// Drives of each boat in the substep.
     pub(crate) drives: Vec<Drive>,
+    /// Velocity of each boat after the substep without contacts.
     pub(crate) free: Vec<Velocity>,
+    /// Effective inertia of each boat in the substep.
     pub(crate) inertia: Vec<InverseInertia>,
     pub(crate) last: LastSubstep,
     /// Speed in cm/s of water with inertia at the time of the velocities, counter-clockwise positive; 0 without inertia.

@@ -56,6 +56,7 @@ impl ContactResolver {
         }
         let leaves_overlaps = self.solve_until_accepted(motion, divisibility, statistics)?;
         let mut is_unsolved = leaves_overlaps || self.is_deep;
+        // The paper's scheme has linear gaps and its own tolerance. It gives no velocities before the substep.
         let limits_overlaps = self.relinearization.is_on() && motion.before.is_some();
         if limits_overlaps && !is_unsolved {
             let tolerance = self.relinearization.tolerance;

@@ -34,6 +34,7 @@ struct Node {
     /// Parent in the elimination tree: the first later row with an entry in this row's column.
     parent: u32,
     is_factored: bool,
+    /// Whether the row has to be computed again.
     is_dirty: bool,
     /// For each of the row's two bodies, the previous active row on that body: twice that row's index, plus 1 if the body is
     /// that row's second one. [`NONE`] if there is no such row.
@@ -192,6 +193,7 @@ impl Factor {
         let [mut a, mut b] = starts;
         let mut count = 0;
         let row_index = k as u32;
+        // Follows both paths at once, in the order of their columns.
         while a.min(b) < row_index {
             let column = a.min(b);
             let node = &mut nodes[column as usize];

@@ -86,14 +86,14 @@ impl IslandSolver {
         report.residual = self.worst_residual(regularization, report.residual);
     }
 
-    /// Whether the rows for which `is_in` holds must be linearly dependent: they are more than the degrees of freedom
+    /// Whether the rows for which `is_counted` holds must be linearly dependent: they are more than the degrees of freedom
     /// of the island's boats. No solution needs so many, and they would fill the whole factor. False for a regularized
     /// problem, which shares impulses among all rows, and for small islands.
-    fn are_dependent(&self, regularization: f64, is_in: impl Fn(&Row) -> bool) -> bool {
+    fn are_dependent(&self, regularization: f64, is_counted: impl Fn(&Row) -> bool) -> bool {
         let (rows, most) = (&self.rows.rows, self.most_active());
         rows.len() > most.max(SWEPT_ROWS)
             && regularization < TOLERANCE
-            && rows.iter().filter(|row| is_in(row)).count() > most
+            && rows.iter().filter(|row| is_counted(row)).count() > most
     }
 
     /// Largest number of independent rows.
