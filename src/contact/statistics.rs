@@ -55,7 +55,7 @@ impl Statistics {
     }
 
     /// Statistics of overlaps, by name.
-    pub fn named_of_steps(&self) -> Value {
+    pub fn named_overlaps(&self) -> Value {
         let named = named_fields!(self; worst_overlap_cm unsolved halved_substeps);
         named.into_iter().collect()
     }

@@ -100,7 +100,7 @@ fn record_as<'py, T: Real + Element>(
         }
     }
     let outcome = run(py, &mut recorder, pilot, &layouts, plan);
-    let statistics = recorder.flock().statistics().named_of_steps();
+    let statistics = recorder.flock().statistics().named_overlaps();
     let columns = columns(py, recorder.into_recording())?;
     columns.set_item("statistics", statistics)?;
     if let Err(error) = outcome {

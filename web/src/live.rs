@@ -40,7 +40,7 @@ fn measured(flock: &Flock) -> impl Iterator<Item = f64> {
 
 /// Names and values of the statistics that say whether overlaps stayed within the tolerance.
 pub(crate) fn statistics(statistics: &Statistics) -> Vec<(String, Value)> {
-    match statistics.named_of_steps() {
+    match statistics.named_overlaps() {
         Value::Map(values) => values,
         _ => Vec::new(),
     }
