@@ -167,7 +167,7 @@ impl Flock {
 
     /// The paper's rudder command, eq. (10), for a leader in its present pose.
     pub fn steering_law(&self, leader: usize) -> f64 {
-        self.integrator.law(leader)
+        self.integrator.paper_rudder(leader)
     }
 
     /// Sets the target of the steering law, for all leaders or for each leader.

@@ -47,12 +47,12 @@ impl Integrator {
         }
         match steering {
             Steering::Held(commands) => commands[boat],
-            Steering::Law => self.law(boat),
+            Steering::Law => self.paper_rudder(boat),
         }
     }
 
     /// The paper's rudder command for a boat in its present pose, eq. (10).
-    pub(crate) fn law(&self, boat: usize) -> f64 {
+    pub(crate) fn paper_rudder(&self, boat: usize) -> f64 {
         let pose = &self.poses[boat];
         steering_law(misalignment(
             pose.position,
