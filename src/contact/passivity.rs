@@ -15,7 +15,11 @@ const ALLOWED: f64 = 0.01;
 
 /// A quick check whether contacts might add energy to boats. An impulse λ at a contact whose bias b makes it open, at the
 /// speed −b, adds at most the energy −b·λ. The speed at which an overlap has to open is not counted.
-pub(super) fn may_drive(problem: &ContactProblem, impulses: &[f64], bias: VelocityBias) -> bool {
+pub(super) fn may_add_energy(
+    problem: &ContactProblem,
+    impulses: &[f64],
+    bias: VelocityBias,
+) -> bool {
     let adds_much = |k: usize| {
         let contact = &problem.contacts[k];
         let excess_speed = bias.for_gap(&contact.gap).min(0.0) - problem.biases[k];
@@ -51,7 +55,7 @@ impl Passivity {
     /// Indices of all contacts of each island whose contacts add energy to boats, or reverse a boat's turn between
     /// obstacles.
     #[cold]
-    pub(super) fn driven(
+    pub(super) fn driven_contacts(
         &mut self,
         solver: &ContactSolver,
         problem: &ContactProblem,
@@ -77,18 +81,20 @@ impl Passivity {
         problem: &ContactProblem,
         bias: VelocityBias,
     ) -> bool {
-        let (mut before, mut after) = (0.0, 0.0);
+        let (mut energy_before, mut energy_after) = (0.0, 0.0);
         for &k in island {
             let contact = &problem.contacts[k as usize];
             let boats = [Some(contact.boat as usize), contact.second()];
             for boat in boats.into_iter().flatten() {
                 if !std::mem::replace(&mut self.is_counted[boat], true) {
-                    before += problem.energy(boat, problem.free);
-                    after += problem.energy(boat, &solver.velocities);
+                    energy_before += problem.energy(boat, problem.free);
+                    energy_after += problem.energy(boat, &solver.velocities);
                 }
             }
-            before += solver.impulses[k as usize] * (-bias.for_gap(&contact.gap)).max(0.0);
+            // Opening an overlap may add energy.
+            let opening_speed = (-bias.for_gap(&contact.gap)).max(0.0);
+            energy_before += solver.impulses[k as usize] * opening_speed;
         }
-        after > (1.0 + ALLOWED) * before
+        energy_after > (1.0 + ALLOWED) * energy_before
     }
 }

@@ -36,7 +36,7 @@ impl SkippedContacts {
         contacts: &mut Vec<Contact>,
     ) {
         let push_cm = PUSHED_SHARE * (detector.farthest + 1e-3 * detector.hull().radius);
-        let (mut kept, mut next) = (0, 0);
+        let (mut kept_count, mut next) = (0, 0);
         while next < contacts.len() {
             let touches = &contacts[next..(next + 2).min(contacts.len())];
             let count = match touches {
@@ -46,15 +46,15 @@ impl SkippedContacts {
             let is_kept = may_close(detector, &touches[..count], velocities, dt, push_cm);
             for _ in 0..count {
                 if is_kept {
-                    contacts[kept] = contacts[next];
-                    kept += 1;
+                    contacts[kept_count] = contacts[next];
+                    kept_count += 1;
                 } else {
                     self.contacts.push(contacts[next]);
                 }
                 next += 1;
             }
         }
-        contacts.truncate(kept);
+        contacts.truncate(kept_count);
     }
 
     /// Whether no skipped contact overlaps by more than `allowed` at the poses predicted for these velocities and `dt`.
@@ -66,7 +66,7 @@ impl SkippedContacts {
         dt: f64,
         allowed: f64,
     ) -> bool {
-        let stays_open = |touches: &[Contact]| {
+        let are_open = |touches: &[Contact]| {
             // If one wall continues another, the nearer touch may be missing, so the other touch proves nothing.
             let is_obstacle = matches!(touches[0].partner, Partner::Obstacle(_));
             let cannot_close = !is_obstacle && !may_close(detector, touches, velocities, dt, 0.0);
@@ -74,7 +74,7 @@ impl SkippedContacts {
             cannot_close || !predicted.overlaps(detector, touches, allowed)
         };
         self.is_empty()
-            || predicted.is_current() && self.contacts.chunk_by(Contact::is_twin).all(stays_open)
+            || predicted.is_current() && self.contacts.chunk_by(Contact::is_twin).all(are_open)
     }
 
     /// Moves the skipped contacts back to the others; returns their number.
@@ -95,12 +95,12 @@ fn may_close(
     dt: f64,
     push_cm: f64,
 ) -> bool {
-    let may_close = |contact: &Contact| may_close_touch(detector, contact, velocities, dt, push_cm);
+    let closes = |contact: &Contact| may_close_touch(detector, contact, velocities, dt, push_cm);
     match touches {
         // At the outer wall, which curves around the boat, one end's normal says nothing about the other end.
-        [a, b] if a.partner == Partner::OuterWall => may_close(a) || may_close(b),
-        [a, b] if b.gap.gap < a.gap.gap => may_close(b),
-        touches => may_close(&touches[0]),
+        [a, b] if a.partner == Partner::OuterWall => closes(a) || closes(b),
+        [a, b] if b.gap.gap < a.gap.gap => closes(b),
+        touches => closes(&touches[0]),
     }
 }
 

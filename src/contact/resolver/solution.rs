@@ -156,12 +156,12 @@ impl ContactResolver {
     fn stop_driving(&mut self, motion: &Motion) -> bool {
         let bias = self.bias(motion);
         let problem = motion.problem(&self.contacts, &self.biases);
-        if !passivity::may_drive(&problem, &self.solver.impulses, bias) {
+        if !passivity::may_add_energy(&problem, &self.solver.impulses, bias) {
             return false;
         }
         let has_obstacles = !self.detector.obstacles.obstacles.is_empty();
         let passivity = &mut self.passivity;
-        let driven = passivity.driven(&self.solver, &problem, bias, has_obstacles);
+        let driven = passivity.driven_contacts(&self.solver, &problem, bias, has_obstacles);
         for &k in &driven {
             self.biases[k] = bias.for_gap(&self.contacts[k].gap);
         }

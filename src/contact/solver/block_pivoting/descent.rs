@@ -59,11 +59,12 @@ impl IslandSolver {
             } else {
                 self.enter_violated();
             }
-            let moved = self.approach(&mut current, regularization, report);
-            if moved > 0.0 || self.rows.rows[entering].is_active {
+            let first_step = self.approach(&mut current, regularization, report);
+            if first_step > 0.0 || self.rows.rows[entering].is_active {
                 is_refused.fill(false);
                 enters_alone = !is_warm;
             } else {
+                // Contacts that were refused together are tried one by one.
                 is_refused[entering] = enters_alone;
                 enters_alone = true;
             }
