@@ -30,7 +30,8 @@ impl Flock {
                 let mut changed = Self::new(FlockParameters::clone(parameters), self.seed())?;
                 changed.branch(self.noise_seed());
                 // In a smaller pool hulls may overlap a little; the contact solver moves them apart.
-                changed.set_state(&poses, self.velocities(), self.time_s(), true)?;
+                let allow_overlap = true;
+                changed.set_state(&poses, self.velocities(), self.time_s(), allow_overlap)?;
                 changed.integrator.keep_water(self.integrator.water_cm_s);
                 if !self.parameters().has_same_water(parameters) {
                     changed.refuse_overlapped_obstacles()?;
@@ -51,8 +52,8 @@ fn poses_in_new_pool(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
     let width = |pool: Pool| pool.outer_radius_cm - pool.inner_radius_cm;
     for Pose { position, .. } in &mut poses {
         let radius = libm::hypot(position.x, position.y);
-        let share = (radius - old.inner_radius_cm) / width(old);
-        *position *= (new.inner_radius_cm + share * width(new)) / radius;
+        let relative_distance = (radius - old.inner_radius_cm) / width(old);
+        *position *= (new.inner_radius_cm + relative_distance * width(new)) / radius;
     }
     poses
 }

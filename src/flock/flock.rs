@@ -44,6 +44,9 @@ const LEFT_THE_WATER: &str = "would leave the water: it moves too far within dt_
                               dt_s, slower boats or milder constants may help";
 
 impl Flock {
+    /// Argument `include_leaders` of measurements over the normal boats alone.
+    pub const WITHOUT_LEADERS: bool = false;
+
     /// A flock placed at random without overlap, at rest.
     ///
     /// # Errors
@@ -273,10 +276,11 @@ impl Flock {
         watch: &mut impl FnMut(&Integrator),
     ) -> Result<()> {
         let dt = ticks(self.parameters.dt_s);
-        let unsolved = self.integrator.statistics.unsolved;
+        let unsolved_before = self.integrator.statistics.unsolved;
         let (mut work_at_check, mut budget_end) = (self.work(), 0);
         while self.time < end {
             let next_multiple = (self.time / dt + 1) * dt;
+            // The contacts of each interval of dt have one work budget, however many substeps divide it.
             if next_multiple > budget_end {
                 let solver = &mut self.integrator.contacts.solver;
                 solver.refill(self.parameters.n_boats);
@@ -291,7 +295,9 @@ impl Flock {
                 }
             }
             // Contacts of boats out of range would fail only after long work, so stop here.
-            if self.integrator.statistics.unsolved > unsolved && !self.integrator.is_in_range() {
+            if self.integrator.statistics.unsolved > unsolved_before
+                && !self.integrator.is_in_range()
+            {
                 break;
             }
         }
@@ -344,15 +350,15 @@ impl Flock {
         self.integrator.contacts.solver.work().unsigned_abs()
     }
 
-    /// Time after about `boat_substeps` / n_boats more substeps, at most `end`. It is `end` or a multiple of dt, so that a
-    /// stop there does not change the run.
+    /// When about `boat_substeps` (substeps times boats) more will be done, but at most `end`. It is `end` or a multiple of
+    /// dt, so that a stop there does not change the run.
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
         end.min((self.time / dt + substeps) * dt)
     }
 
-    /// Order parameters of the normal boats, or of all.
+    /// Order parameters of the normal boats, or of all boats.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if the flock has no such boats.
@@ -361,7 +367,7 @@ impl Flock {
         OrderParameters::from_hulls(hulls, velocities)
     }
 
-    /// The recorded quantities of the normal boats, or of all, in the order of `QUANTITIES`.
+    /// The recorded quantities of the normal boats, or of all boats, in the order of `QUANTITIES`.
     ///
     /// # Errors
     /// As for [`Self::order_parameters`].
@@ -370,7 +376,7 @@ impl Flock {
         quantities::recorded(hulls, velocities)
     }
 
-    /// Hulls and velocities of the normal boats, or of all.
+    /// Hulls and velocities of the normal boats, or of all boats.
     pub(crate) fn measured(&self, include_leaders: bool) -> (&[HullPose], &[Velocity]) {
         let leaders = self.parameters.n_leaders;
         let first = if include_leaders { 0 } else { leaders };

@@ -24,6 +24,8 @@ const LARGEST_COVER: f64 = 0.92;
 const REACHABLE_COVER: f64 = 0.78;
 /// Sizes at which growing hulls are pushed apart, as fractions of the full size.
 const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
+/// The most passes that push hulls of one size apart.
+const PASSES_PER_SIZE: u32 = 60;
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
 const CLEARANCE: f64 = 1e-3;
 /// Area of open water per boat, in hull areas: as dilute as 20 boats in the pool `wide`.
@@ -45,6 +47,7 @@ pub(super) fn place(
 ) -> Result<Vec<Pose>> {
     let mut rng = Stream::PLACEMENT.rng(seed);
     let region = Region::new(parameters);
+    // No hull fits between the walls.
     if region.outer <= region.inner {
         return Err(FlockError::Placement {
             requested: parameters.n_boats,
@@ -135,6 +138,7 @@ impl Region {
         while !suffices(high) {
             (low, high) = (high, 2.0 * high);
         }
+        // If the least radius suffices, there is nothing to bisect.
         let halvings = if low < high { HALVINGS } else { 0 };
         for _ in 0..halvings {
             let middle = 0.5 * (low + high);
@@ -144,11 +148,12 @@ impl Region {
                 low = middle;
             }
         }
+        // Draws that hit an obstacle do not count.
         let tries = TRIES_PER_BOAT as f64 / share(high);
         (self.outer, self.tries) = (high, tries.ceil() as usize);
     }
 
-    /// Area in cm² that hulls can cover.
+    /// Area in cm² that hulls can cover. A hull reaches its radius further than its center may lie.
     fn free_area(&self) -> f64 {
         let inner = (self.inner - self.hull.radius).max(0.0);
         let outer = self.outer + self.hull.radius;
@@ -165,9 +170,9 @@ impl Region {
         // The golden angle spreads the points evenly: each turn of the spiral lies between earlier turns.
         let golden = PI * (3.0 - 5.0_f64.sqrt());
         let free = (0..SURVEY_POINTS).filter(|&index| {
-            let share = (f64::from(index) + 0.5) / f64::from(SURVEY_POINTS);
+            let fraction = (f64::from(index) + 0.5) / f64::from(SURVEY_POINTS);
             let (sin, cos) = libm::sincos(golden * f64::from(index));
-            let radius = (inner_square + share * (outer_square - inner_square)).sqrt();
+            let radius = (inner_square + fraction * (outer_square - inner_square)).sqrt();
             let point = Vec2::new(cos, sin) * radius;
             self.is_open(point, clearance)
         });
@@ -204,7 +209,8 @@ impl Region {
         }
         self.obstacles.iter().all(|obstacle| {
             let mut is_clear = true;
-            obstacle.gaps(boat, self.hull, clearance, &mut |_, _| is_clear = false);
+            let mut note_small_gap = |_, _| is_clear = false;
+            obstacle.gaps(boat, self.hull, clearance, &mut note_small_gap);
             is_clear
         })
     }
@@ -215,7 +221,8 @@ impl Region {
             && others.iter().all(|other| {
                 let mut is_clear = true;
                 let (first, second) = ((boat, self.hull), (other, self.hull));
-                pair_gaps(first, second, clearance, |_, _| is_clear = false);
+                let note_small_gap = |_, _| is_clear = false;
+                pair_gaps(first, second, clearance, note_small_gap);
                 is_clear
             })
     }
@@ -240,8 +247,8 @@ fn place_by_rejection(
     rng: &mut StreamRng,
     keep_going: KeepGoing,
 ) -> Option<Vec<Pose>> {
-    // Adding hulls at random stalls if they cover nearly half of the area. For very large flocks, its quadratic search
-    // would be slow, and growing works.
+    // Adding hulls at random stalls if they cover nearly half of the area. In very large flocks, comparing each boat with
+    // all others would be slow, and growth succeeds.
     if boats as f64 * region.hull.area() > 0.4 * region.area || boats > 4000 {
         return None;
     }
@@ -284,7 +291,13 @@ fn place_by_growth(
             ..parameters.clone()
         };
         let mut detector = ContactDetector::new(&grown);
-        push_apart(&mut detector, &mut poses, parameters, 60, keep_going);
+        push_apart(
+            &mut detector,
+            &mut poses,
+            parameters,
+            PASSES_PER_SIZE,
+            keep_going,
+        );
     }
     for pose in &mut poses {
         pose.heading = pose.heading.rem_euclid(TAU);

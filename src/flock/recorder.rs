@@ -121,8 +121,10 @@ impl<T: Real> Recording<T> {
         let samples = sampling.count();
         let bytes_of_poses_and_velocities = 6 * parameters.n_boats as u64 * size_of::<T>() as u64;
         let bytes_of_rudders = parameters.n_leaders * size_of::<f64>();
-        let bytes_of_time_and_order = size_of::<Recorded>() + size_of::<f64>() + 2;
-        let other_bytes = (bytes_of_time_and_order + bytes_of_rudders) as u64;
+        let bytes_of_time_and_order = size_of::<f64>() + size_of::<Recorded>();
+        let bytes_of_phase_and_window = size_of::<Phase>() + size_of::<bool>();
+        let other_bytes =
+            (bytes_of_time_and_order + bytes_of_phase_and_window + bytes_of_rudders) as u64;
         let bytes = samples.saturating_mul(bytes_of_poses_and_velocities + other_bytes);
         let mut recording = Self::default();
         let fits = bytes <= Self::MOST_BYTES && recording.reserve(samples, parameters).is_some();
@@ -172,8 +174,11 @@ impl<T: Real> Recording<T> {
                 .rudder
                 .extend(leaders.map(|leader| flock.steering_law(leader))),
         }
-        self.order
-            .push(flock.recorded(false).unwrap_or([f64::NAN; RECORDED]));
+        self.order.push(
+            flock
+                .recorded(Flock::WITHOUT_LEADERS)
+                .unwrap_or([f64::NAN; RECORDED]),
+        );
         if let Some(contacts) = &mut self.contacts {
             contacts.push(flock);
         }
@@ -201,9 +206,10 @@ struct Control {
 }
 
 impl Control {
-    /// When the next control step starts, counted from the start of the run.
-    fn next_start(&self) -> Ticks {
-        ticks(self.started_steps as f64 / self.hz)
+    /// When the next control step starts, counted from the start of the run; `None` without leaders.
+    fn next_start(&self) -> Option<Ticks> {
+        let has_leaders = !self.rudder.is_empty();
+        has_leaders.then(|| ticks(self.started_steps as f64 / self.hz))
     }
 }
 
@@ -255,14 +261,20 @@ impl<T: Real> Recorder<T> {
         changes.sort_by_key(|&(time, _)| time);
         if let (Some(&(first, _)), Some(&(last, _))) = (changes.first(), changes.last()) {
             let last_sample = self.sampling.time(self.sampling.count() - 1);
-            let refused = if first < last_sample { last } else { first };
+            let first_is_sampled = first < last_sample;
+            let last_is_in_run = last <= self.sampling.end;
+            let refused = if first_is_sampled { last } else { first };
             let accepted = format!(
                 "changes before the last sample, at {} s",
                 seconds(last_sample)
             );
             let change = format!("a change at {} s", seconds(refused));
-            let are_accepted = first < last_sample && last <= self.sampling.end;
-            FlockError::unless(are_accepted, "schedule", change, accepted)?;
+            FlockError::unless(
+                first_is_sampled && last_is_in_run,
+                "schedule",
+                change,
+                accepted,
+            )?;
         }
         self.changes = changes.into();
         Ok(self)
@@ -319,8 +331,7 @@ impl<T: Real> Recorder<T> {
             let now = self.flock.time() - self.start;
             self.sample_and_change(now)?;
             if let Some(control) = &mut self.control
-                && control.next_start() <= now
-                && !control.rudder.is_empty()
+                && control.next_start().is_some_and(|start| start <= now)
             {
                 control.started_steps += 1;
                 return Ok(Pause::Control);
@@ -365,10 +376,8 @@ impl<T: Real> Recorder<T> {
         if let Some(&(time, _)) = self.changes.front() {
             next = next.min(time);
         }
-        if let Some(control) = &self.control
-            && !control.rudder.is_empty()
-        {
-            next = next.min(control.next_start());
+        if let Some(start) = self.control.as_ref().and_then(Control::next_start) {
+            next = next.min(start);
         }
         next
     }

@@ -6,7 +6,7 @@ use crate::clock::{Ticks, ticks};
 use crate::contact::CachedImpulse;
 use crate::error::{FlockError, Result};
 use crate::geometry::{Pose, Velocity};
-use crate::integrator::Checkpoint;
+use crate::integrator::{Checkpoint, Phase};
 use crate::parameters::FlockParameters;
 use crate::sealed_bytes::{Magic, refused, seal, unseal};
 use serde::de::{Error, SeqAccess, Visitor};
@@ -30,9 +30,10 @@ struct Snapshot {
 struct Stored(Snapshot);
 
 impl Serialize for Stored {
-    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Self(state) = self;
-        let mut parts = to.serialize_tuple(1 + usize::from(state.has_inert_water()))?;
+        let parts_count = 1 + usize::from(state.has_inert_water());
+        let mut parts = serializer.serialize_tuple(parts_count)?;
         parts.serialize_element(state)?;
         if state.has_inert_water() {
             parts.serialize_element(&state.motion.water_cm_s)?;
@@ -42,8 +43,10 @@ impl Serialize for Stored {
 }
 
 impl<'de> Deserialize<'de> for Stored {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        from.deserialize_tuple(2, StoredVisitor).map(Self)
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        let most_parts = 2;
+        let snapshot = deserializer.deserialize_tuple(most_parts, StoredVisitor);
+        snapshot.map(Self)
     }
 }
 
@@ -53,8 +56,8 @@ struct StoredVisitor;
 impl<'de> Visitor<'de> for StoredVisitor {
     type Value = Snapshot;
 
-    fn expecting(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
-        to.write_str("a snapshot")
+    fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        formatter.write_str("a snapshot")
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> std::result::Result<Snapshot, A::Error> {
@@ -116,9 +119,10 @@ impl Snapshot {
             .flatten()
             .chain([&motion.step_length_s, cutoff]);
         let mut rudders = last.rudder.iter().flatten();
+        let longest_substep = ticks(1.0);
         self.time <= LATEST
-            && last.phase < 4
-            && last.length <= ticks(1.0)
+            && last.phase < Phase::ALL.len()
+            && last.length <= longest_substep
             && motion.poses.iter().all(Pose::is_in_range)
             && motion.velocities.iter().all(Velocity::is_in_range)
             && motion.warm_start.iter().all(CachedImpulse::is_finite)
@@ -130,19 +134,20 @@ impl Snapshot {
 
 /// Stores a flock as in its snapshot, but without a checksum. The bytes around it have a checksum.
 impl Serialize for Flock {
-    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
-        Stored(self.snapshot_content()).serialize(to)
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        Stored(self.snapshot_content()).serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Flock {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        let checked = Stored::deserialize(from)?.0.checked();
-        let state = checked.map_err(|error| match error {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        let Stored(snapshot) = Stored::deserialize(deserializer)?;
+        let state = snapshot.checked().map_err(|error| match error {
             FlockError::Snapshot(why) => refused(why),
             other => refused(other.to_string()),
         })?;
-        Ok(Self::from_checked(state, None))
+        let own_noise = None;
+        Ok(Self::from_checked(state, own_noise))
     }
 }
 
@@ -163,7 +168,7 @@ impl Flock {
         }
     }
 
-    /// A flock from a checked snapshot, with its noise or that of another seed.
+    /// A flock from a checked snapshot. It continues with the noise of `noise_seed`; `None`: with the snapshot's noise.
     fn from_checked(state: Snapshot, noise_seed: Option<u64>) -> Self {
         let mut flock = Self::unplaced(state.parameters_as_made(), state.seed);
         flock.replace_step(state.parameters.dt_s);
@@ -173,8 +178,8 @@ impl Flock {
         flock
     }
 
-    /// Continues from a snapshot, with its noise or that of another seed. The snapshot's flock must have the same
-    /// parameters, except for the target, which is restored.
+    /// Continues from a snapshot, with the noise of `noise_seed`; `None`: with the snapshot's noise. The snapshot's flock
+    /// must have the same parameters, except for the target, which is restored.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`]; the flock is unchanged then.
@@ -190,13 +195,13 @@ impl Flock {
         Ok(())
     }
 
-    /// A flock from a snapshot alone, with its noise or that of another seed. All flocks with the same noise seed get
-    /// the same noise.
+    /// A flock from a snapshot alone, with the noise of `noise_seed`; `None`: with the snapshot's noise. All flocks with
+    /// the same noise seed get the same noise.
     ///
     /// # Errors
     /// [`FlockError::Snapshot`] for bytes that are not a complete, undamaged snapshot.
     pub fn from_snapshot(bytes: &[u8], noise_seed: Option<u64>) -> Result<Self> {
-        let state = unseal::<Stored>(&MAGIC, bytes)?.0.checked()?;
-        Ok(Self::from_checked(state, noise_seed))
+        let Stored(snapshot) = unseal(&MAGIC, bytes)?;
+        Ok(Self::from_checked(snapshot.checked()?, noise_seed))
     }
 }

@@ -135,6 +135,7 @@ fn refuse_overlap(
         .contacts
         .detector
         .detect(&integrator.boats, 0.0, &mut contacts);
+    // This check must leave no neighbor list to the next substep.
     integrator.contacts.forget();
     let deepest = contacts
         .iter()
