@@ -185,8 +185,13 @@ impl Quantity {
     }
 }
 
-/// Number of recorded quantities, and number of quantities averaged in an episode summary.
-const COUNTS: [usize; 2] = {
+/// Numbers of quantities in the table.
+struct Counts {
+    recorded: usize,
+    summarized: usize,
+}
+
+const COUNTS: Counts = {
     let (mut recorded, mut summarized, mut index) = (0, 0, 0);
     while index < QUANTITIES.len() {
         let quantity = &QUANTITIES[index];
@@ -200,14 +205,17 @@ const COUNTS: [usize; 2] = {
         summarized += quantity.is_summarized() as usize;
         index += 1;
     }
-    [recorded, summarized]
+    Counts {
+        recorded,
+        summarized,
+    }
 };
 
 /// Number of recorded quantities.
-pub const RECORDED: usize = COUNTS[0];
+pub const RECORDED: usize = COUNTS.recorded;
 
 /// Number of quantities averaged in an episode summary.
-pub(crate) const SUMMARIZED: usize = COUNTS[1];
+pub(crate) const SUMMARIZED: usize = COUNTS.summarized;
 
 /// The quantities averaged in an episode summary, in the order of the table.
 pub(crate) fn summarized() -> impl Iterator<Item = &'static Quantity> {

@@ -76,7 +76,7 @@ impl Samples {
     /// Steps longer than `longest_s` and steps faster than `fastest_cm_s` are left out.
     pub fn velocities(&self, times_s: &[f64], longest_s: f64, fastest_cm_s: f64) -> (Self, usize) {
         let mut too_fast = 0;
-        // Velocity and duration of the step that ends at a row.
+        // Velocity and duration of the step that ends at a row; `None` if the step is left out. A first row ends no step.
         let mut step_to = |row: usize| {
             let previous = row.checked_sub(self.boats)?;
             let duration_s = times_s.get(row)? - times_s[previous];
@@ -88,6 +88,7 @@ impl Samples {
             too_fast += usize::from(is_fast);
             (!is_fast).then_some((velocity, duration_s))
         };
+        // Beyond the last row there is one more `None` for each boat.
         let steps: Vec<_> = (0..self.rows.len() + self.boats)
             .map(&mut step_to)
             .collect();

@@ -147,7 +147,7 @@ impl FlockParameters {
         self.check_timing()
     }
 
-    /// The least tolerance is limited by the rounding of coordinates, and by contacts that are solved to 1e-10 cm/s.
+    /// Refuses a tolerance that overlaps cannot reach: coordinates are rounded, and contacts are solved to 1e-10 cm/s.
     fn check_tolerance(&self) -> Result<()> {
         let outer = self.pool.outer_radius_cm;
         let largest_coordinate = if outer.is_finite() { outer } else { 0.0 };

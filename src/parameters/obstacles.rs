@@ -99,13 +99,15 @@ impl ObstacleRow for Wall {
     }
 
     fn distances(&self) -> (f64, f64) {
+        // The vector from the first end to the second.
         let (x, y) = (self.x1_cm - self.x0_cm, self.y1_cm - self.y0_cm);
-        // The wall's point nearest to the center, as a fraction of the way from the first end to the second.
+        // The distance of the first end from the point nearest to the center, as a fraction of the wall's length.
         let fraction = -(self.x0_cm * x + self.y0_cm * y) / (x * x + y * y);
         let fraction = fraction.clamp(0.0, 1.0);
         let nearest = libm::hypot(self.x0_cm + fraction * x, self.y0_cm + fraction * y);
         let first_end = libm::hypot(self.x0_cm, self.y0_cm);
-        (nearest, first_end.max(libm::hypot(self.x1_cm, self.y1_cm)))
+        let second_end = libm::hypot(self.x1_cm, self.y1_cm);
+        (nearest, first_end.max(second_end))
     }
 }
 

@@ -4,7 +4,7 @@ use super::Target;
 use super::value::{Kind, Setting, Value, text_of, wrong_kind};
 use crate::error::{FlockError, Result};
 
-/// Number of targets that a message shows of a list.
+/// The most targets of a list that a message shows.
 const MOST_SHOWN: usize = 16;
 
 /// The targets of a flock's leaders.
@@ -36,7 +36,7 @@ impl Targets {
         }
     }
 
-    /// Mean sign of the first leaders' targets: +1 if all are clockwise, −1 if all are counter-clockwise.
+    /// Mean sign of the targets of the first `leaders` leaders: +1 if all are clockwise, −1 if all are counter-clockwise.
     pub fn mean_sign(&self, leaders: usize) -> f64 {
         match self {
             Self::One(target) => target.sign(),

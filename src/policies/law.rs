@@ -46,7 +46,7 @@ impl NamedLaw {
         matches!(self.origin, Origin::OfPool(_))
     }
 
-    /// The law with this declaration. `pool` is the name of the flock's pool, if it has one.
+    /// The law for a flock in the pool with this name; `None`: a pool without a name.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for pools in which the law has not been tuned or learned.
@@ -57,7 +57,7 @@ impl NamedLaw {
         }
     }
 
-    /// The name, description, color and dependence on the pool, by name.
+    /// The public fields, and whether the law differs between pools, by name.
     pub fn declaration(&self) -> Value {
         let declared = [
             ("name", Value::from(self.name)),
@@ -111,7 +111,7 @@ impl Law {
         },
     ];
 
-    /// The law with this name. `pool` is the name of the flock's pool, if it has one.
+    /// The law with this name, for a flock in the pool `pool`; `None`: a pool without a name.
     ///
     /// # Errors
     /// [`FlockError::Parameter`] for other names, and as for [`NamedLaw::law`].
@@ -130,9 +130,9 @@ impl Law {
     /// # Errors
     /// [`FlockError::Parameter`].
     pub(super) fn check_reads_observations(&self) -> Result<()> {
-        let reads = *self != Self::EverySubstep;
+        let reads_observations = *self != Self::EverySubstep;
         let accepted = "a law that reads observations";
-        FlockError::unless(reads, "law", Self::EVERY_SUBSTEP, accepted)
+        FlockError::unless(reads_observations, "law", Self::EVERY_SUBSTEP, accepted)
     }
 
     /// Names and values of the gains of the damped law that steers; empty for other laws.
@@ -176,7 +176,7 @@ impl Law {
         }
     }
 
-    /// The rudder in [−1, 1] for a course relative to the law's desired heading, rounded as actions are.
+    /// The rudder in [−1, 1] for a course relative to the law's desired heading. It is rounded to 32 bits, as actions are.
     pub(super) fn rudder(&self, course: &Course) -> f64 {
         let rudder = match self {
             Self::EverySubstep | Self::Paper => steering_law(course.misalignment),

@@ -221,11 +221,10 @@ impl LeaningLaw {
         FlockError::unless(is_time, "decision_period_s", period, accepted)
     }
 
-    /// The action for standardized features: the lean over [`LARGEST_LEAN`], or the rudder. It lies in [−1, 1] and is
-    /// rounded as actions are.
+    /// The action for standardized features: the lean over [`LARGEST_LEAN`], or the rudder. It lies in [−1, 1].
     pub fn action(&self, features: &[f32]) -> f32 {
-        let terms = self.weights.iter().zip(features);
-        let sum: f64 = terms.fold(self.bias, |sum, (weight, &feature)| {
+        let weighted_features = self.weights.iter().zip(features);
+        let sum: f64 = weighted_features.fold(self.bias, |sum, (weight, &feature)| {
             sum + weight * f64::from(feature)
         });
         let action = if self.gains.is_some() {

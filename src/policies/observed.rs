@@ -52,15 +52,16 @@ impl ObservedLaw {
     /// action. The action does not depend on other observations.
     pub fn action(&self, observation: &[f32]) -> f64 {
         let leaning = self.law.leaning().zip(self.first_feature);
-        let lean = leaning.map_or(0.0, |(law, first)| {
+        // A lean over LARGEST_LEAN, or a rudder; 0 for laws that do not lean.
+        let leaning_action = leaning.map_or(0.0, |(law, first)| {
             f64::from(law.action(&observation[first..first + LEAN_FEATURES]))
         });
         match &self.courses {
             Some(courses) => {
-                let course = courses.course(observation, LARGEST_LEAN * lean);
+                let course = courses.course(observation, LARGEST_LEAN * leaning_action);
                 self.law.rudder(&course)
             }
-            None => lean,
+            None => leaning_action,
         }
     }
 }

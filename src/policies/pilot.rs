@@ -15,10 +15,10 @@ pub struct Pilot {
     law: Law,
     /// Number of control steps from one decision to the next.
     steps_per_decision: u32,
-    /// Number of control steps since the last decision.
-    steps: u32,
-    /// Angle in rad by which each leader's heading leans outward. If the law chooses rudders, it is the leader's rudder for a
-    /// clockwise target.
+    /// Number of control steps that the present decision has steered; 0: a decision is due.
+    steps_steered: u32,
+    /// Angle in rad by which each leader's heading leans outward. A law that chooses rudders stores each leader's rudder for
+    /// a clockwise target instead.
     leans: Vec<f64>,
     views: Views,
 }
@@ -58,7 +58,7 @@ impl Pilot {
         });
         Ok(Self {
             steps_per_decision: steps_per_decision?,
-            steps: 0,
+            steps_steered: 0,
             leans: vec![0.0; parameters.n_leaders],
             views: Views::new(&law, parameters)?,
             law,
@@ -74,12 +74,12 @@ impl Pilot {
             self.views = Views::new(&self.law, flock.parameters())?;
         }
         let features = self.views.features.as_ref();
-        let order = features.and_then(|_| flock.order_parameters(false).ok());
+        let order = features.and_then(|_| flock.order_parameters(Flock::WITHOUT_LEADERS).ok());
         let view = FlockView::new(flock, &[], order.as_ref());
-        if self.steps == 0 {
+        if self.steps_steered == 0 {
             self.decide(&view);
         }
-        self.steps = (self.steps + 1) % self.steps_per_decision;
+        self.steps_steered = (self.steps_steered + 1) % self.steps_per_decision;
         let chooses_rudders = self.law.leaning().is_some_and(|law| law.gains.is_none());
         let leans = self.leans.iter().enumerate();
         let rudders = leans.map(|(leader, &lean)| {
@@ -92,7 +92,7 @@ impl Pilot {
         Ok(rudders.collect())
     }
 
-    /// Replaces the leans, if the law is a leaning law.
+    /// Replaces the leans (or rudders), if the law is a leaning law.
     fn decide(&mut self, view: &FlockView) {
         if let (Some(law), Some(features)) = (self.law.leaning(), &mut self.views.features) {
             let scale = law.gains.map_or(1.0, |_| LARGEST_LEAN);
