@@ -32,7 +32,7 @@ pub(super) fn columns<'py>(py: Python<'py>, series: &[Recorded]) -> PyResult<Bou
 }
 
 /// The recorded quantities of boats at each time, from poses and velocities of shape (t, n, 3). Rows of NaN stand for
-/// missing boats. Quantities that need more boats are NaN.
+/// missing boats. A quantity is NaN at times with fewer boats than it needs.
 #[pyfunction]
 pub(super) fn order_columns<'py>(
     py: Python<'py>,
@@ -119,7 +119,7 @@ pub(super) fn structure_series<'py>(
     Ok(PyArray1::from_vec(py, values))
 }
 
-/// Index of the collective state at each time in `COLLECTIVE_STATES`.
+/// The collective state at each time, as an index of `COLLECTIVE_STATES`. `largest_cluster` holds fractions of the boats.
 #[pyfunction]
 pub(super) fn collective_states<'py>(
     py: Python<'py>,
@@ -188,7 +188,8 @@ pub(super) fn lap_orientation<'py>(
     rows_of(py, angles.collect(), samples.shape().1)
 }
 
-/// Velocities (t·n, 3) of tracked boats, and the number of steps faster than `fastest_cm_s`. Times have shape (t, n).
+/// Velocities (t·n, 3) of tracked boats, and the number of steps faster than `fastest_cm_s`. These steps, and steps
+/// longer than `longest_s`, are left out. Times have shape (t, n).
 #[pyfunction]
 pub(super) fn track_velocities<'py>(
     py: Python<'py>,

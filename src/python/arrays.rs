@@ -37,6 +37,7 @@ fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResu
         };
     }
     match sequence_length(object) {
+        // A number has no axes.
         None => real_from(object, name).map(|_| Vec::new()),
         Some(length) if length == 0 || axes == 0 => Ok(vec![length]),
         Some(length) => {
@@ -153,7 +154,8 @@ pub(super) fn rows_from(
     boats: usize,
 ) -> PyResult<Vec<[f64; 3]>> {
     let numbers = floats(object, name, &[boats, 3])?;
-    Ok(numbers.as_chunks::<3>().0.to_vec())
+    let (rows, _) = numbers.as_chunks::<3>();
+    Ok(rows.to_vec())
 }
 
 /// Actions of a given shape, one number per leader: rudders, or indices of levels if there are `levels`. A rudder of 1.0
@@ -221,7 +223,7 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Refuses an array of a length other than the expected one.
+/// Refuses an array that does not have the expected length.
 pub(super) fn check_length(name: &str, length: usize, expected: usize) -> PyResult<()> {
     if length == expected {
         return Ok(());

@@ -13,6 +13,7 @@ use crate::environment::{
     TERMS, Upcoming,
 };
 use crate::error::{FlockError, Result};
+use crate::flock::Flock;
 use crate::parameters::{Field, FlockParameters, Setting, Value, named_fields, text_of};
 use numpy::{Element, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -152,6 +153,7 @@ impl PyEnvBatch {
         let mut batch = self.0.write()?;
         let batch = &mut *batch;
         let requests = requests.iter().enumerate().map(|(flock, request)| {
+            // `reset_while` refuses more requests than flocks.
             let env = batch.envs().get(flock);
             let boats = env.map_or(0, |env| env.parameters().n_boats);
             let request = request.as_ref().map(|request| request_from(request, boats));
@@ -163,9 +165,11 @@ impl PyEnvBatch {
 
     /// Sets the target or the bw_s of flocks' future episodes.
     fn set_upcoming(&self, flocks: Vec<usize>, options: &Bound<'_, PyDict>) -> PyResult<()> {
-        let ResetRequest { target, bw_s, .. } = request_from(options, 0)?;
-        let options = Upcoming { target, bw_s };
-        Ok(self.0.write()?.set_upcoming(&flocks, &options)?)
+        // These options hold no state, so the number of boats does not matter.
+        let boats = 0;
+        let ResetRequest { target, bw_s, .. } = request_from(options, boats)?;
+        let upcoming = Upcoming { target, bw_s };
+        Ok(self.0.write()?.set_upcoming(&flocks, &upcoming)?)
     }
 
     /// The target and the bw_s of a flock's future episodes.
@@ -190,7 +194,8 @@ impl PyEnvBatch {
         rows_of(py, observations, size)
     }
 
-    /// The leaders' present observations in another layout: (rows, size).
+    /// The leaders' present observations in another layout: (rows, size). With `mirror_to_target`, those of leaders with a
+    /// counter-clockwise target are mirrored.
     fn observe_in<'py>(
         &self,
         py: Python<'py>,
@@ -246,7 +251,7 @@ impl PyEnvBatch {
     /// The recorded quantities of the normal boats: (flocks, quantities). They are NaN for a flock without normal boats.
     fn order_parameters<'py>(&self, py: Python<'py>) -> Rows<'py, f64> {
         self.collect_rows(py, RECORDED, |_, episode| {
-            let recorded = episode.flock().recorded(false);
+            let recorded = episode.flock().recorded(Flock::WITHOUT_LEADERS);
             recorded.unwrap_or([f64::NAN; RECORDED]).to_vec()
         })
     }

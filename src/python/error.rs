@@ -36,6 +36,7 @@ const DECLARED: [(&str, &str); 5] = [
     ),
 ];
 /// Indices of the exceptions in `DECLARED`.
+const BASE: usize = 0;
 const PARAMETER: usize = 1;
 const EPISODE: usize = 2;
 const SOLVER: usize = 3;
@@ -47,13 +48,13 @@ static EXCEPTIONS: PyOnceLock<Vec<Py<PyType>>> = PyOnceLock::new();
 fn exceptions(py: Python<'_>) -> PyResult<&Vec<Py<PyType>>> {
     EXCEPTIONS.get_or_try_init(py, || {
         let mut classes: Vec<Py<PyType>> = Vec::new();
-        for (name, doc) in DECLARED {
-            let built_in = match classes.len() {
-                0 => py.get_type::<PyException>(),
+        for (index, (name, doc)) in DECLARED.into_iter().enumerate() {
+            let built_in = match index {
+                BASE => py.get_type::<PyException>(),
                 PARAMETER => py.get_type::<PyValueError>(),
                 _ => py.get_type::<PyRuntimeError>(),
             };
-            let base = classes.first().map(|base| base.bind(py).clone());
+            let base = classes.get(BASE).map(|base| base.bind(py).clone());
             let bases = PyTuple::new(py, base.into_iter().chain([built_in]).collect::<Vec<_>>())?;
             let body = [("__module__", "flockenv.errors"), ("__doc__", doc)].into_py_dict(py)?;
             // `type` makes the class, as Python's `class` statement does: unlike an exception declared with pyo3, it may

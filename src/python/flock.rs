@@ -228,7 +228,7 @@ pub(super) fn velocity_numbers(velocities: &[Velocity]) -> impl Iterator<Item = 
     velocities.flat_map(|v| [v.linear.x, v.linear.y, v.angular])
 }
 
-/// Checked rudders of a flock's leaders, if they are given.
+/// Checks the rudders of a flock's leaders, if the argument is given.
 pub(super) fn rudders_from(
     object: Option<&Bound<'_, PyAny>>,
     flock: &Flock,

@@ -15,7 +15,7 @@ pub struct PyLaw(pub(super) Law);
 
 #[pymethods]
 impl PyLaw {
-    /// The law with this name. `pool` is the name of the pool, for laws that differ between pools.
+    /// The law with this name. Laws that differ between pools need the name of the pool.
     #[staticmethod]
     #[pyo3(signature = (name, pool=None))]
     fn named(name: &str, pool: Option<&str>) -> Result<Self> {
@@ -45,7 +45,7 @@ impl PyLaw {
         self.0.to_json()
     }
 
-    /// Names and values of its gains.
+    /// Names and values of the law's gains.
     #[getter]
     fn gains(&self) -> Vec<(&'static str, f64)> {
         self.0.gains()

@@ -10,21 +10,23 @@ use crate::parameters::{FlockParameters, Value};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-/// A checked layout from the blocks that differ from the default layout. With `is_mirrored`, observations are mirrored to
-/// the target.
+/// A checked layout from the blocks that differ from the default layout. With `mirror_to_target`, observations of leaders
+/// with a counter-clockwise target are mirrored.
 pub(super) fn layout_from(
     blocks: &Bound<'_, PyAny>,
-    is_mirrored: bool,
+    mirror_to_target: bool,
 ) -> PyResult<ObservationLayout> {
     let layout: ObservationLayout = argument(blocks, "observation")?;
     layout.check()?;
-    Ok(layout.mirrored(is_mirrored))
+    Ok(layout.mirrored(mirror_to_target))
 }
 
 /// The entries of an observation with these blocks, in order.
 #[pyfunction]
 pub(super) fn observation_table(blocks: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
-    let entries = layout_from(blocks, false)?.entries().into_iter();
+    let mirror_to_target = false;
+    let entries = layout_from(blocks, mirror_to_target)?.entries();
+    let entries = entries.into_iter();
     let rows = entries.map(|(block, index, entry)| entry.named(block.name(), index));
     Ok(rows.collect())
 }
@@ -35,6 +37,7 @@ pub(super) fn state_table(n_boats: &Bound<'_, PyAny>) -> PyResult<Vec<Value>> {
     let n_boats = argument(n_boats, "n_boats")?;
     let most = FlockParameters::MOST_BOATS;
     FlockError::unless(n_boats <= most, "n_boats", n_boats, format!("0 to {most}"))?;
+    // The entries of all boats come first, then those of the clock.
     let entries = state_entries(n_boats).into_iter().enumerate();
     let rows = entries.map(|(index, entry)| match index / BOAT.len() {
         boat if boat < n_boats => entry.named("boat", boat),

@@ -26,7 +26,7 @@ pub(super) struct Plan<'py> {
     /// Times in s from the start of the run, each with its change: a target or parameters.
     changes: Vec<(f64, Bound<'py, PyAny>)>,
     control: Control<'py>,
-    /// Called now and then with the seconds since the last call.
+    /// Called now and then with the simulated seconds since the last call.
     progress: Option<Bound<'py, PyAny>>,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Control<'py> {
     /// A law, or a function that is called at every control step and returns rudders (k,). Its arguments are the signs of
     /// the leaders' targets (k,) and, for each layout, the leaders' observations (k, size).
     steer: Bound<'py, PyAny>,
-    /// Blocks of each layout, and whether it is mirrored.
+    /// Blocks of each layout, and whether observations of leaders with a counter-clockwise target are mirrored.
     layouts: Vec<(Bound<'py, PyAny>, bool)>,
     /// Control steps per second. `None`: the paper's law steers at every substep, and `steer` is not used.
     control_hz: Option<Bound<'py, PyAny>>,
@@ -72,7 +72,8 @@ fn change_from(value: &Bound<'_, PyAny>) -> PyResult<Change> {
     argument::<Targets>(value, "target").map(Change::Target)
 }
 
-/// Records a run in the precision `T`. An error during the run has the columns until then as its attribute `columns`.
+/// Records a run in the precision `T`. An error during the run has the columns of the samples before it as its
+/// attribute `columns`.
 fn record_as<'py, T: Real + Element>(
     py: Python<'py>,
     flock: &PyFlock,
@@ -130,12 +131,12 @@ fn run<T: Real>(
             Pause::Control => steer(py, recorder, &plan.control.steer, layouts)?,
             Pause::Work => py.check_signals()?,
         }
-        let since_s = recorder.elapsed_s() - last_report_s;
-        if pause == Pause::Work || since_s >= REPORTED_EVERY_S {
+        let unreported_s = recorder.elapsed_s() - last_report_s;
+        if pause == Pause::Work || unreported_s >= REPORTED_EVERY_S {
             if let Some(progress) = &plan.progress {
-                progress.call1((since_s,))?;
+                progress.call1((unreported_s,))?;
             }
-            last_report_s += since_s;
+            last_report_s += unreported_s;
         }
     }
 }

@@ -47,14 +47,14 @@ pub(super) fn pool_radii_cm(pool: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
     Ok((pool.outer_radius_cm, pool.inner_radius_cm))
 }
 
-/// Number of decisions in a time in s at a rate in 1/s. It is an error if that is not a whole number.
+/// Number of decisions in `hold_s` seconds at `rate_hz` decisions per second; an error unless it is a whole number.
 #[pyfunction]
 pub(super) fn decisions_in(hold_s: &Bound<'_, PyAny>, rate_hz: f64) -> PyResult<u32> {
     let hold_s = argument(hold_s, "hold_s")?;
     Ok(whole_steps("hold_s", hold_s, rate_hz, "decisions")?)
 }
 
-/// The rudders of levels with these indices, in an environment with `rudder_levels`.
+/// The rudders of the levels with these indices, in an environment with this number of rudder levels.
 #[pyfunction]
 pub(super) fn rudders_of_levels(levels: Vec<f64>, rudder_levels: usize) -> Result<Vec<f64>> {
     let settings = EnvSettings {

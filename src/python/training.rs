@@ -41,7 +41,7 @@ impl PyTrainer {
         )?))
     }
 
-    /// A training from its bytes. If `flock_hours` is given, the training ends there.
+    /// A training from its bytes. It ends at `flock_hours`; `None`: at the end that it was started with.
     #[staticmethod]
     #[pyo3(signature = (state, flock_hours=None))]
     fn from_bytes(state: &[u8], flock_hours: Option<f64>) -> Result<Self> {
