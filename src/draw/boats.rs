@@ -7,14 +7,35 @@ use crate::geometry::{Hull, HullPose, turned_left};
 use crate::parameters::{Target, Targets};
 use tiny_skia::{PathBuilder, Pixmap};
 
-/// Width of outlines as a fraction of the hull's radius, and the least width in pixels.
-const EDGE: (f32, f32) = (0.14, 1.0);
-/// Width of a leader's ring as a fraction of the hull's radius, and the least width in pixels.
-const RING: (f32, f32) = (0.34, 1.8);
+/// Width of outlines.
+const OUTLINE_WIDTH: LineWidth = LineWidth {
+    fraction: 0.14,
+    least: 1.0,
+};
+/// Width of a leader's ring.
+const RING_WIDTH: LineWidth = LineWidth {
+    fraction: 0.34,
+    least: 1.8,
+};
 /// Least drawn radius in pixels, so that boats in a huge pool stay visible.
 const LEAST_RADIUS: f32 = 1.0;
 /// Least radius in pixels at which marks are drawn.
 const LEAST_MARKED: f32 = 2.5;
+
+/// Width of a line around a hull.
+struct LineWidth {
+    /// Width as a fraction of the hull's radius.
+    fraction: f32,
+    /// Least width in pixels.
+    least: f32,
+}
+
+impl LineWidth {
+    /// The width in pixels around a hull with this radius in pixels.
+    fn pixels(&self, radius: f32) -> f32 {
+        (self.fraction * radius).max(self.least)
+    }
+}
 
 /// The colors of a boat's ring (if it has one), body and mark.
 struct Colors {
@@ -68,21 +89,21 @@ fn leader_color(targets: &Targets, leader: usize) -> Rgb {
 /// Draws a hull as thick lines with round ends, one on top of the other (outline, ring, body), and then its mark.
 fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colors: &Colors) {
     let radius = view.length(hull.radius).max(LEAST_RADIUS);
-    let outline = (EDGE.0 * radius).max(EDGE.1).min(0.3 * radius);
-    let ring = (RING.0 * radius).max(RING.1).min(radius - outline);
+    let outline = OUTLINE_WIDTH.pixels(radius).min(0.3 * radius);
+    let ring = RING_WIDTH.pixels(radius).min(radius - outline);
     let ends = [-1.0, 1.0].map(|side| view.pixel(boat.end(side, hull.half_length)));
-    let mut inner = radius - outline;
+    let mut inner_radius = radius - outline;
     OUTLINE.line(canvas, ends, 2.0 * radius);
     if let Some(color) = colors.ring {
-        color.line(canvas, ends, 2.0 * inner);
-        inner -= ring;
+        color.line(canvas, ends, 2.0 * inner_radius);
+        inner_radius -= ring;
     }
-    if inner > 0.0 {
-        colors.body.line(canvas, ends, 2.0 * inner);
+    if inner_radius > 0.0 {
+        colors.body.line(canvas, ends, 2.0 * inner_radius);
     }
     if radius >= LEAST_MARKED {
-        let share = f64::from(inner / radius);
-        let half_width = share * hull.radius;
+        let body_fraction = f64::from(inner_radius / radius);
+        let half_width = body_fraction * hull.radius;
         let half_length = hull.half_length + half_width;
         colors
             .mark
@@ -92,6 +113,7 @@ fn draw_boat(canvas: &mut Pixmap, view: &View, hull: Hull, boat: &HullPose, colo
 
 /// An arrowhead in the bow half of a hull with this half-length and half-width in cm.
 fn mark(view: &View, boat: &HullPose, half_length: f64, half_width: f64) -> PathBuilder {
+    // Fractions of the half-length ahead of the center, and of the half-width to its left.
     let corners = [(0.84, 0.0), (-0.12, 0.68), (0.1, 0.0), (-0.12, -0.68)];
     let mut path = PathBuilder::new();
     for (ahead, aside) in corners {

@@ -12,8 +12,10 @@ use tiny_skia::Pixmap;
 const SIDE_OVER_SIZE: f32 = 40.0;
 /// The smallest letters, in pixels.
 const LEGIBLE_SIZE: f32 = 9.0;
-/// Width and height of the text in a corner, in letter sizes.
-const CORNER: (f32, f32) = (13.0, 4.0);
+/// Width of the text in a corner, in letter sizes.
+const CORNER_WIDTH: f32 = 13.0;
+/// Height of the text in a corner, in letter sizes.
+const CORNER_HEIGHT: f32 = 4.0;
 /// Least distance of that text from the middle, as a fraction of the frame's shorter side. Smaller frames have no legend.
 const LEAST_DISTANCE: f32 = 0.39;
 /// Distance of two baselines, in letter sizes.
@@ -33,8 +35,9 @@ impl Legend {
         let (width, height) = (width as f32, height as f32);
         let side = width.min(height);
         let size = (side / SIDE_OVER_SIZE).max(LEGIBLE_SIZE);
-        let x = width / 2.0 - CORNER.0 * size;
-        let y = (height / 2.0 - CORNER.1 * size).max(0.0);
+        // Distances along x and y from the frame's middle to the nearest text.
+        let x = width / 2.0 - CORNER_WIDTH * size;
+        let y = (height / 2.0 - CORNER_HEIGHT * size).max(0.0);
         let fits = x >= 0.0 && libm::hypotf(x, y) >= LEAST_DISTANCE * side;
         Self {
             typeface: fits.then(|| Typeface::new(size)).flatten(),
@@ -56,12 +59,12 @@ impl Legend {
         let (size, edge) = (typeface.size, EDGE * typeface.size);
         let top_baseline = |line: u8| edge + (0.75 + LINE * f32::from(line)) * size;
         let bottom_baseline = height - edge;
-        let order = flock.order_parameters(false).ok();
+        let order = flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
 
         let mut write_left = |text: &str, baseline: f32, ink: Rgb| {
             typeface.write(canvas, text, edge, baseline, ink);
         };
-        let caption = cut_to_width(typeface, look.caption, CORNER.0 * size);
+        let caption = cut_to_width(typeface, look.caption, CORNER_WIDTH * size);
         for (line, (text, ink)) in (0..).zip(time_lines(flock, caption, grid_cm)) {
             write_left(&text, top_baseline(line), ink);
         }
@@ -89,7 +92,7 @@ fn signed_order(flock: &Flock) -> String {
         Some(target) => ("signed order", target),
         None => ("rotation", Target::Clockwise),
     };
-    let order = flock.order_parameters(false).ok();
+    let order = flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
     let number = order.map(|order| signed_text(order.signed_order(target)));
     labeled(label, number)
 }
@@ -108,7 +111,8 @@ fn time_lines(flock: &Flock, caption: String, grid_cm: Option<f64>) -> Vec<(Stri
     lines
 }
 
-/// Lines for the target, the backward duration and the number of leaders, each with the color of a square before it.
+/// Lines for the target, the backward duration and the number of leaders, each with the color of a
+/// square before it; `None`: no square.
 fn task_lines(flock: &Flock) -> Vec<(String, Option<Rgb>)> {
     let parameters = flock.parameters();
     let count = parameters.n_leaders;
