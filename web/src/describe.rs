@@ -1,6 +1,6 @@
 //! The lists of parameters, policies and quantities, and the description of a flock, as JSON.
 
-use crate::json::written;
+use crate::json::to_json;
 use crate::live::{quantities, statistics};
 use flockenv::analysis::quantities::Quantity;
 use flockenv::contact::Statistics;
@@ -12,6 +12,7 @@ use flockenv::parameters::{Field, FlockParameters, Kind, Value};
 use flockenv::policies::{Law, NamedLaw};
 use serde_json::{Value as Json, json};
 
+/// The name of a kind in the page's scripts.
 fn kind_name(kind: Kind) -> &'static str {
     match kind {
         Kind::Count => "count",
@@ -25,6 +26,7 @@ fn kind_name(kind: Kind) -> &'static str {
     }
 }
 
+/// The declaration of a parameter.
 fn field(field: &Field<FlockParameters>) -> Json {
     json!({
         "name": field.name,
@@ -33,6 +35,7 @@ fn field(field: &Field<FlockParameters>) -> Json {
     })
 }
 
+/// The declaration of a statistic, whose kind follows from its value.
 fn statistic((name, value): (String, Value)) -> Json {
     let kind = if matches!(value, Value::Count(_)) {
         Kind::Count
@@ -47,13 +50,13 @@ pub(crate) fn all() -> Json {
     let layout = ObservationLayout::default();
     let entries = layout.entries().into_iter();
     json!({
-        "laws": Law::NAMED.iter().map(NamedLaw::declaration).map(|law| written(&law)).collect::<Json>(),
+        "laws": Law::NAMED.iter().map(NamedLaw::declaration).map(|law| to_json(&law)).collect::<Json>(),
         "phases": Phase::names(),
         "fields": FlockParameters::FIELDS.iter().map(field).collect::<Json>(),
-        "quantities": quantities().map(|quantity| written(&Quantity::declaration(quantity))).collect::<Json>(),
+        "quantities": quantities().map(|quantity| to_json(&Quantity::declaration(quantity))).collect::<Json>(),
         "statistics": statistics(&Statistics::default()).into_iter().map(statistic).collect::<Json>(),
         "entries": entries
-            .map(|(block, index, entry)| written(&entry.named(block.name(), index)))
+            .map(|(block, index, entry)| to_json(&entry.named(block.name(), index)))
             .collect::<Json>(),
         "colors": style_sheet(),
     })
@@ -63,7 +66,7 @@ pub(crate) fn all() -> Json {
 pub(crate) fn values(parameters: &FlockParameters) -> Json {
     let fields = FlockParameters::FIELDS.iter().zip(parameters.values());
     let values: serde_json::Map<_, _> = fields
-        .map(|(field, value)| (field.name.to_owned(), written(&value)))
+        .map(|(field, value)| (field.name.to_owned(), to_json(&value)))
         .collect();
     let (pool, hull) = (parameters.pool, Hull::new(parameters));
     let mut description = json!({

@@ -4,7 +4,7 @@ use flockenv::parameters::{Kind, Value};
 use serde_json::{Value as Json, json};
 
 /// A value as JSON. Numbers that are not finite become text.
-pub(crate) fn written(value: &Value) -> Json {
+pub(crate) fn to_json(value: &Value) -> Json {
     match value {
         Value::None | Value::Other => Json::Null,
         Value::Flag(flag) => json!(flag),
@@ -12,10 +12,10 @@ pub(crate) fn written(value: &Value) -> Json {
         Value::Real(real) if !real.is_finite() => json!(real.to_string()),
         Value::Real(real) => json!(real),
         Value::Name(name) => json!(name),
-        Value::List(values) => values.iter().map(written).collect(),
+        Value::List(values) => values.iter().map(to_json).collect(),
         Value::Map(values) => values
             .iter()
-            .map(|(name, value)| (name.clone(), written(value)))
+            .map(|(name, value)| (name.clone(), to_json(value)))
             .collect(),
     }
 }

@@ -27,7 +27,7 @@ pub(crate) enum Leaders {
     Law(Pilot),
     /// To the visitor's heading, by the damped law.
     You(Pilot),
-    /// By a law of its own for each leader, from its observation.
+    /// Each leader by a law of its own, from its observation.
     Each(Vec<ObservingLeader>),
 }
 
@@ -45,7 +45,7 @@ impl Leaders {
     /// [`FlockError::Parameter`] for unknown names, and for flocks that the policy cannot lead.
     pub fn named(name: &str, trained: Option<&str>, parameters: &FlockParameters) -> Result<Self> {
         if name.contains(',') {
-            return Self::each(&name.split(',').collect::<Vec<_>>(), parameters);
+            return Self::one_law_each(&name.split(',').collect::<Vec<_>>(), parameters);
         }
         match name {
             EVERY_SUBSTEP => Ok(Self::EverySubstep),
@@ -68,7 +68,8 @@ impl Leaders {
         }
     }
 
-    fn each(names: &[&str], parameters: &FlockParameters) -> Result<Self> {
+    /// Leaders of which each has a law of its own, by the names of the laws.
+    fn one_law_each(names: &[&str], parameters: &FlockParameters) -> Result<Self> {
         if names.len() != parameters.n_leaders {
             let accepted = format!("one policy for each of {} leaders", parameters.n_leaders);
             return Err(refused(&names.join(","), &accepted));
@@ -77,16 +78,16 @@ impl Leaders {
             let law = law(name, parameters)?;
             let mut layout = ObservationLayout::default();
             // As in Python, a leaning law takes lean features, mirrored to a clockwise target.
-            let leans = matches!(law, Law::Leaning(_));
-            layout.repeat(Block::LeanFeatures, usize::from(leans));
-            layout = layout.mirrored(leans);
+            let is_leaning = matches!(law, Law::Leaning(_));
+            layout.repeat(Block::LeanFeatures, usize::from(is_leaning));
+            layout = layout.mirrored(is_leaning);
             let law = ObservedLaw::new(law, &layout)?;
             Ok(ObservingLeader { law, layout })
         });
         leaders.collect::<Result<_>>().map(Self::Each)
     }
 
-    /// The next rudders, from the present rudders `held`; `None` for the law at every substep. `heading`: the heading
+    /// The next rudders, from the present rudders; `None` for the law at every substep. `heading`: the heading
     /// that the visitor sets for all leaders, clockwise from outward, divided by π.
     ///
     /// # Errors
@@ -94,7 +95,7 @@ impl Leaders {
     pub fn decide(
         &mut self,
         flock: &Flock,
-        held: &[f64],
+        present_rudders: &[f64],
         heading: f64,
     ) -> Result<Option<Vec<f64>>> {
         match self {
@@ -110,7 +111,7 @@ impl Leaders {
             Self::Each(leaders) => {
                 let leaders = leaders.iter().enumerate();
                 leaders
-                    .map(|(index, leader)| leader.rudder(flock, held, index))
+                    .map(|(index, leader)| leader.next_rudder(flock, present_rudders, index))
                     .collect::<Result<_>>()
                     .map(Some)
             }
@@ -119,11 +120,13 @@ impl Leaders {
 }
 
 impl ObservingLeader {
-    fn rudder(&self, flock: &Flock, held: &[f64], leader: usize) -> Result<f64> {
-        let observations = observe_flock(flock, self.layout, held)?;
+    /// The next rudder of the leader with this index.
+    fn next_rudder(&self, flock: &Flock, present_rudders: &[f64], leader: usize) -> Result<f64> {
+        let observations = observe_flock(flock, self.layout, present_rudders)?;
         let size = self.layout.size();
         let action = self.law.action(&observations[leader * size..][..size]);
         let sign = flock.parameters().target.of(leader).sign();
+        // A mirrored observation gives a rudder for a clockwise target.
         Ok(if self.layout.is_mirrored {
             sign * action
         } else {
@@ -132,6 +135,7 @@ impl ObservingLeader {
     }
 }
 
+/// The error for a choice of leaders that is not accepted.
 fn refused(name: &str, accepted: &str) -> FlockError {
     FlockError::parameter("leaders", name, accepted)
 }

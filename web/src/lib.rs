@@ -42,6 +42,7 @@ fn with_page<T>(call: impl FnOnce(&mut Page) -> T) -> T {
 }
 
 impl Page {
+    /// The request that the page wrote into the input.
     fn request(&self) -> Result<&str, FlockError> {
         std::str::from_utf8(&self.input)
             .map_err(|_| FlockError::parameter("input", "bytes", "text in UTF-8"))
@@ -49,7 +50,7 @@ impl Page {
 
     /// Stores the answer of a call, and returns whether the call succeeded.
     fn answer(&mut self, answer: Result<Json, FlockError>) -> u32 {
-        let is_done = answer.is_ok();
+        let succeeded = answer.is_ok();
         let answer = answer.unwrap_or_else(|error| {
             let field = match &error {
                 FlockError::Parameter { field, .. } => field,
@@ -59,12 +60,13 @@ impl Page {
             json!({ "field": field, "words": error.to_string() })
         });
         self.text = answer.to_string();
-        u32::from(is_done)
+        u32::from(succeeded)
     }
 
-    fn flock(&mut self, flock: usize) -> Result<&mut Live, FlockError> {
-        let live = self.flocks.get_mut(flock).and_then(Option::as_mut);
-        live.ok_or_else(|| FlockError::parameter("flock", flock, "a flock that is open"))
+    /// The open flock with this number.
+    fn flock(&mut self, number: usize) -> Result<&mut Live, FlockError> {
+        let live = self.flocks.get_mut(number).and_then(Option::as_mut);
+        live.ok_or_else(|| FlockError::parameter("flock", number, "a flock that is open"))
     }
 }
 
@@ -146,24 +148,25 @@ impl Page {
                 angular,
             })
             .collect();
-        flock.set_state(&poses, &velocities, 0.0, true)?;
+        let (time_s, allow_overlap) = (0.0, true);
+        flock.set_state(&poses, &velocities, time_s, allow_overlap)?;
         Ok(flock
-            .recorded(false)
+            .recorded(Flock::WITHOUT_LEADERS)
             .map_or(Json::Null, |values| values.to_vec().into()))
     }
 }
 
-/// Starts a flock again from a request.
+/// Starts a flock from a request. It replaces the flock that had this number.
 #[unsafe(no_mangle)]
 pub extern "C" fn open(flock: usize) -> u32 {
     with_page(|page| {
-        let opened = page.request().and_then(request::Request::read);
-        let answer = opened.and_then(Live::new).and_then(|live| {
+        let request = page.request().and_then(request::Request::read);
+        let answer = request.and_then(Live::new).and_then(|live| {
             let values = describe::values(live.parameters());
-            let slot = page.flocks.get_mut(flock);
-            *slot.ok_or_else(|| {
-                FlockError::parameter("flock", flock, format!("less than {FLOCKS}"))
-            })? = Some(live);
+            let accepted = format!("less than {FLOCKS}");
+            let refuse = || FlockError::parameter("flock", flock, accepted);
+            let slot = page.flocks.get_mut(flock).ok_or_else(refuse)?;
+            *slot = Some(live);
             Ok(values)
         });
         page.answer(answer)
@@ -174,8 +177,8 @@ pub extern "C" fn open(flock: usize) -> u32 {
 #[unsafe(no_mangle)]
 pub extern "C" fn change(flock: usize) -> u32 {
     with_page(|page| {
-        let wanted = page.request().and_then(request::Request::read);
-        let answer = wanted.and_then(|request| {
+        let request = page.request().and_then(request::Request::read);
+        let answer = request.and_then(|request| {
             let live = page.flock(flock)?;
             let continues = live.change(request)?;
             let mut values = describe::values(live.parameters());
@@ -186,7 +189,7 @@ pub extern "C" fn change(flock: usize) -> u32 {
     })
 }
 
-/// Drops a flock.
+/// Closes a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn close(flock: usize) {
     with_page(|page| {
@@ -277,6 +280,7 @@ pub extern "C" fn look(flock: usize, boat: usize) -> u32 {
     })
 }
 
+/// Address and length of a column of a flock; null and 0 if there is no such column.
 fn column_of(flock: usize, column: usize) -> (*const f64, usize) {
     with_page(|page| {
         let live = page.flock(flock).ok();
@@ -290,13 +294,15 @@ fn column_of(flock: usize, column: usize) -> (*const f64, usize) {
 /// Address of a column of a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn column(flock: usize, column: usize) -> *const f64 {
-    column_of(flock, column).0
+    let (address, _) = column_of(flock, column);
+    address
 }
 
 /// Length of a column of a flock.
 #[unsafe(no_mangle)]
 pub extern "C" fn column_length(flock: usize, column: usize) -> usize {
-    column_of(flock, column).1
+    let (_, length) = column_of(flock, column);
+    length
 }
 
 /// Empties the columns of a flock, for the samples that follow.

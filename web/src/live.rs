@@ -27,13 +27,14 @@ pub(crate) fn quantities() -> impl Iterator<Item = &'static Quantity> {
 
 /// Present values of [`quantities`]; NaN if the flock has no normal boats.
 fn measured(flock: &Flock) -> impl Iterator<Item = f64> {
-    let recorded = flock.recorded(false).ok();
-    let order = flock.order_parameters(false).ok();
+    let recorded = flock.recorded(Flock::WITHOUT_LEADERS).ok();
+    let order = flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
     let target = flock.parameters().target.reference();
     quantities()
         .enumerate()
         .map(move |(index, quantity)| match quantity.formula {
             Formula::Derived(formula) => order.map_or(f64::NAN, |order| formula(&order, target)),
+            // Recorded quantities come first in the table, so that they have the same index in `recorded`.
             _ => recorded.map_or(f64::NAN, |recorded| recorded[index]),
         })
 }
@@ -46,6 +47,7 @@ pub(crate) fn statistics(statistics: &Statistics) -> Vec<(String, Value)> {
     }
 }
 
+/// A statistic as a number.
 fn number(value: &Value) -> f64 {
     match value {
         Value::Count(count) => *count as f64,
@@ -59,12 +61,12 @@ pub(crate) struct Live {
     flock: Flock,
     leaders: Leaders,
     /// The rudders until the next decision; `None` for the law at every substep.
-    rudder: Option<Vec<f64>>,
+    next_rudders: Option<Vec<f64>>,
     /// The heading that the visitor sets, clockwise from outward, divided by π.
     heading: f64,
     sampling: Sampling,
-    /// Number of samples that were taken.
-    taken: u64,
+    /// Number of samples since the start of the run.
+    samples_taken: u64,
     columns: Columns,
 }
 
@@ -78,10 +80,10 @@ impl Live {
         let mut live = Self {
             flock: Flock::new(request.parameters, request.seed)?,
             leaders,
-            rudder: None,
+            next_rudders: None,
             heading: 0.0,
             sampling: Sampling::new(LONGEST_S, CONTROL_HZ)?,
-            taken: 0,
+            samples_taken: 0,
             columns: Columns::default(),
         };
         live.start_steering();
@@ -124,22 +126,24 @@ impl Live {
         }
         self.leaders = leaders;
         self.start_steering();
-        // The decisions at this time were made before the change.
-        let held = self.rudders();
-        self.rudder = self.leaders.decide(&self.flock, &held, self.heading)?;
+        // The leaders decide again, since they made the decisions of this moment before the change.
+        let present_rudders = self.present_rudders();
+        self.next_rudders = self
+            .leaders
+            .decide(&self.flock, &present_rudders, self.heading)?;
         Ok(true)
     }
 
     /// Keeps the rudders until the next decision, or sets them amidships if the number of leaders has changed. Removes them
     /// for the law at every substep.
     fn start_steering(&mut self) {
-        let is_held = !matches!(self.leaders, Leaders::EverySubstep);
+        let holds_rudders = !matches!(self.leaders, Leaders::EverySubstep);
         let amidships = vec![0.0; self.parameters().n_leaders];
-        let held = self
-            .rudder
+        let kept_rudders = self
+            .next_rudders
             .take()
-            .filter(|rudder| rudder.len() == amidships.len());
-        self.rudder = is_held.then(|| held.unwrap_or(amidships));
+            .filter(|rudders| rudders.len() == amidships.len());
+        self.next_rudders = holds_rudders.then(|| kept_rudders.unwrap_or(amidships));
     }
 
     /// Sets the visitor's heading from the next decision on: clockwise from outward, divided by π.
@@ -171,8 +175,11 @@ impl Live {
             if work >= boat_substeps {
                 break;
             }
-            let steering = self.rudder.as_deref().map_or(Steering::Law, Steering::Held);
-            let end = self.sampling.time(self.taken);
+            let steering = self
+                .next_rudders
+                .as_deref()
+                .map_or(Steering::Law, Steering::Held);
+            let end = self.sampling.time(self.samples_taken);
             let stop = self.flock.stop_towards(end, boat_substeps - work);
             self.flock.advance_to(&|| true, stop, steering)?;
             if stop == end {
@@ -185,7 +192,7 @@ impl Live {
 
     /// Takes a sample, then lets the leaders decide.
     fn sample(&mut self) -> Result<()> {
-        let held = self.rudders();
+        let present_rudders = self.present_rudders();
         let flock = &self.flock;
         let [
             time,
@@ -208,24 +215,24 @@ impl Live {
         for velocity in flock.velocities() {
             velocities.extend([velocity.linear.x, velocity.linear.y, velocity.angular]);
         }
-        rudders.extend(&held);
+        rudders.extend(&present_rudders);
         series.extend(measured(flock));
         let named = statistics(flock.statistics());
         *statistics_column = named.iter().map(|(_, value)| number(value)).collect();
-        self.taken += 1;
-        self.rudder = self.leaders.decide(flock, &held, self.heading)?;
+        self.samples_taken += 1;
+        self.next_rudders = self.leaders.decide(flock, &present_rudders, self.heading)?;
         Ok(())
     }
 
     /// The leaders' present rudders.
-    fn rudders(&self) -> Vec<f64> {
-        let law = || {
+    fn present_rudders(&self) -> Vec<f64> {
+        let rudders_of_law = || {
             let leaders = 0..self.parameters().n_leaders;
             leaders
                 .map(|leader| self.flock.steering_law(leader))
                 .collect()
         };
-        self.rudder.clone().unwrap_or_else(law)
+        self.next_rudders.clone().unwrap_or_else(rudders_of_law)
     }
 
     /// Fills the columns of the present contacts and of a leader's observation.
@@ -234,7 +241,7 @@ impl Live {
     /// Those of [`observed`].
     pub fn look(&mut self, boat: usize) -> Result<()> {
         let observation = if boat < self.parameters().n_leaders {
-            observed(&self.flock, &self.rudders(), boat)?
+            observed(&self.flock, &self.present_rudders(), boat)?
         } else {
             Vec::new()
         };

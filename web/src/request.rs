@@ -7,13 +7,13 @@ use flockenv::parameters::{Field, FlockParameters, Preset};
 use flockenv::{FlockError, Result};
 use serde_json::{Map, Value as Json};
 
-/// Largest number of letters of a value in an error message.
-const SHOWN: usize = 40;
+/// The most letters of a value in an error message.
+const MOST_LETTERS: usize = 40;
 
-/// A request in JSON. The seed is text, since JavaScript's numbers do not hold all integers of 64 bits.
+/// The fields of a request in JSON. The seed is text, since JavaScript's numbers do not hold all integers of 64 bits.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Written {
+pub(crate) struct RequestFields {
     preset: Option<String>,
     seed: Option<String>,
     leaders: Option<String>,
@@ -34,20 +34,20 @@ pub(crate) struct Request {
     trained: Option<String>,
 }
 
-/// Sets the fields that have a value in `given`, by name.
+/// Sets the fields that have a value in `requested`, by name.
 ///
 /// # Errors
 /// [`FlockError::Parameter`] for values that are unreadable or out of range.
-pub(crate) fn set_given<T>(
-    values: &mut T,
+pub(crate) fn set_fields<T>(
+    settings: &mut T,
     fields: &[Field<T>],
-    given: &Map<String, Json>,
+    requested: &Map<String, Json>,
 ) -> Result<()> {
     for field in fields {
-        let Some(json) = given.get(field.name) else {
+        let Some(json) = requested.get(field.name) else {
             continue;
         };
-        (field.set)(values, &read(field.kind, json)).map_err(|error| match error {
+        (field.set)(settings, &read(field.kind, json)).map_err(|error| match error {
             FlockError::Kind { .. } => {
                 let text = json
                     .as_str()
@@ -66,29 +66,33 @@ impl Request {
     /// # Errors
     /// [`FlockError::Parameter`] for fields that are unknown, unreadable or out of range.
     pub fn read(text: &str) -> Result<Self> {
-        let written: Written = serde_json::from_str(text)
+        let requested: RequestFields = serde_json::from_str(text)
             .map_err(|error| FlockError::parameter("request", error, "JSON"))?;
-        Self::checked(written)
+        Self::checked(requested)
     }
 
     /// Checks a request that was read from JSON.
     ///
     /// # Errors
     /// As for [`Self::read`].
-    pub fn checked(written: Written) -> Result<Self> {
-        let preset: Preset = written.preset.as_deref().unwrap_or("simulation").parse()?;
-        let seed = written.seed.as_deref().unwrap_or("0");
+    pub fn checked(requested: RequestFields) -> Result<Self> {
+        let preset: Preset = requested
+            .preset
+            .as_deref()
+            .unwrap_or("simulation")
+            .parse()?;
+        let seed = requested.seed.as_deref().unwrap_or("0");
         let seed = seed.parse().map_err(|_| {
             FlockError::parameter("seed", shortened(seed), "a whole number from 0 to 2^64 - 1")
         })?;
         let defaults = FlockParameters::preset(preset);
         let mut parameters = defaults.clone();
-        set_given(
+        set_fields(
             &mut parameters,
             FlockParameters::FIELDS,
-            &written.parameters,
+            &requested.parameters,
         )?;
-        if !written.parameters.contains_key("gyration_radius_cm") {
+        if !requested.parameters.contains_key("gyration_radius_cm") {
             parameters.gyration_radius_cm = resized_gyration_radius_cm(
                 &defaults,
                 parameters.boat_radius_cm,
@@ -99,12 +103,12 @@ impl Request {
         Ok(Self {
             parameters,
             seed,
-            leaders: written.leaders.unwrap_or(EVERY_SUBSTEP.to_owned()),
-            trained: written.trained,
+            leaders: requested.leaders.unwrap_or(EVERY_SUBSTEP.to_owned()),
+            trained: requested.trained,
         })
     }
 
-    /// Its leaders.
+    /// The leaders of the requested flock.
     ///
     /// # Errors
     /// As for [`Leaders::named`].
@@ -113,9 +117,10 @@ impl Request {
     }
 }
 
+/// Cuts a text to [`MOST_LETTERS`]; an ellipsis marks the cut.
 fn shortened(text: &str) -> String {
     let mut letters = text.chars();
-    let start: String = letters.by_ref().take(SHOWN).collect();
+    let start: String = letters.by_ref().take(MOST_LETTERS).collect();
     if letters.next().is_some() {
         format!("{start}…")
     } else {

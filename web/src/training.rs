@@ -1,6 +1,6 @@
 //! A training that the page advances by some branches at a time.
 
-use crate::request::{Request, Written, set_given};
+use crate::request::{Request, RequestFields, set_fields};
 use flockenv::environment::ActionMode;
 use flockenv::parameters::Physics;
 use flockenv::training::{BranchSettings, Trainer};
@@ -12,26 +12,26 @@ use std::collections::BTreeMap;
 const FIRST_SEED: u64 = (1 << 32) + (6 << 56);
 /// Number of seeds of flocks for one training.
 const SEEDS_PER_TRAINING: u64 = 1 << 24;
-/// Number of trainings that differ by their own seed.
+/// Number of seeds of trainings.
 const TRAININGS: u64 = 1 << 32;
 
-/// A request for a training: the flock with the training's seed, settings by name, and texts for the policy.
+/// A request for a training: the flock with the training's seed, settings by name, and the provenance of the policy.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TrainingRequest {
-    flock: Written,
+    flock: RequestFields,
     options: Map<String, Json>,
     provenance: BTreeMap<String, String>,
 }
 
-/// Leaders that learn from nothing to choose rudders.
+/// Leaders that learn to choose rudders, starting from weights of 0.
 pub(crate) struct Training {
     trainer: Trainer,
     provenance: BTreeMap<String, String>,
 }
 
 impl Training {
-    /// A training from its start, with the physics of trainings.
+    /// Starts a training from a request in JSON, with the physics `training`.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
@@ -50,10 +50,10 @@ impl Training {
             return Err(FlockError::parameter("seed", seed, "0 to 2^32 - 1"));
         }
         let mut settings = BranchSettings::usual(ActionMode::Rudder);
-        set_given(&mut settings, BranchSettings::FIELDS, &request.options)?;
-        let first = FIRST_SEED + SEEDS_PER_TRAINING * seed;
+        set_fields(&mut settings, BranchSettings::FIELDS, &request.options)?;
+        let first_seed = FIRST_SEED + SEEDS_PER_TRAINING * seed;
         Ok(Self {
-            trainer: Trainer::new(settings, parameters, seed, first)?,
+            trainer: Trainer::new(settings, parameters, seed, first_seed)?,
             provenance: request.provenance,
         })
     }
