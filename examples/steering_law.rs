@@ -52,7 +52,7 @@ fn signed_order(seed: u64, law: Option<fn(f64, f64) -> f64>) -> Result<f64> {
         flock.advance(CONTROL_S, rudder.as_deref())?;
         if flock.time_s() > 60.0 {
             sum += flock
-                .order_parameters(false)?
+                .order_parameters(Flock::WITHOUT_LEADERS)?
                 .signed_order(Target::Clockwise);
             samples += 1.0;
         }

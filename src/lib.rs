@@ -15,7 +15,7 @@
 //! };
 //! let mut flock = Flock::new(parameters, 7)?;
 //! flock.advance(10.0, None)?;
-//! let order = flock.order_parameters(false)?;
+//! let order = flock.order_parameters(Flock::WITHOUT_LEADERS)?;
 //! println!("{} s: polarization {:.2}", flock.time_s(), order.psi_o);
 //! # assert!((0.0..=1.0).contains(&order.psi_o));
 //! # Ok::<(), flockenv::FlockError>(())

@@ -107,7 +107,7 @@ impl Episode {
     }
 
     fn from_state(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
-        state.order = state.flock.order_parameters(false).ok();
+        state.order = state.flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
         let parameters = state.flock.parameters();
         let law = settings.action_mode.steering_law(parameters)?;
         let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
@@ -327,7 +327,7 @@ impl Episode {
         if let Some(credit) = &mut state.credit {
             credit.advance_turns(&state.flock.integrator, 1.0 / settings.control_hz);
         }
-        state.order = state.flock.order_parameters(false).ok();
+        state.order = state.flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
         Ok(elapsed)
     }
 
@@ -377,7 +377,7 @@ impl Episode {
         if is_first_tenth || !flock.schedule().in_analysis_window(flock.time()) {
             return;
         }
-        let (hulls, velocities) = flock.measured(false);
+        let (hulls, velocities) = flock.measured(Flock::WITHOUT_LEADERS);
         let boats = Boats {
             hulls,
             velocities,

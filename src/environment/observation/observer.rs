@@ -21,7 +21,7 @@ pub fn observe_flock(
     rudders: &[f64],
 ) -> Result<Vec<f32>> {
     let parameters = flock.parameters();
-    let order = flock.order_parameters(false);
+    let order = flock.order_parameters(Flock::WITHOUT_LEADERS);
     let needs_order = layout.has(Block::Order) || layout.has(Block::LeanFeatures);
     let order = if needs_order {
         Some(order?)
