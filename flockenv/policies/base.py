@@ -61,7 +61,7 @@ class LeaderPolicy(Protocol):
 
 
 CONTROL_HZ: float = OPTIONS["control_hz"].default
-"""Control steps per second, unless the environment or the policy has others."""
+"""Default control steps per second of environments and policies."""
 
 _LONGEST_NAME = 200
 
@@ -213,9 +213,11 @@ def _positive_attribute(source: LeaderPolicy, name: str) -> float | None:
 
 
 def _recorded_name(source: LeaderPolicy) -> str:
+    """Return the `Policy.name` of a source."""
     cls = type(source)
     text = repr(source) if cls.__repr__ is not object.__repr__ else ""
-    name = text if 0 < len(text) <= _LONGEST_NAME and text.isprintable() else cls.__qualname__
+    is_accepted = 0 < len(text) <= _LONGEST_NAME and text.isprintable()
+    name = text if is_accepted else cls.__qualname__
     return f"{name} {getattr(source, 'digest', '')}".strip()
 
 
@@ -241,7 +243,7 @@ def leaders_in_last_axis(observation: NDArray[Any], size: int) -> int:
 
 
 class RowPolicy(ABC):
-    """A policy that maps one leader's observation to its rudder, with the interface of SB3's.
+    """A policy that maps one leader's observation to its rudder, with `predict` as SB3 has it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Policies that observe nothing: controls that show what steering is worth."""
+"""Policies that ignore their observations: controls to compare other policies with."""
 
 from typing import Unpack
 

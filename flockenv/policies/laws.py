@@ -183,7 +183,7 @@ class DampedLaw(LawPolicy):
 
 
 class LeaningLaw(LawPolicy):
-    """The damped law about a heading that leans outward of the target's tangent.
+    """The damped law, steering to a heading that leans outward of the target's tangent.
 
     The lean is bias + Σ weight·feature in rad, bounded to ±1.2 rad. The observation's block
     ``lean_features`` has the features: standardized, in the frame of the target. In a file whose
@@ -332,10 +332,10 @@ class LeaningLaw(LawPolicy):
         sum_is_rudder = values["gains"] is None
         action_is_lean = self.decision_period_s is not None and not sum_is_rudder
         self.action_mode = "lean" if action_is_lean else "rudder"
-        # A law that steers to its lean also reads the boat's own course.
-        reads_own = not action_is_lean and not sum_is_rudder
+        # Only a law that steers to its lean itself reads the boat's own course.
+        steers_to_lean = not (action_is_lean or sum_is_rudder)
         unread = {"phase": False, "target": False, "neighbors": 0, "order": False}
-        layout = {"own": reads_own, **unread, "lean_features": True}
+        layout = {"own": steers_to_lean, **unread, "lean_features": True}
         super().__init__(law, layout, mirror_to_target=True)
 
     def to_json(self) -> str:
@@ -351,7 +351,7 @@ class LeaningLaw(LawPolicy):
 
     @property
     def digest(self) -> str:
-        """The first 12 digits of the SHA-256 of the law's numbers."""
+        """``sha256:`` and 12 digits of the law's hash, without `judged` and `provenance`."""
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 
@@ -385,6 +385,7 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
 
 
 def _json_text(values: dict[str, object]) -> str:
+    """Return the values of a law as JSON; refuse numbers that are not finite."""
     try:
         return json.dumps(values, allow_nan=False, default=_as_float)
     except (TypeError, ValueError) as error:
@@ -392,6 +393,7 @@ def _json_text(values: dict[str, object]) -> str:
 
 
 def _as_float(value: object) -> float:
+    """Return a number of a type that JSON does not know, such as NumPy's, as a float."""
     if isinstance(value, Real):
         return float(value)
     raise TypeError(f"{short_repr(value)} is not a number")

@@ -16,7 +16,7 @@ from flockenv.policies.base import Policy, Pool
 from flockenv.policies.names import EVERY_SUBSTEP, PAPERS_LAW
 from flockenv.policies.registry import PolicyLike, policy
 
-_FASTEST_HZ = 1000
+_MAX_COMMON_HZ = 1000
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,8 @@ class Leaders:
         else:
             # An empty dictionary is right for a flock without leaders.
             shared = EVERY_SUBSTEP if isinstance(given, Mapping) else given
-            leaders = cls((Assignment(policy(shared, flock.pool), (*range(k),)),))
+            assignment = Assignment(policy(shared, flock.pool), tuple(range(k)))
+            leaders = cls((assignment,))
         for assignment in leaders.assignments:
             if k == 0 and assignment.policy.control_hz is not None:
                 raise ParameterError(
@@ -93,11 +94,12 @@ class Leaders:
             assignment.policy.check_pool(pool)
 
     def decisions(self, control_hz: float | None = None) -> "Decisions":
-        """Return the decisions of a new run, at this rate or at the rates of the policies."""
+        """Return the `Decisions` of a new run; with None, each policy decides at its own rate."""
         return Decisions(self.assignments, control_hz)
 
 
 def _assignments(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tuple[Assignment, ...]:
+    """Return each distinct policy of a dictionary by leader, with its leaders."""
     names = [f"leader_{leader}" for leader in range(flock.n_leaders)]
     if given.keys() != set(names):
         accepted = ", ".join(names) or "none, since n_leaders = 0"
@@ -105,18 +107,18 @@ def _assignments(given: Mapping[str, PolicyLike], flock: FlockParameters) -> tup
             f"policy = {short_repr(dict(given))} is not accepted: a policy for each of {accepted}"
         )
     # Leaders with the same policy are steered together: a model of several leaders needs that.
-    leaders_of_policy: dict[object, tuple[Policy, list[int]]] = {}
+    policies: dict[object, Policy] = {}
+    leaders_of_policy: dict[object, list[int]] = {}
     for leader, policy_like in enumerate(given[name] for name in names):
         key = policy_like if isinstance(policy_like, str) else id(policy_like)
-        if key not in leaders_of_policy:
+        if key not in policies:
             checked = policy(policy_like, flock.pool)
-            # Beside other policies, the law acts at every control step, not at every substep.
-            if checked.control_hz is None:
-                checked = policy(PAPERS_LAW)
-            leaders_of_policy[key] = checked, []
-        leaders_of_policy[key][1].append(leader)
+            # In a dictionary, the paper's law acts at every control step, not at every substep.
+            is_every_substep = checked.control_hz is None
+            policies[key] = policy(PAPERS_LAW) if is_every_substep else checked
+        leaders_of_policy.setdefault(key, []).append(leader)
     return tuple(
-        Assignment(checked, tuple(leaders)) for checked, leaders in leaders_of_policy.values()
+        Assignment(policies[key], tuple(leaders)) for key, leaders in leaders_of_policy.items()
     )
 
 
@@ -126,7 +128,7 @@ class Decisions:
     Parameters
     ----------
     assignments
-        The policies and the leaders that each steers.
+        The policies, each with the leaders that it steers.
     control_hz
         Decisions per second of all policies; None: each has its own rate.
     """
@@ -159,7 +161,7 @@ class Decisions:
         leaders = sum(len(steering.leaders) for steering in self._policies)
         rudders = np.zeros((len(signs) // leaders, leaders))
         for steering, rows in zip(self._policies, observations, strict=True):
-            rudders[:, steering.leaders] = steering.rudders(
+            rudders[:, steering.leaders] = steering.next_rudders(
                 rows.reshape(len(rudders), leaders, -1), signs.reshape(rudders.shape)
             )
         return rudders.ravel()
@@ -179,10 +181,10 @@ class _SteeringPolicy:
     steps_left: int = 0
     held_rudders: NDArray[np.float64] | None = None
 
-    def rudders(
+    def next_rudders(
         self, observations: NDArray[np.float32], signs: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return rudders of this policy's leaders, shape (flocks, leaders).
+        """Return the next control step's rudders of this policy's leaders, (flocks, leaders).
 
         Parameters
         ----------
@@ -212,11 +214,11 @@ def _set_common_rate(policies: Sequence[_SteeringPolicy]) -> float:
     fractions = [Fraction(rate).limit_denominator(1000) for rate in rates]
     numerators, denominators = zip(*(rate.as_integer_ratio() for rate in fractions), strict=True)
     common_hz = Fraction(math.lcm(*numerators), math.gcd(*denominators))
-    if common_hz > _FASTEST_HZ:
+    if common_hz > _MAX_COMMON_HZ:
         rates_text = ", ".join(f"{rate:g}" for rate in sorted(rates))
         raise ParameterError(
             f"the policies decide {rates_text} times per second, and have no common multiple up to "
-            f"{_FASTEST_HZ}: give control_hz"
+            f"{_MAX_COMMON_HZ}: give control_hz"
         )
     for steering, rate in zip(policies, fractions, strict=True):
         steering.period = int(common_hz / rate)

@@ -129,23 +129,27 @@ class ModelPolicy:
     def _predict(
         self, array: NDArray[np.float32], state: object, episode_start: object, deterministic: bool
     ) -> tuple[NDArray[np.float32], object]:
-        leaders = leaders_in_last_axis(array, self._observation_size)
-        rows = array.size // self._observation_size
-        if rows % self.leaders or (leaders > 1 and leaders % self.leaders):
+        """Return the rudders of an array of observations, and the model's next state."""
+        leaders_per_row = leaders_in_last_axis(array, self._observation_size)
+        all_leaders = array.size // self._observation_size
+        # Rows of one leader each are joined, so only longer rows must hold whole flocks.
+        splits_flock = leaders_per_row > 1 and leaders_per_row % self.leaders != 0
+        if all_leaders % self.leaders or splits_flock:
             raise ParameterError(
                 f"observation has shape {array.shape}, but {self!r} steers {self.leaders} leaders "
                 "at once"
             )
-        inputs = array.reshape(rows // self.leaders, -1)
+        inputs = array.reshape(all_leaders // self.leaders, -1)
         if episode_start is not None:
-            starts: NDArray[np.bool_] = np.asarray(episode_start, np.bool_).ravel()
-            episode_start = np.repeat(starts, len(inputs) // len(starts))
-        returned, state = self._model_actions(inputs, state, episode_start, deterministic)
-        actions = np.asarray(returned, np.float64).reshape(rows)
+            # One bool per flock becomes one per input: a flock may have several inputs.
+            flock_starts: NDArray[np.bool_] = np.asarray(episode_start, np.bool_).ravel()
+            episode_start = np.repeat(flock_starts, len(inputs) // len(flock_starts))
+        model_actions, state = self._model_actions(inputs, state, episode_start, deterministic)
+        actions = np.asarray(model_actions, np.float64).reshape(all_leaders)
         if self._rudder_levels is not None:
             actions = np.array(_core.rudders_of_levels(actions.tolist(), self._rudder_levels))
         rudders = np.clip(actions, -1.0, 1.0).astype(np.float32)
-        return rudders.reshape(*array.shape[:-1], leaders), state
+        return rudders.reshape(*array.shape[:-1], leaders_per_row), state
 
     def _model_actions(
         self,
@@ -188,7 +192,7 @@ def space_under_wrappers(model: object) -> "ObservationSpace | None":
     from flockenv.envs.spaces import ObservationSpace
 
     unwrapped = getattr(getattr(model, "env", None), "unwrapped", None)
-    # stable-baselines3's vector environment of single ones has a list of them.
+    # DummyVecEnv of stable-baselines3 lists its environments in `envs`.
     first_env = getattr(unwrapped, "envs", [unwrapped])[0]
     space = getattr(getattr(first_env, "unwrapped", first_env), "observation_space", None)
     return space if isinstance(space, ObservationSpace) else None
@@ -202,7 +206,7 @@ def independent_rows() -> AbstractContextManager[object]:
 
 @cache
 def _independent_rows_mode(torch: ModuleType) -> type[AbstractContextManager[object]]:
-    """Return the class of that context; it inherits from torch, so torch has to be imported."""
+    """Return the class of the context of `independent_rows`; it inherits from a class of torch."""
     linear = torch.nn.functional.linear
 
     class IndependentRows(torch.overrides.TorchFunctionMode):  # type: ignore[misc,name-defined]
@@ -221,9 +225,10 @@ def _independent_rows_mode(torch: ModuleType) -> type[AbstractContextManager[obj
 def _linear(input: "Tensor", weight: "Tensor", bias: "Tensor | None" = None) -> "Tensor":  # noqa: A002 - torch's names
     """Return the output of torch's linear layer, computed by the core."""
     rows = input.reshape(-1, input.shape[-1])
-    offset = weight.new_zeros(len(weight)) if bias is None else bias
-    arrays = (array.detach().float().cpu().numpy() for array in (rows, weight.T, offset))
-    return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], len(weight))
+    outputs = len(weight)
+    bias = weight.new_zeros(outputs) if bias is None else bias
+    arrays = (tensor.detach().float().cpu().numpy() for tensor in (rows, weight.T, bias))
+    return input.new_tensor(_core.linear(*arrays)).reshape(*input.shape[:-1], outputs)
 
 
 def _rudder_levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None:
@@ -244,7 +249,8 @@ def _rudder_levels_of(space: "gymnasium.Space[Any]", leaders: int) -> int | None
 
 def as_policy(policy: object) -> object:
     """Return a policy unchanged, and a model of stable-baselines3 as a `ModelPolicy`."""
-    gymnasium = sys.modules.get("gymnasium")  # A model's space is one of Gymnasium's.
+    # A model has a space of Gymnasium's, so without Gymnasium imported the policy is no model.
+    gymnasium = sys.modules.get("gymnasium")
     if gymnasium and isinstance(getattr(policy, "observation_space", None), gymnasium.Space):
         return ModelPolicy(policy)
     return policy
@@ -305,8 +311,8 @@ def _new_policy(data: Mapping[str, Any]) -> "BasePolicy":
     """Return a policy of the stored class with the stored options, and newly drawn weights."""
     policy_class, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
-    # The last one is the schedule of the learning rate, which nothing uses.
-    arguments = data["observation_space"], data["action_space"], lambda _: 0.0
+    learning_rate_schedule = lambda _: 0.0  # noqa: E731 - required, but never called for steering
+    arguments = data["observation_space"], data["action_space"], learning_rate_schedule
     try:
         policy: BasePolicy = policy_class(*arguments, **{"use_sde": data["use_sde"], **options})
     except TypeError:  # Policies of DQN and similar algorithms take no use_sde.

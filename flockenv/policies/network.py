@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import torch
 
 FORMAT = "flockenv policy 2"
-"""First entry of every network's file."""
+"""The entry ``format`` in the header of every network's file."""
 
 _LARGEST_FILE = 5 << 20
 _HEADER = (
@@ -226,14 +226,17 @@ class NetworkPolicy(RowPolicy):
 
     def _contents(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Return the header of a file, without the provenance, and its arrays."""
-        norms = [None if layer.norm is None else layer.norm[2] for layer in self._layers]
-        header = {name: getattr(self, name) for name in _OPTIONS}
-        header |= {"activations": self.activations, "norms": norms}
+        epsilons: list[float | None] = []
         arrays: dict[str, NDArray[Any]] = {}
         for index, layer in enumerate(self._layers):
             arrays |= {f"weight_{index}": layer.weight, f"bias_{index}": layer.bias}
+            epsilon = None
             if layer.norm is not None:
-                arrays |= {f"scale_{index}": layer.norm[0], f"shift_{index}": layer.norm[1]}
+                scale, shift, epsilon = layer.norm
+                arrays |= {f"scale_{index}": scale, f"shift_{index}": shift}
+            epsilons.append(epsilon)
+        header = {name: getattr(self, name) for name in _OPTIONS}
+        header |= {"activations": self.activations, "norms": epsilons}
         return header, arrays
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -248,7 +251,7 @@ class NetworkPolicy(RowPolicy):
 
     @property
     def digest(self) -> str:
-        """The first 12 digits of the SHA-256 of the policy's options and numbers."""
+        """``sha256:`` and 12 digits of the hash of the policy's options and numbers."""
         header, arrays = self._contents()
         digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
         for name in sorted(arrays):
@@ -267,13 +270,13 @@ class NetworkPolicy(RowPolicy):
             header = _checked_header(str(arrays.pop("header")))
             activations, epsilons = header["activations"], header["norms"]
             indices = range(len(items(activations, "activations")))
-            has_norm = [index for index in indices if epsilons[index] is not None]
+            norm_indices = [index for index in indices if epsilons[index] is not None]
             names = [f"{kind}_{index}" for index in indices for kind in ("weight", "bias")]
-            names += [f"{kind}_{index}" for index in has_norm for kind in ("scale", "shift")]
+            names += [f"{kind}_{index}" for index in norm_indices for kind in ("scale", "shift")]
             refuse_unknown(arrays, names, "array of a network")
             norms = [
                 (arrays[f"scale_{index}"], arrays[f"shift_{index}"], epsilons[index])
-                if index in has_norm
+                if index in norm_indices
                 else None
                 for index in indices
             ]
@@ -295,10 +298,10 @@ class NetworkPolicy(RowPolicy):
 
     def __repr__(self) -> str:
         sizes = [self._observation_size, *(len(layer.bias) for layer in self._layers)]
-        *between, last = self.activations
-        words = ", ".join(dict.fromkeys(between)) or "linear"
-        words += "" if last == "identity" else f", then {last}"
-        return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {words})"
+        *hidden, last = self.activations
+        activations = ", ".join(dict.fromkeys(hidden)) or "linear"
+        activations += "" if last == "identity" else f", then {last}"
+        return f"{type(self).__name__}({'-'.join(map(str, sizes))}, {activations})"
 
 
 def _checked_header(text: str) -> dict[str, Any]:
@@ -355,7 +358,7 @@ def _checked_layers(
 
 
 def _checked_activations(activation: str | Sequence[str], count: int) -> Sequence[str]:
-    """Return the activation after each layer, as `NetworkPolicy` takes them."""
+    """Return the activation after each layer; a single name is for all layers but the last."""
     if isinstance(activation, str):
         refuse_unknown((activation,), ACTIVATIONS, "activation")
         return [*[activation] * (count - 1), "identity"]
@@ -367,6 +370,7 @@ def _checked_activations(activation: str | Sequence[str], count: int) -> Sequenc
 def _checked_norm(
     norm: Norm | None, size: int, name: str
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], float] | None:
+    """Return a layer's normalization with float32 arrays (size,); refuse other shapes."""
     if norm is None:
         return None
     if len(items(norm, name)) != 3:

@@ -52,6 +52,7 @@ _MODULE_ATTRIBUTE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 
 def _pool_name(pool: Pool | None) -> str:
+    """Return the name of a pool; refuse None and pools given by their radii."""
     if not isinstance(pool, str):
         raise ParameterError(
             f"pool = {short_repr(pool)} is not accepted: tuned and learned leaders are for pools "
@@ -86,7 +87,7 @@ def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) 
         For unknown names, files that `load` refuses, a pool that the policy was not made for, and
         anything that is not a policy.
     TypeError
-        For attributes of another kind than the options have.
+        For attributes of a type that the options do not accept.
     """
     if given is None or (isinstance(given, str) and given == EVERY_SUBSTEP):
         law = _core.Law.named(EVERY_SUBSTEP)
@@ -99,13 +100,14 @@ def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) 
 
 
 def _checked(source: LeaderPolicy) -> Policy:
+    """Return the checked policy that acts by an object's ``predict``."""
     law = source.law if isinstance(source, LawPolicy) else None
     leaders = source.leaders if isinstance(source, ModelPolicy) else 1
     return Policy.from_source(source, leaders=leaders, law=law)
 
 
 def _source(given: PolicyLike, pool: Pool | None, trust: bool) -> LeaderPolicy | Policy:
-    """Return the object with ``predict`` that `given` is, names or makes."""
+    """Return the policy that `given` is, names, or returns when called."""
     source: object = given
     if isinstance(given, os.PathLike) or (isinstance(given, str) and given.endswith(FILES)):
         return load(given, trust=trust)
@@ -186,8 +188,8 @@ def load(
         network's ``.npz`` file, or the ``.zip`` file of a model that was trained with
         stable-baselines3 (needs the extra ``train``).
     pool
-        For ``"learned"``, which needs it, and only for that: the named pool that the leaders were
-        trained in.
+        The named pool that the ``"learned"`` leaders were trained in, which they need. Refused with
+        a file.
     trust
         Whether a model's ``.zip`` file may execute the code in it.
 

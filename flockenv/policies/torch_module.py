@@ -42,7 +42,7 @@ class ModuleLayer:
 
 
 def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[ModuleLayer]:
-    """Return the layers of a ``torch.nn.Module``; refuse modules that are not such layers in a row.
+    """Return the layers of a ``torch.nn.Module``; refuse one that is not a sequence of them.
 
     With `has_spread`, or if a ``NormalParamExtractor`` ends it, the second of two outputs is
     dropped: the spread of a distribution.
@@ -107,6 +107,7 @@ def _append_module(layers: list[ModuleLayer], module: Any) -> None:
 
 
 def _check_activations_between(layers: list[ModuleLayer]) -> None:
+    """Refuse two linear layers with neither a normalization nor an activation between them."""
     for first, second in itertools.pairwise(layers):
         if first.activation == "identity" and first.norm is None:
             raise ParameterError(
@@ -138,6 +139,7 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
     finally:
         module.train(was_training)
     tensors = [tensor.float().cpu() for tensor in _tensors(output)]
+    # The empty tensor is for outputs without tensors, which torch.cat refuses.
     joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)
     # The mean alone is compared: a distribution's spread is made positive after the last layer.
     columns = 1 if len(tensors) == 2 else expected.shape[1]
@@ -174,5 +176,7 @@ def _layer_output(layer: ModuleLayer, values: "Tensor") -> "Tensor":
         values = functions.layer_norm(values, (len(scale),), weight, bias, epsilon)
     if layer.activation == "identity":
         return values
-    activated: Tensor = getattr(functions, layer.activation, torch.tanh)(values)
+    is_tanh = layer.activation == "tanh"
+    activation = torch.tanh if is_tanh else getattr(functions, layer.activation)
+    activated: Tensor = activation(values)
     return activated

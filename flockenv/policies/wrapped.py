@@ -92,7 +92,7 @@ class WrappedPolicy(ModelPolicy):
                 f"a wrapper that makes the action space {wrapped.action_space} is not accepted: it "
                 f"may change what leaders observe, but not their actions, {self._actions}"
             )
-        self._set_normalizing(wrapped)
+        self._set_normalizes_first(wrapped)
         wrapped_shape = wrapped.observation_space.shape
         model_shape = getattr(getattr(model, "observation_space", None), "shape", None)
         if model_shape is not None and model_shape != wrapped_shape:
@@ -101,7 +101,7 @@ class WrappedPolicy(ModelPolicy):
                 f"model takes {model_shape}"
             )
 
-    def _set_normalizing(self, wrapped: Any) -> None:
+    def _set_normalizes_first(self, wrapped: Any) -> None:
         """Store whether the model's `VecNormalize` acts before the wrapper.
 
         Refuse wrappers that do not normalize as the model's training did.
@@ -118,7 +118,7 @@ class WrappedPolicy(ModelPolicy):
                 "let the wrapper return VecNormalize.load(..., venv)"
             )
         vec_normalize = normalizing(self.model)
-        # Of the training's wrappers, VecNormalize is the innermost but not the outermost.
+        # VecNormalize acts first if it is the innermost of several wrappers of the training.
         self._normalizes_first = (
             vec_normalize is not None
             and self.model.env is not vec_normalize
@@ -135,16 +135,21 @@ class WrappedPolicy(ModelPolicy):
             )
 
     def _wrapped_stand_in(self, inputs: NDArray[np.float32]) -> Any:
-        """Return the wrapper around a stand-in for the first flock of `inputs`, or for all."""
+        """Return the wrapper around a stand-in for the environment.
+
+        The stand-in holds the first flock of `inputs` if each flock has its own wrapper, otherwise
+        all flocks.
+        """
         if self._is_per_flock:
             wrapped = self._wrapper(_stand_in(self._space, self._actions, inputs[0]))
         else:
             wrapped = self._wrapper(_vector_stand_in(self._space, self._actions, inputs))
         for layer in _layers(wrapped):
-            # Switches of stable-baselines3's VecNormalize and Gymnasium's NormalizeObservation.
-            for updates_statistics in ("training", "update_running_mean"):
-                if hasattr(layer, "obs_rms") and hasattr(layer, updates_statistics):
-                    setattr(layer, updates_statistics, False)
+            # Stop updates of the statistics: VecNormalize of stable-baselines3 has the first
+            # switch, NormalizeObservation of Gymnasium the second.
+            for switch in ("training", "update_running_mean"):
+                if hasattr(layer, "obs_rms") and hasattr(layer, switch):
+                    setattr(layer, switch, False)
         return wrapped
 
     def _model_actions(
@@ -154,18 +159,18 @@ class WrappedPolicy(ModelPolicy):
         episode_start: NDArray[np.bool_] | None,
         deterministic: bool,
     ) -> tuple[object, object]:
-        is_first = state is None
+        starts_run = state is None
         if episode_start is not None and episode_start.any():
             if not episode_start.all():
                 raise ParameterError(
                     "episode_start of some flocks is not accepted: a wrapper's memory restarts "
                     "for all flocks together"
                 )
-            is_first = True
+            starts_run = True
         vec_normalize = normalizing(self.model)
         if vec_normalize is not None and self._normalizes_first:
             inputs = vec_normalize.normalize_obs(inputs)
-        run = state if isinstance(state, _Run) and not is_first else _Run(self, inputs)
+        run = state if isinstance(state, _Run) and not starts_run else _Run(self, inputs)
         observations = run.wrapped_observations(inputs)
         if vec_normalize is not None and not self._normalizes_first:
             observations = vec_normalize.normalize_obs(observations)
