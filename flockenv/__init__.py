@@ -73,7 +73,7 @@ _COUNTERPARTS = {
     "run": "flockenv.simulate",
     "load": "flockenv.Recording.load, or flockenv.policies.load",
 }
-"""Names that users of other packages may look for, and what has that role here."""
+"""Names that users of other packages may look for, and the names here that have their role."""
 
 
 def _prints_help_alone() -> bool:
@@ -85,7 +85,7 @@ def _prints_help_alone() -> bool:
     return name == "flockenv" and words in ([], ["-h"], ["--help"], ["--version"])
 
 
-# Before anything uses the core.
+# Check the core, and choose its build, before anything uses it.
 _built.check()
 _avx2.choose()
 # Gymnasium, which has no entry points for packages, and PettingZoo take as long to import as NumPy.
@@ -108,11 +108,12 @@ def __getattr__(name: str) -> Any:
 
 
 def _hint(name: str) -> str:
-    """Return a suggestion for an unknown name."""
+    """Return a suggestion for an unknown name, or "" without one."""
     from flockenv.errors import nearest
 
-    # hasattr of a dunder name, for example, needs no suggestion.
-    near = None if name.startswith("_") else _COUNTERPARTS.get(name) or nearest(name, __all__)
+    if name.startswith("_"):  # Libraries look for private names; they need no suggestion.
+        return ""
+    near = _COUNTERPARTS.get(name) or nearest(name, __all__)
     return f": did you mean {near}?" if near else ""
 
 

@@ -33,7 +33,7 @@ def short_repr(value: object) -> str:
     """Return the repr of a value for a message, cut after 80 characters."""
     try:
         text = repr(value)
-    except Exception:  # The repr of an int of more than 4300 digits fails; a user's may, too.
+    except Exception:  # An int of more than 4300 digits has no repr; a user's repr may fail.
         return "a value that cannot be printed"
     return text if len(text) <= 80 else f"{text[:80]}…"
 

@@ -109,6 +109,7 @@ class OrderParameters(_Recorded[float], HintsAtNames):
     _meanings: ClassVar[Mapping[str, str]] = _MEANINGS
 
     def _values(self) -> tuple[float | None, ...]:
+        """Return the values, with None for NaN, because None equals None."""
         values = (getattr(self, name) for name in ORDER)
         return tuple(None if math.isnan(value) else value for value in values)
 
@@ -142,8 +143,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
         lengths = [len(column) for column in self.columns() if np.ndim(column)]
         for name in ORDER:
             if not np.ndim(getattr(self, name)):
-                undefined = np.full(lengths[0] if lengths else 0, np.nan)
-                object.__setattr__(self, name, undefined)
+                missing_column = np.full(lengths[0] if lengths else 0, np.nan)
+                object.__setattr__(self, name, missing_column)
 
     def columns(self) -> tuple[NDArray[np.float64], ...]:
         """Return the columns, in the order of the table."""
@@ -195,7 +196,9 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
                 f"quantity = {short_repr(name)} is not accepted: {', '.join(known)}"
             )
         if known[name].kind == "recorded":
-            if not {*([target] if isinstance(target, str) else target)} <= {"cw", "ccw"}:
+            # For derived quantities, the core checks the target.
+            targets = [target] if isinstance(target, str) else target
+            if not set(targets) <= {"cw", "ccw"}:
                 raise ParameterError(
                     f"target = {short_repr(target)} is not accepted: 'cw' or 'ccw'"
                 )
@@ -217,8 +220,8 @@ class OrderSeries(_Recorded[NDArray[np.float64]], HintsAtNames):
     def outward(self) -> NDArray[np.float64]:
         """Return Ψ_o·cos φ_o in [-1, 1], shape (t,): 1 for a jam, 0 for streams along the pool.
 
-        It is the mean of cos φ over boats, to which each boat along the pool adds 0, in whichever
-        direction it circulates.
+        It is the mean of cos φ over boats. A boat along the pool adds 0, whether it circulates
+        clockwise or counter-clockwise.
         """
         return self.series("outward")
 

@@ -172,16 +172,16 @@ def _run(
     flock: Flock,
     duration_s: float,
     plan: dict[str, Any],
-    recording: Callable[[dict[str, Any]], Recording],
+    build_recording: Callable[[dict[str, Any]], Recording],
 ) -> Recording:
     """Run a flock in the core; an error gets the run until then as its attribute ``recording``."""
     try:
         columns = _core.record(flock._in_core, duration_s, plan)
     except BaseException as error:
         if (columns := vars(error).pop("columns", None)) is not None:
-            vars(error)["recording"] = recording(columns)
+            vars(error)["recording"] = build_recording(columns)
         raise
-    return recording(columns)
+    return build_recording(columns)
 
 
 def _build_recording(
@@ -230,24 +230,26 @@ def _parse_schedule(parameters: FlockParameters, schedule: Schedule, seed: int) 
     """
     entries = [(*_parse_entry(entry), entry) for entry in items(schedule, "schedule")]
     changes: Changes = []
-    now, names_at = parameters, dict[float, set[str]]()
+    current, changed_names = parameters, dict[float, set[str]]()
     for time_s, fields, entry in sorted(entries, key=lambda parsed: parsed[0]):
         try:
-            if twice := names_at.setdefault(time_s, set()) & fields.keys():
+            names_at_time = changed_names.setdefault(time_s, set())
+            if twice := names_at_time & fields.keys():
                 raise ParameterError(f"{twice.pop()} changes twice at this time")
-            names_at[time_s] |= fields.keys()
-            before, now = now, now.replace(**fields)
-            if before.pool != now.pool and math.inf in before.pool_radii_cm + now.pool_radii_cm:
+            names_at_time.update(fields)
+            before, current = current, current.replace(**fields)
+            radii_cm = before.pool_radii_cm + current.pool_radii_cm
+            if before.pool != current.pool and math.inf in radii_cm:
                 raise ParameterError("open water and a pool do not change into each other")
-            if any(getattr(before, name) != getattr(now, name) for name in _FIT_FIELDS):
-                Flock(now, seed)
+            if any(getattr(before, name) != getattr(current, name) for name in _FIT_FIELDS):
+                Flock(current, seed)  # Raises an error if the boats do not fit.
         except ParameterError as error:
             raise ParameterError(
                 f"schedule = {short_repr(entry)} is not accepted: {error}"
             ) from error
-        # New parameters would restart the random streams, so a change of the target stays one.
-        is_target_alone = now == before.replace(target=now.target)
-        changes.append((time_s, now.target if is_target_alone else now))
+        # Other parameters restart the random streams; a change of the target alone must not.
+        is_target_alone = current == before.replace(target=current.target)
+        changes.append((time_s, current.target if is_target_alone else current))
     return changes
 
 
@@ -261,10 +263,10 @@ def _parse_entry(entry: object) -> tuple[float, dict[str, object]]:
         case (np.timedelta64(), _):
             pass
         case (Real() as number, Mapping() as fields) if fields and (time_s := float(number)) >= 0.0:
-            counts = {"n_boats", "n_leaders"} & fields.keys()
-            if not counts and time_s <= 1e9:
+            fixed = {"n_boats", "n_leaders"} & fields.keys()
+            if not fixed and time_s <= 1e9:
                 return time_s, {str(name): value for name, value in fields.items()}
-            reason = f"{counts.pop()} cannot change during a run" if counts else reason
+            reason = f"{fixed.pop()} cannot change during a run" if fixed else reason
     raise ParameterError(f"schedule = {short_repr(entry)} is not accepted: {reason}")
 
 
@@ -282,19 +284,20 @@ def _schedule_digest(
 
     `parameters` are those at the start, `times_s` the times of the samples.
     """
-    now, length_s = parameters, round(times_s[-1] - times_s[0], 9)
+    current, length_s = parameters, round(times_s[-1] - times_s[0], 9)
     # If several changes have the same time, only the parameters after the last one count.
     parameters_from: dict[float, FlockParameters] = {}
     for time_s, change in changes:
         # A change acts after the sample at its time. The run may have ended before that.
         if time_s < length_s:
-            now = change if isinstance(change, FlockParameters) else now.replace(target=change)
-            parameters_from[time_s] = now
+            is_target = not isinstance(change, FlockParameters)
+            current = current.replace(target=change) if is_target else change
+            parameters_from[time_s] = current
     before, effective = parameters, []
-    for time_s, now in parameters_from.items():
-        if now != before:
-            effective.append((time_s, now.to_dict()))
-        before = now
+    for time_s, after in parameters_from.items():
+        if after != before:
+            effective.append((time_s, after.to_dict()))
+        before = after
     if not effective:
         return None
     return hashlib.sha256(json.dumps(effective, sort_keys=True).encode()).hexdigest()

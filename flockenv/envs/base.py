@@ -115,10 +115,11 @@ class SingleEnvironmentBase(Resumable):
     def _set_up(
         self, options: dict[str, Any], render_mode: str | None, render_size: object
     ) -> None:
+        """Store the checked options, the batch of one flock, and the render mode."""
         parsed = EnvOptions.parse(options)
         self.parameters = parsed.parameters
         self.num_leaders = parsed.parameters.n_leaders
-        self._batch = LeaderBatch(parsed, [self.num_leaders], "disabled")
+        self._batch = LeaderBatch(parsed, [self.num_leaders], autoreset_mode="disabled")
         self.state_space = self._batch.state_space
         fps = self._batch.decisions_hz
         self.render_mode = render_mode
@@ -141,7 +142,7 @@ class SingleEnvironmentBase(Resumable):
         """Return features of the flock, shape (features,), float32.
 
         They depend neither on the order of boats nor on absolute angles. They are in the frame of
-        the target; with several targets, in that of leader 0's.
+        the target; with several targets, in the frame of leader 0's target.
         `envs.observation.flock_feature_entries` lists them.
         """
         features: NDArray[np.float32] = self._batch.core.flock_features(each_leader=False)[0]

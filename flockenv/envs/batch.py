@@ -17,8 +17,8 @@ from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.flock import Flock
 from flockenv.parameters import FlockParameters
 
-# NumPy adds this many numbers, or more, in another order than one after another.
-_UNROLLED = 8
+# NumPy adds fewer numbers than this one after another, but from this many on in another order.
+_UNROLLED_FROM = 8
 # The largest number of flocks or leaders: more would fill the memory.
 _LARGEST_COUNT = 100_000
 
@@ -64,9 +64,9 @@ class LeaderBatch:
 
         `requests` come from `reset_requests`. `new_seed` returns a seed for a flock that has none.
         """
-        starts = np.ones(self.num_flocks, np.bool_) if mask is None else mask
+        is_reset = np.ones(self.num_flocks, np.bool_) if mask is None else mask
         seeded_requests: list[dict[str, Any] | None] = [None] * self.num_flocks
-        for flock in np.flatnonzero(starts).tolist():
+        for flock in np.flatnonzero(is_reset).tolist():
             seed = seeds[flock]
             if seed is None and not self.core.is_seeded(flock):
                 seed = new_seed()
@@ -87,8 +87,8 @@ class LeaderBatch:
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_]]:
         """Take a decision; return observations and rewards by row, and whether each episode ended.
 
-        A user's own reward function gets `env`. If that function returns anything but rewards that
-        are finite in `precision`, an error is raised after the flocks have moved.
+        A user's reward function is called with `env`. If it returns anything but rewards that are
+        finite in `precision`, an error is raised after the flocks have moved.
         """
         if self._user_reward is None:
             return self.core.step(actions)
@@ -149,8 +149,8 @@ class LeaderBatch:
 
 
 def mean_rows(rows: list[list[float]]) -> list[float]:
-    """Return the mean of each column: the bits of NumPy's mean, in a tenth of its time."""
-    if len(rows) >= _UNROLLED:
+    """Return the mean of each column, with the bits of NumPy's mean, in a tenth of its time."""
+    if len(rows) >= _UNROLLED_FROM:
         return [float(column.mean()) for column in np.array(rows).T]
     sums, count = [0.0] * len(rows[0]), len(rows)
     for row in rows:
@@ -167,7 +167,7 @@ def is_plain(action: object, shape: tuple[int, ...]) -> bool:
 
 
 def at_least_one(count: object, name: str) -> int:
-    """Return a number of flocks or leaders as an int; refuse others by the argument's name."""
+    """Return a number of flocks or leaders as an int; `name` is the argument's, for errors."""
     number = as_int(count, name)
     if not 1 <= number <= _LARGEST_COUNT:
         raise ParameterError(

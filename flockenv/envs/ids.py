@@ -50,21 +50,21 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     "flockenv/Order-easy-v0": _level(
         "The environment to start with: four of ten boats lead and see few numbers. The order "
         "responds within seconds, so that plain PPO learns to lead in two minutes of one core.",
-        0.3,
-        120.0,
+        bw_s=0.3,
+        episode_s=120.0,
         **_TEN_BOATS,
     ),
     "flockenv/Order-noisy-v0": _level(
         "Order-easy with one and a half times its noise: the effect of a rudder is lost sooner.",
-        0.45,
-        120.0,
+        bw_s=0.45,
+        episode_s=120.0,
         **_TEN_BOATS,
     ),
     "flockenv/Order-narrow-v0": _level(
         "Can three leaders of 27 boats learn to steer in `narrow`, where boats stand close? They "
         "choose rudders from the default observation.",
-        0.45,
-        240.0,
+        bw_s=0.45,
+        episode_s=240.0,
         n_boats=27,
         n_leaders=3,
         pool="narrow",
@@ -72,42 +72,42 @@ ENVIRONMENTS: Mapping[str, Environment] = {
     "flockenv/Order-wide-v0": _level(
         "Can three leaders of 27 boats learn to steer in `wide`, where the order responds within "
         "minutes? They choose rudders from the default observation.",
-        0.31,
-        480.0,
+        bw_s=0.31,
+        episode_s=480.0,
         n_boats=27,
         n_leaders=3,
         pool="wide",
     ),
     "flockenv/OneLeader-v0": _suite(
-        "How far does one leader get? It leads 26 boats at the critical noise.", 1
+        "How far does one leader get? It leads 26 boats at the critical noise.", n_leaders=1
     ),
     "flockenv/ThreeLeaders-v0": _suite(
-        "How do leaders share their work? Three lead 24 boats at the critical noise.", 3
+        "How do leaders share their work? Three lead 24 boats at the critical noise.", n_leaders=3
     ),
     "flockenv/Reversal-v0": _suite(
         "Can leaders turn a flock that circles the other way? The target alternates every four "
         "minutes, as in figure 7 of the paper.",
-        3,
-        960.0,
+        n_leaders=3,
+        episode_s=960.0,
         target="alternate",
     ),
     "flockenv/Camera-v0": _suite(
         "Does a policy work behind a camera? It misses 2 % of the positions, and its picture is "
         "one frame late.",
-        3,
+        n_leaders=3,
         dropout_rate=0.02,
         delay_frames=1,
     ),
     "flockenv/Noises-v0": _suite(
         "Does one policy work at any noise? Each episode draws its own, from half to 1.25 times "
         "the critical one.",
-        3,
+        n_leaders=3,
         bw_s=(0.155, 0.3875),
     ),
     "flockenv/Misinformed-v0": _suite(
         "Can two leaders play two roles? Leader 1 gets the wrong direction, and the order counts "
         "towards the direction of leader 0. With one policy for both, the mean order is 0.",
-        2,
+        n_leaders=2,
         target=("cw", "ccw"),
     ),
 }

@@ -191,6 +191,7 @@ def _pop_physics(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _flock_parameters(values: dict[str, Any]) -> FlockParameters:
+    """Return the parameters of `params` or of a preset, with the other values as changes."""
     params, preset = values.pop("params", None), values.pop("preset", None)
     if params is None:
         name = "simulation" if preset is None else preset

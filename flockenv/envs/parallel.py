@@ -156,6 +156,7 @@ class LeadersParallelEnv(
         )
 
     def _flat_actions(self, actions: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+        """Return the rudders of all agents, in their order; refuse any other set of agents."""
         if not self.agents:
             raise EpisodeError("step was called before a reset or after the episode's end")
         if not isinstance(actions, Mapping):
@@ -165,11 +166,13 @@ class LeadersParallelEnv(
             raise ParameterError(
                 f"actions must be for {', '.join(self.agents)}; these differ: {differing}"
             )
-        if self._levels is None and (rudders := _plain_rudders([actions[a] for a in self.agents])):
+        in_order = [actions[agent] for agent in self.agents]
+        if self._levels is None and (rudders := _plain_rudders(in_order)):
             return np.array(rudders)
-        return np.concatenate([self._action(agent, actions[agent]) for agent in self.agents])
+        return np.concatenate([self._rudder(agent, actions[agent]) for agent in self.agents])
 
-    def _action(self, agent: str, action: Any) -> NDArray[np.float64]:
+    def _rudder(self, agent: str, action: Any) -> NDArray[np.float64]:
+        """Return the rudder of one agent's action, shape (1,); refuse NaN and other shapes."""
         shape = (1,) if self._levels is None else ()
         rudder = _core.flat_actions(action, shape, self._levels, f"the action of {agent}")
         if np.isnan(rudder).any():
@@ -213,29 +216,29 @@ def parallel_env(*, render_mode: str | None = None, **options: Any) -> LeadersPa
 class _Turns(OwnFlocks, OrderEnforcingWrapper[str, Any, Any]):
     """Agents that act in turn. An action is checked in its agent's turn, before the flock moves."""
 
-    def __init__(self, flock: LeadersParallelEnv) -> None:
-        self._flock = flock
-        super().__init__(parallel_to_aec(flock))
+    def __init__(self, parallel: LeadersParallelEnv) -> None:
+        self._parallel = parallel
+        super().__init__(parallel_to_aec(parallel))
 
     @property
     def np_random(self) -> np.random.Generator:
         """The generator that draws a seed if a reset is given none."""
-        return self._flock.np_random
+        return self._parallel.np_random
 
     @np_random.setter
     def np_random(self, generator: np.random.Generator) -> None:
-        self._flock.np_random = generator
+        self._parallel.np_random = generator
 
     def step(self, action: object) -> None:
         # An agent whose episode is over takes no action.
-        if self._flock.agents:
-            self._flock._action(self.agent_selection, action)
+        if self._parallel.agents:
+            self._parallel._rudder(self.agent_selection, action)
         super().step(action)
 
 
 def env(*, render_mode: str | None = None, **options: object) -> AECEnv[str, Any, Any]:
     """Return `parallel_env` as PettingZoo's AEC environment, whose agents act in turn.
 
-    The flock moves once all of them have acted.
+    The flock moves once all agents have acted.
     """
     return _Turns(parallel_env(render_mode=render_mode, **options))

@@ -38,7 +38,7 @@ def register() -> None:
                 pettingzoo.register(kind, env_id, entry_point, kwargs=dict(environment.options))
 
 
-def registered(is_ours: Callable[[Mapping[str, Any]], bool]) -> EnvSpec | None:
-    """Return the first registered spec whose options `is_ours` accepts; None if there is none."""
+def registered(accepts: Callable[[Mapping[str, Any]], bool]) -> EnvSpec | None:
+    """Return the first of the ids' specs whose options `accepts` takes; None if it takes none."""
     specs = (spec for spec in gymnasium.registry.values() if spec.entry_point == ENTRY_POINT)
-    return next((spec for spec in specs if is_ours(spec.kwargs)), None)
+    return next((spec for spec in specs if accepts(spec.kwargs)), None)

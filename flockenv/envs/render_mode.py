@@ -22,7 +22,7 @@ RENDER_MODES = ("human", "rgb_array")
 class RenderMode:
     """The render mode of an environment, the size of its frames, and its window if it has one.
 
-    A copy or an unpickled one has the same mode and size, and no window until it renders.
+    Copies and unpickled objects have the same mode and size, and no window until they render.
     """
 
     def __init__(
@@ -44,9 +44,10 @@ class RenderMode:
         self.size = (size[0], size[1])
         self.fps = fps
         self._window: Window | None = None
+        #: Time of the flock in s when it was last shown.
         self._shown_s: float | None = None
         self._closed = False
-        # Wrong sizes and missing extras are errors before anything is simulated.
+        # Raise the errors for wrong sizes and missing extras before anything is simulated.
         if mode is not None or self.size != DEFAULT_SIZE:
             renderer(*self.size)
         if mode == "human":

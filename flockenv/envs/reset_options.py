@@ -51,6 +51,7 @@ class Spellings:
 
 
 def _parts(name: object) -> list[str]:
+    """Return the words and numbers of a name, in lower case."""
     return re.findall(r"[a-z0-9]+", str(name).casefold())
 
 
@@ -107,7 +108,8 @@ def _values_of_flocks(
     if not lists_flocks:
         # For one flock, a list is a range of noises, or a target for each leader.
         return [tuple(values) if is_list else values]
-    if values is value and not is_list:
+    is_iterator = values is not value
+    if not (is_iterator or is_list):
         return [value] * flocks
     if len(values) != flocks:
         raise ParameterError(f"reset option {name!r} lists {len(values)} values, expected {flocks}")

@@ -8,11 +8,14 @@ import numpy as np
 from flockenv._io.arguments import as_int, materialized
 from flockenv.errors import ParameterError, short_repr
 
-_SEEDS = 2**64
+_SEED_LIMIT = 2**64
 
 
 class Seed(int):
-    """A seed in infos. JSON takes it as an int, and Gymnasium's arrays take it beyond 2^63."""
+    """A seed in infos: an int, but of a class of its own.
+
+    Gymnasium puts plain ints into int64 arrays, in which seeds from 2^63 on do not fit.
+    """
 
 
 class OwnGenerator:
@@ -50,8 +53,8 @@ class OwnGenerator:
 
 
 def drawn_seed(random: np.random.Generator) -> int:
-    """Draw a seed for an environment without one."""
-    return int(random.integers(_SEEDS // 2))
+    """Draw a seed below 2^63 for an environment without one."""
+    return int(random.integers(_SEED_LIMIT // 2))
 
 
 def seed_of(seed: object) -> int:
@@ -60,9 +63,9 @@ def seed_of(seed: object) -> int:
 
 
 def seeds_from(first: object, flocks: int) -> list[int]:
-    """Return consecutive seeds for a number of flocks, the first of which has seed `first`."""
+    """Return the seeds first, first + 1 and so on, one for each of a number of flocks."""
     first_seed = as_int(first, "seed")
-    if not 0 <= first_seed <= _SEEDS - flocks:
+    if not 0 <= first_seed <= _SEED_LIMIT - flocks:
         raise ParameterError(
             f"seed = {short_repr(first_seed)} is not accepted: at least 0, and below 2^64 for the "
             f"last of {flocks} flocks"

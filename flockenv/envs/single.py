@@ -52,11 +52,11 @@ class LeadersEnv(
     - With `action_mode="heading"` an action is a heading: its angle outward of the target's tangent
       over π. `DampedLaw()` steers to it in every control step.
     - With `action_mode="lean"` an action is that angle over 1.2 rad, and the damped law with the
-      gains tuned in the pool steers to it: with 0 that law steers, bit for bit.
+      gains tuned in the pool steers to it. An action of 0 is the tuned law, bit for bit.
     - Both laws read what the leader observes of itself.
     - `decision_period_s` makes a step hold its action for that long. The reward of the step is the
-      sum over its control steps, of which there are fewer if the episode ends. Its `reward_terms`
-      are means.
+      sum over its control steps; the last step of an episode may have fewer of them. The
+      `reward_terms` of the step are means.
 
     ## Observation space
     `Box` of shape (k * observation size,), float32: what leader 0 observes, then leader 1, and so
@@ -106,7 +106,7 @@ class LeadersEnv(
     - `flock_seed`, `bw_s` and `steps` (control steps) of the episode
     - `total_reward`, and the mean of each reward term over steps and leaders
     - means of order parameters of the normal boats, such as `psi_o`, `signed_order` and `rotation`,
-      over the analysis window without the first tenth; they are missing if the episode ends before
+      over the analysis window without the first tenth; missing if the episode ends before that
     - `share_towards_target`: fraction of that window with a signed order above 0.5
     - `ordering_time_s` and `ordering_time_wide_s`: eq. (7) with the angle π/20 as printed and with
       π/4; infinite if the flock never ordered

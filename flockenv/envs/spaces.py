@@ -82,7 +82,7 @@ class ObservationSpace(_Box):
         return f"ObservationSpace({self.shape}, leaders={self.leaders}, {arguments})"
 
     def policy_options(self) -> dict[str, Any]:
-        """Return `options`, even if another build stored this space in a model's file.
+        """Return `options`, checked, since another version may have stored this space in a file.
 
         An option or a block that is missing from the file has its default. Raises ParameterError
         for unknown options and blocks.
@@ -125,9 +125,9 @@ def flock_feature_space() -> _Box:
 def state_space(n_boats: int) -> _Box:
     """Return the space of the global state."""
     # The entries of the boats come first, and then those of the whole flock.
-    with_one_boat, of_flock = _bounds(state_entries(1)), _bounds(state_entries(0))
-    of_boats = np.tile(with_one_boat[: -len(of_flock)], (n_boats, 1))
-    low, high = np.concatenate([of_boats, of_flock]).T.copy()
+    one_boat_and_flock, flock = _bounds(state_entries(1)), _bounds(state_entries(0))
+    one_boat = one_boat_and_flock[: -len(flock)]
+    low, high = np.concatenate([np.tile(one_boat, (n_boats, 1)), flock]).T.copy()
     return _Box(low, high, dtype=np.float32)
 
 

@@ -216,12 +216,14 @@ class LeadersVectorEnv(
         return rows.reshape(self.num_envs, -1)
 
     def _end_infos(self, truncated: NDArray[np.bool_]) -> dict[str, Any]:
+        """Return the infos of the flocks whose episodes ended."""
         infos: dict[str, Any] = {}
         for flock in np.flatnonzero(truncated).tolist():
             info = _array_info(self._batch.end_info(flock))
             if self.autoreset_mode == AutoresetMode.SAME_STEP:
-                last = self._batch.core.final_observation(flock).reshape(-1)
-                infos = self._add_info(infos, {"final_obs": last, "final_info": info}, flock)
+                final_obs = self._batch.core.final_observation(flock).reshape(-1)
+                final = {"final_obs": final_obs, "final_info": info}
+                infos = self._add_info(infos, final, flock)
                 info = _array_info(self._batch.reset_info(flock))
             infos = self._add_info(infos, info, flock)
         return infos
@@ -234,7 +236,7 @@ class LeadersVectorEnv(
         """Return features of every flock, shape (num_envs, features), float32.
 
         They depend neither on the order of boats nor on absolute angles. They are in the frame of
-        the target; with several targets, in that of leader 0's.
+        the target; with several targets, in the frame of leader 0's target.
         """
         return self._batch.core.flock_features(each_leader=False)
 
@@ -278,16 +280,17 @@ _CORE_NAMES = {
 
 
 def _array_info(info: dict[str, Any]) -> dict[str, Any]:
-    """Return an info with unsigned seeds: Gymnasium's arrays hold no other ones beyond 2^63."""
+    """Return an info with seeds as uint64: Gymnasium's arrays of ints end at 2^63."""
     info = {**info}
-    for name in info.keys() & {"flock_seed"}:
-        info[name] = np.uint64(info[name])
-    for name in info.keys() & {"episode_summary"}:
-        info[name] = _array_info(info[name])
+    if "flock_seed" in info:
+        info["flock_seed"] = np.uint64(info["flock_seed"])
+    if "episode_summary" in info:
+        info["episode_summary"] = _array_info(info["episode_summary"])
     return info
 
 
 def _autoreset_mode(mode: str | AutoresetMode) -> AutoresetMode:
+    """Return a mode that is given by the core's name, Gymnasium's name, or itself."""
     for known, name in _CORE_NAMES.items():
         if mode in (known, name, known.value):
             return known

@@ -64,7 +64,7 @@ class Contacts(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class ContactSeries(_Columns):
-    """The c contacts that carried a force in t samples, sample after sample.
+    """The c contacts that carried a force in t samples.
 
     Attributes
     ----------
@@ -91,6 +91,7 @@ class ContactSeries(_Columns):
 
     def at(self, samples: NDArray[np.bool_]) -> "ContactSeries":
         """Return the series of the samples in a mask, shape (t,)."""
-        in_samples = np.repeat(samples, self.count)
-        columns = (getattr(self, column.name)[in_samples] for column in fields(self)[1:])
+        is_selected = np.repeat(samples, self.count)
+        _count, *contact_fields = fields(self)
+        columns = (getattr(self, column.name)[is_selected] for column in contact_fields)
         return ContactSeries(self.count[samples], *columns)

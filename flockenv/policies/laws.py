@@ -351,7 +351,7 @@ class LeaningLaw(LawPolicy):
 
     @property
     def digest(self) -> str:
-        """``sha256:`` and 12 digits of the law's hash, without `judged` and `provenance`."""
+        """``sha256:`` and 12 digits of the SHA-256 of the law without `judged` and `provenance`."""
         numbers = {**self._values, "judged": None, "provenance": None}
         return f"sha256:{sha256(json.dumps(numbers, sort_keys=True).encode()).hexdigest()[:12]}"
 

@@ -311,8 +311,8 @@ def _new_policy(data: Mapping[str, Any]) -> "BasePolicy":
     """Return a policy of the stored class with the stored options, and newly drawn weights."""
     policy_class, options = data["policy_class"], dict(data["policy_kwargs"])
     options.pop("device", None)
-    learning_rate_schedule = lambda _: 0.0  # noqa: E731 - required, but never called for steering
-    arguments = data["observation_space"], data["action_space"], learning_rate_schedule
+    # The third argument is the schedule of the learning rate, which steering never calls.
+    arguments = data["observation_space"], data["action_space"], lambda _: 0.0
     try:
         policy: BasePolicy = policy_class(*arguments, **{"use_sde": data["use_sde"], **options})
     except TypeError:  # Policies of DQN and similar algorithms take no use_sde.

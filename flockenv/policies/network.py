@@ -251,7 +251,7 @@ class NetworkPolicy(RowPolicy):
 
     @property
     def digest(self) -> str:
-        """``sha256:`` and 12 digits of the hash of the policy's options and numbers."""
+        """``sha256:`` and 12 digits of the SHA-256 of the policy's options and numbers."""
         header, arrays = self._contents()
         digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
         for name in sorted(arrays):
