@@ -19,7 +19,7 @@ from flockenv._io.toml import read_limited
 from flockenv.envs.observation import observation_entries
 from flockenv.errors import ParameterError, short_repr
 from flockenv.policies.base import CONTROL_HZ, Layout, RowPolicy
-from flockenv.policies.model import ModelPolicy, normalizing
+from flockenv.policies.model import ModelPolicy, vec_normalize_of
 from flockenv.policies.names import LEARNED, PAPERS_LAW, TUNED_LAW
 
 LEAN_FEATURES: tuple[str, ...] = tuple(_core.LEAN_FEATURES)
@@ -374,7 +374,7 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
         (not model_policy.mirror_to_target, "a view that is not mirrored to the target"),
         (control_hz != CONTROL_HZ, f"{control_hz:g} control steps per second"),
         (model_policy.leaders != 1, f"{model_policy.leaders} leaders at once"),
-        (normalizing(model) is not None, "VecNormalize around its environment"),
+        (vec_normalize_of(model) is not None, "VecNormalize around its environment"),
         (hidden_layers or not hasattr(policy, "action_net"), "an actor of more than one layer"),
     ):
         if differs:

@@ -80,7 +80,7 @@ class ModelPolicy:
                 "another environment, or a wrapper changes what it sees; WrappedPolicy takes it "
                 "with the wrapper"
             )
-        if lacks_normalizing(model):
+        if lacks_vec_normalize(model):
             raise ParameterError(
                 "a model that was trained in VecNormalize and loaded without it is not accepted: "
                 "load it with env = VecNormalize.load(...), which holds the statistics"
@@ -159,7 +159,7 @@ class ModelPolicy:
         deterministic: bool,
     ) -> tuple[object, object]:
         """Return the model's actions and next state, for one input per leader or per flock."""
-        vec_normalize = normalizing(self.model)
+        vec_normalize = vec_normalize_of(self.model)
         if vec_normalize is not None:
             inputs = vec_normalize.normalize_obs(inputs)
         with independent_rows():
@@ -174,13 +174,13 @@ class ModelPolicy:
         return f"{type(self).__name__}({name}, {leaders}, {self.control_hz:g} Hz)"
 
 
-def normalizing(model: object) -> Any:
+def vec_normalize_of(model: object) -> Any:
     """Return the ``VecNormalize`` of a model's environment, if it normalizes observations."""
     vec_normalize = getattr(model, "get_vec_normalize_env", lambda: None)()
     return vec_normalize if vec_normalize is not None and vec_normalize.norm_obs else None
 
 
-def lacks_normalizing(model: object) -> bool:
+def lacks_vec_normalize(model: object) -> bool:
     """Return whether a model was trained in a ``VecNormalize`` but loaded without it."""
     # stable-baselines3 stores this only for trainings in VecNormalize.
     was_normalized = getattr(model, "_last_original_obs", None) is not None

@@ -14,9 +14,9 @@ from flockenv.policies.base import LeaderPolicy
 from flockenv.policies.model import (
     ModelPolicy,
     independent_rows,
-    lacks_normalizing,
-    normalizing,
+    lacks_vec_normalize,
     space_under_wrappers,
+    vec_normalize_of,
 )
 
 if TYPE_CHECKING:
@@ -112,12 +112,12 @@ class WrappedPolicy(ModelPolicy):
                 "a wrapper that normalizes without statistics is not accepted: give it the obs_rms "
                 "of the training's wrapper"
             )
-        if not statistics and lacks_normalizing(self.model):
+        if not statistics and lacks_vec_normalize(self.model):
             raise ParameterError(
                 "a model that was trained in VecNormalize and loaded without it is not accepted: "
                 "let the wrapper return VecNormalize.load(..., venv)"
             )
-        vec_normalize = normalizing(self.model)
+        vec_normalize = vec_normalize_of(self.model)
         # VecNormalize acts first if it is the innermost of several wrappers of the training.
         self._normalizes_first = (
             vec_normalize is not None
@@ -167,7 +167,7 @@ class WrappedPolicy(ModelPolicy):
                     "for all flocks together"
                 )
             starts_run = True
-        vec_normalize = normalizing(self.model)
+        vec_normalize = vec_normalize_of(self.model)
         if vec_normalize is not None and self._normalizes_first:
             inputs = vec_normalize.normalize_obs(inputs)
         run = state if isinstance(state, _Run) and not starts_run else _Run(self, inputs)

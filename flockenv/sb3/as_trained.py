@@ -9,7 +9,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecNormalize
 from flockenv.envs.spaces import POLICY_OPTIONS, ObservationSpace, differing_options
 from flockenv.errors import ParameterError, short_repr
 from flockenv.policies import ModelPolicy, Policy
-from flockenv.policies.model import lacks_normalizing, normalizing, space_under_wrappers
+from flockenv.policies.model import lacks_vec_normalize, space_under_wrappers, vec_normalize_of
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 from flockenv.sb3.per_flock import PerFlock, layers_of
 
@@ -24,9 +24,9 @@ class AsTrained:
     def __init__(self, model: object, flocks: VecEnv, leaders: LeaderVecEnv) -> None:
         self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
-        training_layer, layers = normalizing(self.model), normalizing_layers(flocks)
+        training_layer, layers = vec_normalize_of(self.model), normalizing_layers(flocks)
         layers_here = [layer for layer in layers if layer.norm_obs]
-        if not layers and lacks_normalizing(self.model):
+        if not layers and lacks_vec_normalize(self.model):
             raise ParameterError(
                 f"{short_repr(self.model)} was trained in VecNormalize and loaded without it: "
                 "evaluate it in VecNormalize.load(..., env), which holds the statistics"
