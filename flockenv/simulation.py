@@ -290,8 +290,10 @@ def _schedule_digest(
     for time_s, change in changes:
         # A change acts after the sample at its time. The run may have ended before that.
         if time_s < length_s:
-            is_target = not isinstance(change, FlockParameters)
-            current = current.replace(target=change) if is_target else change
+            if isinstance(change, FlockParameters):
+                current = change
+            else:
+                current = current.replace(target=change)
             parameters_from[time_s] = current
     before, effective = parameters, []
     for time_s, after in parameters_from.items():
