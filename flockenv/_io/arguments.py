@@ -18,7 +18,7 @@ def items(values: object, name: str) -> Sequence[Any]:
     """Return the items of a sequence: a list, an array, a generator or a view of a dictionary.
 
     A range is returned unchanged. Raises TypeError for texts, dictionaries and sets, and
-    ParameterError for sequences without end.
+    ParameterError for more than a million items, as of an endless generator.
     """
     if isinstance(values, range):
         return values
@@ -93,7 +93,7 @@ def as_int(value: Any, name: str) -> int:
 
 
 def _check_no_table(values: object, name: str) -> None:
-    """Refuse a table, whose names of columns would be ignored."""
+    """Refuse a table, since its column names would be ignored."""
     if hasattr(values, "columns"):
         raise ParameterError(f"{name} is not accepted: an array, as a table's to_numpy()")
 

@@ -14,16 +14,16 @@ from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
 
 _MOST_BYTES = 16 << 30
-_MOST_TIMES, _FREE_BYTES = 100, 64 << 20
+_MOST_EXPANSION, _FREE_BYTES = 100, 64 << 20
 
 
 def most_content(size: int) -> int:
     """Return the largest accepted size of a file's decompressed content, given the file's size.
 
-    Sizes are in bytes. Compression makes the numbers of a run at most ten times smaller, but zeros
-    a thousand times.
+    Sizes are in bytes. Compression shrinks the numbers of a run tenfold at most, so a file that
+    expands much more was made to fill the memory, or holds little but zeros.
     """
-    return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_TIMES * size))
+    return min(_MOST_BYTES, max(_FREE_BYTES, _MOST_EXPANSION * size))
 
 
 def write_arrays(

@@ -23,7 +23,7 @@ try:
 except ImportError:  # On Windows an open file can be neither renamed nor removed.
     fcntl = None
 
-_NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
+_TEMPORARY_NAME = re.compile(r"\.[0-9a-f]{16}\.tmp")
 
 _temporary: set[Path] = set()
 """Temporary files of this process; each is listed before it is created."""
@@ -74,7 +74,9 @@ def _locked_file(folder: Path) -> tuple[Path, IO[bytes]]:
             temporary.unlink(missing_ok=True)
             _temporary.discard(temporary)
             raise
-        if _is_locked(file) is not False and os.fstat(file.fileno()).st_nlink > 0:
+        has_lock = _try_lock(file)
+        still_exists = os.fstat(file.fileno()).st_nlink > 0
+        if has_lock is not False and still_exists:
             return temporary, file
         # Another process removed the file as a leftover before it was locked.
         file.close()
@@ -85,15 +87,15 @@ def _copy_mode(target: Path, file: IO[bytes]) -> None:
     """Give a new, empty file the mode of the one that it will replace."""
     if fcntl is None or not target.exists():
         return
-    before, now = target.stat(), os.fstat(file.fileno())
-    if (before.st_uid, before.st_gid) != (now.st_uid, now.st_gid):
+    old, new = target.stat(), os.fstat(file.fileno())
+    if (old.st_uid, old.st_gid) != (new.st_uid, new.st_gid):
         with suppress(OSError):  # Only root may change a file's owner.
-            os.fchown(file.fileno(), before.st_uid, before.st_gid)
-    os.fchmod(file.fileno(), stat.S_IMODE(before.st_mode))
+            os.fchown(file.fileno(), old.st_uid, old.st_gid)
+    os.fchmod(file.fileno(), stat.S_IMODE(old.st_mode))
 
 
-def _is_locked(file: IO[bytes]) -> bool | None:
-    """Lock a file until it is closed, and return whether that succeeded.
+def _try_lock(file: IO[bytes]) -> bool | None:
+    """Try to lock a file until it is closed, and return whether that succeeded.
 
     False means that another process has the lock, None that the system has no locks.
     """
@@ -115,11 +117,11 @@ def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) ->
     """
     paths = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
     for path in paths:
-        if _NAME.fullmatch(path.name) is None:
+        if _TEMPORARY_NAME.fullmatch(path.name) is None:
             continue
         try:
             with path.open("rb") as file:
-                if _is_locked(file):
+                if _try_lock(file):  # No process writes it any more.
                     path.unlink(missing_ok=True)
         except OSError:
             continue  # It was just renamed to its final name, or belongs to another user.

@@ -1,10 +1,10 @@
 """One rule for Ctrl-C: a command finishes the work under way, keeps it, and ends.
 
-While a command runs, the first signal is only noted. Work calls `end_if_interrupted` where nothing
-is half done, and executors start no further run. A second signal ends the process at once. A
-request to end (SIGTERM, such as Slurm's before a job's time is over) counts as Ctrl-C, as does the
-end of the terminal (SIGHUP). Both the system and the shell send SIGHUP, so a second SIGHUP does not
-end the process at once.
+While a command runs, the first signal is only noted. Executors then start no further run, and the
+command ends at its next call of `end_if_interrupted`, between two pieces of work. A second signal
+ends the process at once. A request to end (SIGTERM, such as Slurm's before a job's time is over)
+counts as Ctrl-C, as does the end of the terminal (SIGHUP). Both the system and the shell send
+SIGHUP, so a second SIGHUP does not end the process at once.
 """
 
 import os
@@ -20,19 +20,19 @@ INTERRUPTED = 130
 
 _HANGUP = getattr(signal, "SIGHUP", None)  # None on Windows.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, *(() if _HANGUP is None else (_HANGUP,)))
-_NOTED = b"\nEnding when the work under way is done. Ctrl-C again does not wait.\n"
+_ENDING_SOON = b"\nEnding when the work under way is done. Ctrl-C again does not wait.\n"
 _SHOW_CURSOR = b"\x1b[?25h"
 
 _is_noted = False
 
 
 def interrupted() -> bool:
-    """Return whether Ctrl-C was noted, so that nothing more may be started."""
+    """Return whether Ctrl-C was noted; if so, no further run may be started."""
     return _is_noted
 
 
 def end_if_interrupted() -> None:
-    """Raise KeyboardInterrupt if Ctrl-C was noted; called only where no work is half done."""
+    """Raise KeyboardInterrupt if Ctrl-C was noted; to be called between two pieces of work."""
     if _is_noted:
         raise KeyboardInterrupt
 
@@ -41,22 +41,26 @@ def end_if_interrupted() -> None:
 def noted_interrupts() -> Iterator[None]:
     """Note Ctrl-C within a `with` block; a second one removes temporary files and ends the process.
 
-    Outside the main thread nothing changes. Signals that are ignored, as under nohup, stay ignored.
+    Blocks inside another such block, and blocks outside the main thread, change nothing. Signals
+    that are ignored, as under nohup, stay ignored.
     """
     global _is_noted
-    handlers = {number: signal.getsignal(number) for number in _SIGNALS}
-    replaced = {
-        n: handler for n, handler in handlers.items() if handler not in (signal.SIG_IGN, None)
+    present_handlers = {number: signal.getsignal(number) for number in _SIGNALS}
+    to_restore = {
+        number: handler
+        for number, handler in present_handlers.items()
+        if handler not in (signal.SIG_IGN, None)
     }
-    if _note in replaced.values() or current_thread() is not main_thread():
+    is_nested = _note in to_restore.values()
+    if is_nested or current_thread() is not main_thread():
         yield
         return
-    for number in replaced:
+    for number in to_restore:
         signal.signal(number, _note)
     try:
         yield
     finally:
-        for number, handler in replaced.items():
+        for number, handler in to_restore.items():
             signal.signal(number, handler)
         _is_noted = False
 
@@ -66,7 +70,7 @@ def _note(number: int, frame: object) -> None:
     global _is_noted
     if not _is_noted or number == _HANGUP:
         _is_noted = True
-        _write(_NOTED)
+        _write(_ENDING_SOON)
         return
     try:
         remove_temporary_files()

@@ -52,8 +52,8 @@ def check_array(
 ) -> None:
     """Refuse a wrong shape or dtype, numbers out of bounds, and NaN where it is not allowed.
 
-    With `gaps` NaN is allowed, in poses and velocities only for all three numbers of a boat. With
-    `all_nan` every number must be NaN.
+    With `gaps` NaN is allowed; in poses and velocities all three numbers of a boat must then be
+    NaN. With `all_nan` every number of the array must be NaN.
     """
     if not isinstance(array, np.ndarray) or array.dtype not in dtypes:
         kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
@@ -75,11 +75,11 @@ def check_array(
 def check_times(time_s: NDArray[np.float64], duration_s: float) -> None:
     """Refuse times that do not increase from 0 s to the end of the run."""
     # Times are rounded to a nanosecond, so the last one may lie that much beyond the end.
-    increasing = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
-    if not (np.diff(time_s) > 0).all() or not (np.diff(increasing) >= 0).all():
+    ascending_s = [0.0, *time_s[:1], *time_s[-1:], duration_s + 1e-9, 1e9 + 1e-3]
+    if not (np.diff(time_s) > 0).all() or not (np.diff(ascending_s) >= 0).all():
         raise ParameterError(
             "time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at "
-            "least one time if that is not given"
+            "least one time if duration_s is not given"
         )
 
 

@@ -14,14 +14,14 @@ from flockenv.recording.checks import MOTION, TIMES
 from flockenv.recording.stored import ARRAYS, OPTIONAL
 
 
-def check_names(quantities: object, values: str) -> None:
+def check_names(quantities: object, expected: str) -> None:
     """Refuse a user's quantities that are not a dictionary, and names that are taken.
 
-    The error calls the dictionary's values `values`.
+    `expected` says for the error what the dictionary must hold: "functions" or "arrays".
     """
     if not isinstance(quantities, Mapping):
         raise ParameterError(
-            f"quantities = {short_repr(quantities)} is not accepted: {values} by name"
+            f"quantities = {short_repr(quantities)} is not accepted: {expected} by name"
         )
     taken = {*TIMES, *MOTION, "boat", "id", "is_leader"}
     taken |= {quantity.name for quantity in QUANTITIES}

@@ -239,6 +239,7 @@ class Recording(HintsAtNames):
         return int(np.searchsorted(self.time_s, time_s, side="right")) - 1
 
     def _is_present(self, sample: int) -> NDArray[np.bool_]:
+        """Return for each boat whether it has a pose in a sample."""
         present: NDArray[np.bool_] = np.isfinite(self.pose[sample, :, 0])
         return present
 
@@ -340,15 +341,14 @@ class Recording(HintsAtNames):
         return replace(self, pose=self.pose[:, :0], velocity=self.velocity[:, :0])
 
     def _at(self, samples: NDArray[np.bool_]) -> Self:
-        """Return the recording of the selected samples."""
-        columns: dict[str, Any] = {name: getattr(self, name)[samples] for name in ARRAYS}
+        """Return the recording with only the selected samples."""
+        selected: dict[str, Any] = {name: getattr(self, name)[samples] for name in ARRAYS}
         order = self.order.at(samples)
         contacts = None if self.contacts is None else self.contacts.at(samples)
         rudder = None if self.rudder is None else self.rudder[samples]
         quantities = {name: values[samples] for name, values in self.quantities.items()}
-        columns |= {"order": order, "contacts": contacts, "rudder": rudder}
-        columns["quantities"] = quantities
-        return replace(self, **columns)
+        selected |= {"order": order, "contacts": contacts, "rudder": rudder}
+        return replace(self, **selected, quantities=quantities)
 
     def save(self, path: str | os.PathLike[str], *, compressed: bool = False) -> None:
         """Write the recording to an ``.npz`` file, completely or not at all.

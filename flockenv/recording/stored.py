@@ -27,9 +27,9 @@ OPTIONAL = ("rudder", "ids")
 FORMAT = "flockenv recording 1"
 """The format named in a recording's file."""
 
-_QUANTITY = "quantity_"
-_STATISTIC = "statistics_"
-"""Start of the names of arrays that hold user-defined quantities, and step statistics."""
+_QUANTITY_PREFIX = "quantity_"
+_STATISTIC_PREFIX = "statistics_"
+"""Prefixes of the names of arrays that hold user-defined quantities and step statistics."""
 
 _TEXTS = ("format", "version", "parameters", "policy")
 _DROPPED = "has {} that this flockenv does not know, and does not keep"
@@ -48,13 +48,14 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     """Return the arrays by name that a recording's file holds for the recording's fields."""
     arrays = {name: fields[name] for name in ARRAYS}
     arrays |= {f"order_{name}": getattr(fields["order"], name) for name in ORDER}
-    arrays |= {f"{_QUANTITY}{name}": values for name, values in fields["quantities"].items()}
+    arrays |= {f"{_QUANTITY_PREFIX}{name}": values for name, values in fields["quantities"].items()}
     arrays |= {name: fields[name] for name in OPTIONAL if fields[name] is not None}
     if fields["contacts"] is not None:
         arrays |= {f"contacts_{name}": getattr(fields["contacts"], name) for name in CONTACTS}
     if (statistics := fields["statistics"]) is not None:
         arrays |= {
-            f"{_STATISTIC}{name}": np.array(value) for name, value in vars(statistics).items()
+            f"{_STATISTIC_PREFIX}{name}": np.array(value)
+            for name, value in vars(statistics).items()
         }
     texts = {
         "format": FORMAT,
@@ -72,18 +73,18 @@ def arrays_of(fields: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
 
 def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
     """Return a recording's fields from the arrays of its file."""
-    form = arrays.get("format")
-    if form is not None and str(form) != FORMAT:
-        raise LayoutError(f"format = {str(form)!r} is not accepted: {FORMAT!r}")
+    file_format = arrays.get("format")
+    if file_format is not None and str(file_format) != FORMAT:
+        raise LayoutError(f"format = {str(file_format)!r} is not accepted: {FORMAT!r}")
     needed = [*ARRAYS, *_TEXTS, "seed", "duration_s"]
     contact_names = [f"contacts_{name}" for name in CONTACTS]
     has_contacts = not arrays.keys().isdisjoint(contact_names)
     needed += contact_names if has_contacts else []
     if missing := [name for name in needed if name not in arrays]:
         raise LayoutError(f"these arrays are missing: {', '.join(missing)}")
-    quantities = [name for name in arrays if name.startswith(_QUANTITY)]
+    quantities = [name for name in arrays if name.startswith(_QUANTITY_PREFIX)]
     statistics = {
-        statistic.name: f"{_STATISTIC}{statistic.name}"
+        statistic.name: f"{_STATISTIC_PREFIX}{statistic.name}"
         for statistic in dataclass_fields(StepStatistics)
     }
     orders = [f"order_{name}" for name in ORDER]
@@ -104,7 +105,7 @@ def fields_from(arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         **_origin(arrays),
         "version": version,
         "policy": policy or None,
-        "quantities": {name.removeprefix(_QUANTITY): arrays[name] for name in quantities},
+        "quantities": {name.removeprefix(_QUANTITY_PREFIX): arrays[name] for name in quantities},
         "duration_s": float(arrays["duration_s"]),
         **{name: arrays.get(name) for name in OPTIONAL},
         "contacts": None if contacts is None else ContactSeries(*contacts),
@@ -138,11 +139,11 @@ def _statistics(
     return StepStatistics(**{field: arrays[name].item() for field, name in names.items()})
 
 
-def _warn_of(words: str, names: Iterable[str]) -> None:
-    """Warn in these words about the names, if there are any."""
+def _warn_of(problem: str, names: Iterable[str]) -> None:
+    """Warn that a recording has a problem with the named arrays or parameters, if there are any."""
     # Python prints the same text only once, and a sweep may read thousands of such files.
     if listed := ", ".join(sorted(names)):
-        warnings.warn(f"the recording {words}: {listed}", RecordingWarning, stacklevel=5)
+        warnings.warn(f"the recording {problem}: {listed}", RecordingWarning, stacklevel=5)
 
 
 def _parameters(toml: str) -> FlockParameters:
@@ -154,14 +155,14 @@ def _parameters(toml: str) -> FlockParameters:
 
 
 def _order(arrays: Mapping[str, NDArray[Any]], parameters: FlockParameters) -> OrderSeries:
-    """Return the quantities; missing ones are computed from poses, or NaN without poses."""
+    """Return the order parameters; those that the file lacks follow from poses, or are NaN."""
     stored = {name: arrays[f"order_{name}"] for name in ORDER if f"order_{name}" in arrays}
     if missing := [name for name in ORDER if name not in stored]:
         pose, velocity = arrays["pose"], arrays["velocity"]
-        k, undefined = parameters.n_leaders, np.full(arrays["time_s"].size, np.nan)
+        n_leaders, undefined = parameters.n_leaders, np.full(arrays["time_s"].size, np.nan)
         # Poses of other shapes are refused later, by the recording.
-        if pose.ndim == 3 and pose.shape == velocity.shape and pose.shape[1] > k:
-            computed = order_series(pose[:, k:], velocity[:, k:])
+        if pose.ndim == 3 and pose.shape == velocity.shape and pose.shape[1] > n_leaders:
+            computed = order_series(pose[:, n_leaders:], velocity[:, n_leaders:])
             stored |= {name: getattr(computed, name) for name in missing}
         else:
             _warn_of(_UNDEFINED, (f"order_{name}" for name in missing))

@@ -21,7 +21,7 @@ Item = TypeVar("Item")
 Value = TypeVar("Value")
 
 Engine = Callable[[int | None], Executor]
-"""Function that makes an executor of a number of workers; None means one for each core."""
+"""Function that makes an executor, given its number of workers; None means one for each core."""
 
 
 def cores() -> int:
@@ -32,7 +32,10 @@ def cores() -> int:
 
 
 def threads(workers: int | None = None) -> Executor:
-    """Return threads of this process. The simulator releases the interpreter lock while it runs."""
+    """Return an executor of threads, which run in parallel.
+
+    The simulator releases the interpreter lock while it runs.
+    """
     return ThreadPoolExecutor(workers or cores())
 
 

@@ -28,6 +28,7 @@ class SeedRange:
 
     def seeds(self, count: int, run: int = 0, start: int = 0) -> range:
         """Return `count` seeds of a run from index `start` on; refuse more than the run has."""
+        # The options of commands call the number of a run its seed.
         if not 0 <= run < self.runs:
             raise ParameterError(
                 f"seed = {short_repr(run)} is not accepted: from 0 to {self.runs - 1}"
@@ -41,7 +42,7 @@ class SeedRange:
         return range(first, first + count)
 
 
-# Runs are numbered by 32 bits, the size of seeds in CMA-ES and NumPy. A search has 2^24 seeds.
+# A run's number has 32 bits, as seeds in CMA-ES and NumPy. Each run of a search has 2^24 seeds.
 _RUNS = 1 << 32
 _FIRST_JUDGMENT = FIRST_TRAINING_SEED - (1 << 16)
 

@@ -29,7 +29,7 @@ def _named(name: str, pool: Pool) -> Policy:
 
 KEEP = ("window", "order", "poses")
 """Stored parts of a run. "window": order parameters of the samples in the analysis window after
-the first tenth; "order": of all samples; "poses": these and all poses and velocities."""
+the first tenth; "order": those of all samples; "poses": the latter and all poses and velocities."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -108,12 +108,13 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
     """Return how a recording differs from the run of a spec; None if it is that run."""
     step_s, keep = 1.0 / spec.sample_hz, spec.keep
     shortest_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
-    # A window of less than two steps may hold no two successive samples.
+    # An analysis window shorter than two steps may hold no two successive samples.
     window_s = math.inf if keep != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
     is_sampled = np.allclose(run.time_s, step_s * np.round(run.time_s / step_s), rtol=0, atol=1e-8)
     is_sampled &= abs(shortest_s - step_s) < 1e-8 or step_s > 0.5 * window_s
     is_complete = keep == "window" or len(run) == int(spec.duration_s * spec.sample_hz + 1e-6) + 1
     is_window = keep != "window" or run.in_analysis_window.all()
+    # A spec's run has none of the fields in `ORIGIN`, which only other runs have.
     differences = {
         "other parameters": run.parameters != spec.parameters,
         f"seed {run.seed}, not {spec.seed}": run.seed != spec.seed,

@@ -115,7 +115,7 @@ def _runs(
         "sample_hz": _number("sample_hz", values.get("sample_hz", 10)),
         **{name: values[name] for name in ("policy", "keep") if name in values},
     }
-    # Flocks without leaders take no policy if they are there for comparison with led flocks.
+    # In a sweep of led flocks, those without leaders are for comparison: they take no policy.
     has_leaders = any(flock.n_leaders for flock in flocks)
     leaderless_run = led_run | {"policy": EVERY_SUBSTEP} if has_leaders else led_run
     return tuple(
@@ -157,7 +157,7 @@ def _check_pools(pools: list[object], example: str) -> None:
 
 
 def _seeds(seeds: object) -> tuple[int, ...]:
-    """Return the seeds in a list, or as many seeds from 0 on as a number says."""
+    """Return the seeds of a list, or 0 to n - 1 for a number n."""
     if isinstance(seeds, int) and not isinstance(seeds, bool) and 1 <= seeds <= MOST_RUNS:
         return tuple(range(seeds))
     if isinstance(seeds, list) and seeds and len(set(map(repr, seeds))) == len(seeds):
@@ -184,9 +184,9 @@ def summary(run: Recording) -> dict[str, float]:
         ``<name>_mean`` and ``<name>_std`` of each averaged quantity of the table: Ψ_o, C_o, Ψ_v
         (cm/s), C_v (cm²/s²), the nematic order, milling, the signed order and the rotation m =
         Ψ_o·sin φ_o. ``rotation_size`` is the mean of ``|m|``, which does not cancel if a flock
-        reverses its rotation. A mean is over the frames in which its quantity is defined, NaN if
-        there are none. The last entries are the run's ``worst_overlap_cm``, ``unsolved`` and
-        ``halved_substeps``, NaN if they are unknown.
+        reverses its rotation. Frames in which a quantity is undefined are left out of its mean; if
+        all are, the mean is NaN. The last entries are the run's ``worst_overlap_cm``, ``unsolved``
+        and ``halved_substeps``, NaN if they are unknown.
     """
     used = run.analyzed()
     row: dict[str, float] = {"frames": len(used)}
@@ -284,8 +284,8 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
         One row per combination of the varied fields except ``bw_s``: these fields,
         ``critical_bw_s`` of `flockenv.statistics.critical_noise` with the ends of its interval,
         ``critical_bw_s_low`` and ``critical_bw_s_high`` in s, and the largest mean
-        ``rotation_size`` of any noise. NaN without order to lose or with fewer than three runs of a
-        noise. No rows if the sweep has fewer than two noises.
+        ``rotation_size`` of any noise. The noises are NaN if the flock has no order to lose, or if
+        a noise has fewer than three runs. No rows if the sweep has fewer than two noises.
     """
     pandas = require("pandas", "plot")
     runs = table[table["failure"] == ""]
@@ -293,14 +293,16 @@ def critical_noises(table: "pd.DataFrame") -> "pd.DataFrame":
     names = ("critical_bw_s", "critical_bw_s_low", "critical_bw_s_high")
     rows = []
     if "bw_s" in table and runs["bw_s"].nunique() > 1:
-        for key, group in runs.groupby(fields) if fields else [((), runs)]:
-            levels = np.sort(group["bw_s"].unique())
-            noises = group[["bw_s", "psi_o_mean", "rotation_size"]].groupby("bw_s")
+        # If only the noise varies, all runs are of one flock.
+        for values, flock_runs in runs.groupby(fields) if fields else [((), runs)]:
+            levels = np.sort(flock_runs["bw_s"].unique())
+            by_noise = flock_runs[["bw_s", "psi_o_mean", "rotation_size"]].groupby("bw_s")
             if len(levels) > 1:
-                means = [noise.drop(columns="bw_s") for _, noise in noises]
-                critical = critical_noise(levels, means)
-                row = dict(zip(fields, key, strict=True)) | dict(zip(names, critical, strict=True))
-                rows.append(row | {"rotation_size": noises["rotation_size"].mean().max()})
+                runs_of_noises = [noise_runs.drop(columns="bw_s") for _, noise_runs in by_noise]
+                critical = critical_noise(levels, runs_of_noises)
+                row = dict(zip(fields, values, strict=True))
+                row |= dict(zip(names, critical, strict=True))
+                rows.append(row | {"rotation_size": by_noise["rotation_size"].mean().max()})
     result: pd.DataFrame = pandas.DataFrame(rows, columns=[*fields, *names, "rotation_size"])
     return result
 

@@ -94,13 +94,13 @@ def measure_workload(specs: Iterable[RunSpec], store: RunStore) -> Workload:
     by_policy: dict[str, list[RunSpec]] = {}
     for spec in missing:
         by_policy.setdefault(spec.policy, []).append(spec)
-    seconds = [_core_seconds(specs) for specs in by_policy.values()]
-    measured = [time_s for time_s in seconds if time_s is not None]
+    estimates_s = [_core_seconds(policy_specs) for policy_specs in by_policy.values()]
+    known_s = [estimate_s for estimate_s in estimates_s if estimate_s is not None]
     return Workload(
         runs=len(specs),
         stored=len(specs) - len(missing),
         flock_hours=sum(spec.duration_s for spec in missing) / 3600,
-        core_hours=sum(measured) / 3600 if len(measured) == len(seconds) else None,
+        core_hours=sum(known_s) / 3600 if len(known_s) == len(estimates_s) else None,
     )
 
 
@@ -116,5 +116,5 @@ def _core_seconds(specs: Sequence[RunSpec]) -> float | None:
         execute(trial)
     except FlockError:
         return None
-    rate = (time.process_time() - start) / trial.cost
-    return rate * sum(spec.cost for spec in specs)
+    seconds_per_cost = (time.process_time() - start) / trial.cost
+    return seconds_per_cost * sum(spec.cost for spec in specs)
