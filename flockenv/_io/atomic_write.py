@@ -110,12 +110,12 @@ def _try_lock(file: IO[bytes]) -> bool | None:
     return True
 
 
-def remove_leftovers(folder: str | os.PathLike[str], *, within: bool = False) -> None:
+def remove_leftovers(folder: str | os.PathLike[str], *, recursive: bool = False) -> None:
     """Remove the temporary files of killed processes from a folder.
 
-    With `within` its subfolders are searched, too. Files that a process still writes are kept.
+    With `recursive` its subfolders are searched, too. Files that a process still writes are kept.
     """
-    paths = Path(folder).rglob(".*.tmp") if within else Path(folder).glob(".*.tmp")
+    paths = Path(folder).rglob(".*.tmp") if recursive else Path(folder).glob(".*.tmp")
     for path in paths:
         if _TEMPORARY_NAME.fullmatch(path.name) is None:
             continue

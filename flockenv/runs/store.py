@@ -167,7 +167,7 @@ def run_missing(
         raise ParameterError(f"workers = {workers} is not accepted: at least 1")
     missing = []
     specs = items(specs, "specs")
-    remove_leftovers(store.folder, within=True)
+    remove_leftovers(store.folder, recursive=True)
     for spec in dict.fromkeys(specs):
         if store.load(spec) is None:
             missing.append(spec)

@@ -159,7 +159,7 @@ def test_what_a_killed_process_left_is_removed_unless_it_is_held(tmp_path):
         file.write(b"half")
         remove_leftovers(tmp_path)
         assert left() == ["ab", "ab"]
-        remove_leftovers(tmp_path, within=True)
+        remove_leftovers(tmp_path, recursive=True)
         assert left() == ["ab"]
     assert left() == []
     assert (within / "held.txt").read_bytes() == b"half"
