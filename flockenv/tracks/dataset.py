@@ -21,7 +21,7 @@ _DIMENSIONS = ("time", "space", "individuals", "keypoints")
 def dataset_table(
     dataset: "xarray.Dataset", layout: TrackLayout
 ) -> "tuple[pd.DataFrame, TrackLayout]":
-    """Return a dataset as a table, and the layout completed with what the dataset says.
+    """Return a dataset as a table, and the layout completed with units and columns of the dataset.
 
     Columns are ``time``, ``individuals``, and ``x``, ``y`` and ``confidence`` of each key point,
     such as ``nose_x``. Raises ParameterError for a missing variable or coordinate.
@@ -29,6 +29,7 @@ def dataset_table(
     data = _positions_of(dataset)
     boats, points = (_names_along(data, name) for name in _DIMENSIONS[2:])
     stems = {point: f"{point}_" for point in points}
+    # A dataset without key points has one point without a name.
     if points == ["0"] and "keypoints" not in data.coords:
         stems = {"": ""}
     columns: dict[str, Any] = {
@@ -56,7 +57,8 @@ def _positions_of(dataset: "xarray.Dataset") -> "xarray.Dataset":
     data = data.expand_dims([name for name in _DIMENSIONS[2:] if name not in data.dims])
     for name, variable in data.items():
         expected = {*_DIMENSIONS} - ({"space"} if name == "confidence" else set())
-        if {*variable.dims} != expected or not expected & {"time", "space"} <= {*variable.coords}:
+        needed_coordinates = expected & {"time", "space"}
+        if {*variable.dims} != expected or not needed_coordinates <= {*variable.coords}:
             raise ParameterError(
                 f"{name} has the dimensions {', '.join(map(str, variable.dims))}, and "
                 f"{', '.join(_DIMENSIONS)} are accepted"
@@ -67,18 +69,19 @@ def _positions_of(dataset: "xarray.Dataset") -> "xarray.Dataset":
 
 
 def _names_along(data: "xarray.Dataset", dimension: str) -> list[str]:
-    """Return the names along a dimension, or its numbers if there are none."""
+    """Return the names along a dimension; without names, the indices "0", "1" and so on."""
     names = data.get_index(dimension).astype(str)
-    for repeated in names[names.duplicated()][:1]:
-        count = (names == repeated).sum()
-        raise ParameterError(f"{count} {dimension} of the dataset are called {repeated!r}")
+    repeated = names[names.duplicated()]
+    if len(repeated):
+        count = (names == repeated[0]).sum()
+        raise ParameterError(f"{count} {dimension} of the dataset are called {repeated[0]!r}")
     return [*names]
 
 
 def _completed(
     dataset: "xarray.Dataset", layout: TrackLayout, stems: dict[str, str]
 ) -> TrackLayout:
-    """Return a layout whose fields with their default are taken from the dataset."""
+    """Return the layout with its unset fields, those with their default, taken from the dataset."""
     set_fields = {f.name for f in fields(layout) if getattr(layout, f.name) != f.default}
     columns, points = key_points(stems, {}), listed([*stems])
     form: dict[str, Any] = {"frame": "time", "id": "individuals", **columns}

@@ -18,9 +18,9 @@ class Format(NamedTuple):
     columns: Mapping[str, str]
     #: Other fields of the layout, such as the clock and the direction of y.
     fields: Mapping[str, Any] = MappingProxyType({})
-    #: First cells, in lower case, of a header in levels: in its first line, and in lines of names.
+    #: First cells, in lower case, of the lines of a multi-line header, from top to bottom.
     levels: tuple[str, ...] = ()
-    #: Names of columns that are written without a header; the last four may be missing.
+    #: Names of the columns of a file without a header; the last four columns may be missing.
     header: tuple[str, ...] = ()
 
 
@@ -45,7 +45,8 @@ FORMATS = (
     Format("key points, as of DeepLabCut and movement", {"x": "{part}_x"}),
     Format("key points, as of SLEAP", {"x": "{part}.x"}),
 )
-"""A row for each program that writes columns which `WORDS` lacks, the more special ones first."""
+"""Formats whose columns `WORDS` does not recognize. The first that fits is used, so special ones
+come before general ones."""
 
 NO_NUMBER = {"", "nan", "na", "n/a", "#n/a", "<na>", "none", "null", "-", "--", "-nan"}
 """Cells that stand for a missing number, in lower case."""
@@ -99,7 +100,7 @@ PER_S |= {"ns": 1e9, "min": 1 / 60, "minutes": 1 / 60, "h": 1 / 3600}
 """Units of time by their names in headers, per second."""
 
 _LONGEST = 200
-"""Length of the longest column name that is compared. Longer names take time and match nothing."""
+"""Length of the longest column name that is compared with patterns, in characters."""
 
 _PREFERRED = {"heading", "confidence", "quaternion", "box", "fps"}
 """Fields that make key points and numbered columns better than plain columns of x and y."""
@@ -151,7 +152,8 @@ def _first(patterns: Iterable[str], names: Iterable[str]) -> re.Match[str] | Non
 def _siblings(name: str, letter: str, others: str, names: Names) -> list[str]:
     """Return the columns with each of the `others` in place of a letter: "pos_y" for "pos_x".
 
-    The last occurrence of the letter is tried first, and all together last; [] if none fits.
+    One occurrence of the letter is replaced, the last one if its columns exist, otherwise an
+    earlier one. If no such columns exist, all occurrences are replaced. Returns [] if none fits.
     """
     swaps = [str.maketrans(letter + letter.upper(), other + other.upper()) for other in others]
     spans = [(i, i + 1) for i in reversed(range(len(name))) if name[i].lower() == letter]
@@ -210,13 +212,14 @@ def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any
         columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}
     if "id" in first.groupdict():
         columns = {field: [_with_id(first, name) for name in columns[field]] for field in columns}
-        if columns and columns["x"] == columns["y"]:  # The key point x was taken for a boat.
+        if columns and columns["x"] == columns["y"]:  # The axis was taken for a boat's name.
             return None
         known["id"] = [""]
         angle = _first([f"*{word}{{n}}*" for word in WORDS["heading"]], names)
         if angle and "part" not in first.groupdict():
             known["heading"] = [_with_id(angle, angle[0])]
-    form = {field: n[0] if len(n) == 1 else n for field, n in (known | columns).items()}
+    columns = known | columns
+    form = {field: n[0] if len(n) == 1 else n for field, n in columns.items()}
     return form | {**program.fields}
 
 

@@ -57,7 +57,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _guessed(path: Path) -> tuple[Form, Doubts]:
-    """Return the fields of a layout that follow from the table, and the doubtful ones."""
+    """Return the fields of a layout that follow from a table, and those that the user must check."""
     form, doubts = spelling_of(path), Doubts()
     rows = read_table(path, TrackLayout(pool="wide", **form))
     names = [*map(str, rows)]
@@ -69,9 +69,10 @@ def _guessed(path: Path) -> tuple[Form, Doubts]:
         rows = read_table(path, TrackLayout(pool="wide", **form))
     form |= recognized(names) if "header" not in doubts else {}
     missing = [name for name in ("frame", "x", "y", "id") if name not in form]
-    hint = f"fill in: one of the columns {listed(names)}"
     for name in missing:
-        doubts[name], hint = ("", hint), "fill in: another column"
+        is_first = name == missing[0]
+        choice = f"one of the columns {listed(names)}" if is_first else "another column"
+        doubts[name] = ("", f"fill in: {choice}")
     if missing in ([], ["id"]):
         _guess_from_values(rows, form, doubts)
     else:
@@ -113,7 +114,8 @@ def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: 
         raise ParameterError("no row has a position")
     low, high = (complex(f(points.real), f(points.imag)) for f in (np.min, np.max))
     center, unit = (low + high) / 2, plain(x[0])[1]
-    radius_cm = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0) or 1.0
+    radius_cm = float(np.abs(points - center).max()) * 1.02 * CM.get(unit, 1.0)
+    radius_cm = radius_cm or 1.0  # All positions may be one point.
     hint = "check: outer and inner radius in cm, here about all positions"
     doubts["pool"] = ([round(radius_cm, 1), 0.0], hint)
     hint = "check: the pool's, in units of the file, here of all positions"
@@ -135,7 +137,7 @@ def _guess_heading_unit(sizes: "pd.Series[float]", form: Form, doubts: Doubts) -
     """Guess the unit of headings from their column's name, or from their absolute values."""
     written_unit = plain(form["heading"])[1].replace("°", "deg")
     known_unit = next((unit for unit in ("deg", "rad") if written_unit.startswith(unit)), None)
-    largest = sizes.quantile(0.99)  # A few may be placeholders.
+    largest = sizes.quantile(0.99)  # The few largest may stand for missing headings.
     unit = known_unit or ("deg" if largest > TURN["rad"] + TINY else "rad")
     if known_unit:
         form["heading_unit"] = known_unit

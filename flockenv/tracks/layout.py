@@ -36,38 +36,45 @@ Literals list theirs, and `FlockParameters` checks fields of `Any`.
 """
 
 
-def _is_of(kind: Any, value: Any, *, inside: bool = False) -> bool:
-    """Return whether a value is of an annotated kind.
+def _matches(annotation: Any, value: Any, *, in_tuple: bool = False) -> bool:
+    """Return whether a value has the type that a field's annotation names.
 
-    Names must not be blank, and numbers must be positive, except inside a list.
+    Names must not be blank, and numbers must be positive, except in a tuple.
     """
-    origin, kinds = get_origin(kind), get_args(kind)
+    origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return value in kinds
+        return value in arguments
     if origin is tuple:
-        kinds = kinds[:1] * len(value) if kinds[-1] is ... and isinstance(value, tuple) else kinds
-        if not isinstance(value, tuple) or len(value) != len(kinds):
+        if not isinstance(value, tuple):
             return False
-        return all(_is_of(k, item, inside=True) for k, item in zip(kinds, value, strict=True))
-    if kinds:
-        return any(_is_of(alternative, value) for alternative in kinds)
-    if kind is float:
+        types = arguments[:1] * len(value) if arguments[-1] is ... else arguments
+        return len(value) == len(types) and all(
+            _matches(item_type, item, in_tuple=True)
+            for item_type, item in zip(types, value, strict=True)
+        )
+    if arguments:  # A union.
+        return any(_matches(alternative, value) for alternative in arguments)
+    if annotation is float:
         is_number = isinstance(value, Real) and not isinstance(value, bool)
-        return is_number and math.isfinite(value) and (inside or value > 0.0)
-    if kind is int:
+        return is_number and math.isfinite(value) and (in_tuple or value > 0.0)
+    if annotation is int:
         return type(value) is int and 0 <= value <= 1000
-    return isinstance(value, kind) and (kind is not str or inside or bool(value.strip()))
+    if annotation is str:
+        return isinstance(value, str) and (in_tuple or bool(value.strip()))
+    return isinstance(value, annotation)
 
 
-def _check(name: str, kind: object, value: object) -> None:
-    """Refuse a value that is not of the annotated kind of a field."""
-    if kind is Any or _is_of(kind, value):
+def _check(name: str, annotation: object, value: object) -> None:
+    """Refuse a value that does not match the annotation of its field."""
+    if annotation is Any or _matches(annotation, value):
         return
-    if get_origin(kind) is Literal:
-        words = [word if word.isalpha() else repr(word) for word in get_args(kind) if word]
+    if get_origin(annotation) is Literal:
+        words = [word if word.isalpha() else repr(word) for word in get_args(annotation) if word]
         accepted = " or ".join(words)
     else:
-        accepted = next(words for k, words in _ACCEPTED.items() if kind in (k, k | None))
+        accepted = next(
+            words for kind, words in _ACCEPTED.items() if annotation in (kind, kind | None)
+        )
     raise ParameterError(f"{name} = {short_repr(value)} is not accepted: {accepted}")
 
 
@@ -76,6 +83,7 @@ def _plain(name: str, value: object) -> object:
     if not isinstance(value, list | tuple):
         return value
     holds_names = name in ("leaders", "unassigned", "missing")
+    # The items have no field of their own: a list inside a list is never one of names.
     plain = (_plain("", item) for item in value)
     return tuple(str(v) if holds_names and type(v) in (int, float) else v for v in plain)
 
@@ -86,9 +94,8 @@ class TrackLayout:
 
     Names of columns match in any case. In a table with one row per frame, ``{id}`` stands for the
     boat's name: ``x = "x{id}"`` takes x1, x2 and so on. In a dataset of movement, key points are
-    columns such as ``nose_x``, and fields with their default follow from the key points' names. A
-    list becomes a tuple, and "" becomes None. Raises ParameterError for a value out of range or of
-    another kind.
+    columns such as ``nose_x``, and unset fields follow from the key points' names. A list becomes a
+    tuple, and "" becomes None. Raises ParameterError for a value out of range or of another kind.
     """
 
     pool: Any  #: As for `recording_of`.
@@ -101,11 +108,11 @@ class TrackLayout:
     #: Units of that column per second: frames per second, 1000 if it counts ms, 1/60 if it counts
     #: minutes. Whole numbers need it, for example 1 if they count seconds.
     fps: float | None = None
-    #: Column of names. None if the table has one boat, or if names of columns hold the boats'
-    #: names. If no row has a name, all rows belong to one boat.
+    #: Column of the boats' names. None if the table has one boat, or if the boats' names stand in
+    #: the columns' names. If no row has a name, all rows belong to one boat.
     id: str | None = "id"
-    x: _Columns = "x"  #: Column of the center's x, or several whose mean it is.
-    y: _Columns = "y"  #: As many columns of y.
+    x: _Columns = "x"  #: Column of the center's x, or several columns, whose mean is taken.
+    y: _Columns = "y"  #: Column or columns of y, as many as of x.
     #: Columns of width and height, if x and y are the least corner of a box around the boat.
     box: tuple[str, str] | None = None
     #: Column of headings, or four columns: x, y of the tail and x, y of the head, two key points.
@@ -130,7 +137,7 @@ class TrackLayout:
     y_down: bool = False  #: Whether y points down, as in pictures.
     max_speed_cm_s: float = 200.0  #: Highest speed; a faster step gives no velocity.
     confidence: _Columns | None = None  #: Columns of the confidence in a row.
-    least_confidence: float | None = None  #: The least value with which a row counts.
+    least_confidence: float | None = None  #: Rows with less confidence are left out.
     unassigned: tuple[str, ...] = NOBODY  #: Names of detections that are not boats, in any case.
     #: Points, in units of the file, that stand for a missing boat.
     lost: tuple[tuple[float, float], ...] = ()
@@ -144,7 +151,8 @@ class TrackLayout:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = _plain(field.name, getattr(self, field.name))
-            if value == "" and {None, NoneType} & {*get_args(field.type)}:
+            accepts_none = bool({None, NoneType} & {*get_args(field.type)})
+            if value == "" and accepts_none:
                 value = None
             _check(field.name, field.type, value)
             object.__setattr__(self, field.name, value)

@@ -19,7 +19,7 @@ TURN = {"turn": 1.0, "rad": 2 * np.pi, "deg": 360.0}
 """A full turn in each unit of headings."""
 
 TINY = 1e-6
-"""How much rounding may add to a full turn."""
+"""Tolerance for the rounding of a full turn, in the unit of the heading."""
 
 _MOST_BROKEN, _AXIS_JUMP = 0.5, 0.8
 
@@ -45,15 +45,16 @@ class Motion:
 
         Raises ParameterError if more than half of the steps are faster than `fastest_cm_s`.
         """
-        stamps = np.ascontiguousarray(np.broadcast_to(np.atleast_2d(time_s.T).T, pose.shape[:2]))
+        by_boat = time_s[:, np.newaxis] if time_s.ndim == 1 else time_s
+        stamps = np.ascontiguousarray(np.broadcast_to(by_boat, pose.shape[:2]))
         steps = np.diff(stamps, axis=0)
-        # Steps much longer than nine tenths of all steps are gaps.
+        # Steps of more than 1.5 times the 0.9 quantile of all steps are gaps.
         usual = np.quantile(steps, 0.9, method="lower") if steps.size else np.inf
         longest_s = 1.5 * float(usual)
         pose = np.ascontiguousarray(pose)
-        rows, broken = _core.track_velocities(stamps, pose, longest_s, fastest_cm_s)
+        velocities, broken = _core.track_velocities(stamps, pose, longest_s, fastest_cm_s)
         present = ~np.isnan(pose[..., 0])
-        motion = cls(stamps, present, rows.reshape(pose.shape), broken, longest_s)
+        motion = cls(stamps, present, velocities.reshape(pose.shape), broken, longest_s)
         if broken > _MOST_BROKEN * motion.steps.sum():
             raise ParameterError(
                 f"{broken} of {motion.steps.sum()} steps are faster than max_speed_cm_s = "
@@ -160,15 +161,16 @@ def _bows_of(axis: Floats, motion: Motion) -> Floats:
     """Return axes as headings of the bows: continuous, and mostly along the boat's motion."""
     heading = axis.copy()
     for boat in range(axis.shape[1]):
-        for part in motion.split(boat)[0]:
-            heading[part, boat] = np.unwrap(axis[part, boat], period=np.pi)
-            if np.nansum(motion.speed_along(heading)[part, boat]) < 0.0:
-                heading[part, boat] += np.pi
+        parts, _ = motion.split(boat)
+        for frames in parts:
+            heading[frames, boat] = np.unwrap(axis[frames, boat], period=np.pi)
+            if np.nansum(motion.speed_along(heading)[frames, boat]) < 0.0:
+                heading[frames, boat] += np.pi
     return heading
 
 
 def unwrapped(heading: Floats) -> Floats:
-    """Return headings without jumps of full turns between successive samples of a boat."""
+    """Return headings (t, n) without jumps of full turns between successive samples of a boat."""
     continuous = heading.copy()
     for boat in continuous.T:
         present = ~np.isnan(boat)

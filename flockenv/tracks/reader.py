@@ -171,7 +171,7 @@ def recording_of(
         in_analysis_window=analyzed,
         pose=poses,
         velocity=velocities,
-        # Without velocities the leaders count in no quantity.
+        # Quantities leave out boats without a velocity, here the leaders.
         order=order_series(poses, np.where(is_leader[:, None], np.nan, velocities)),
         parameters=parameters,
         seed=0,
@@ -200,7 +200,10 @@ def _checked(
 
 
 def _phases(phase: ArrayLike | None, times: Floats) -> tuple[NDArray[Any], NDArray[np.bool_]]:
-    """Return each sample's phase and whether it is analyzed: without phases "" and True."""
+    """Return each sample's phase, and whether the sample is analyzed.
+
+    Without phases, the phase is "" and every sample is analyzed.
+    """
     phases, analyzed = np.full(times.shape, ""), np.ones(times.shape, bool)
     if phase is not None:
         phases = np.array([*map(str, items(phase, "phase"))])
@@ -220,7 +223,7 @@ def _leaders_first(names: list[str], leaders: list[str], boats: int) -> list[int
 
 
 def _check_units(pose: Floats, velocity: Floats, parameters: FlockParameters) -> None:
-    """Refuse speeds and positions that boats in the pool cannot have, as of pixels or frames."""
+    """Refuse speeds and positions that boats in the pool cannot have, such as those in pixels."""
     speed = np.hypot(velocity[..., 0], velocity[..., 1])
     has_speed = ~np.isnan(speed).all(axis=0)
     fastest_cm_s = np.nanmedian(speed[:, has_speed], axis=0).max(initial=0.0)

@@ -12,7 +12,7 @@ from flockenv.tracks.motion import Floats, Motion
 if TYPE_CHECKING:
     import pandas as pd
 
-_WEAK, _STUCK = 0.3, 20
+_LOW_COSINE, _MANY_SAMPLES, _MANY_TOGETHER = 0.3, 20, 6
 _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 
 
@@ -82,22 +82,25 @@ class TrackReport:
 
         `outside` is the number of rows outside the water.
         """
-        share = outside / max(1, outside + self.samples)
-        points = [f"{n} at ({x:.6g}, {y:.6g}) in {c} frames" for n, (x, y, c) in self.stuck.items()]
-        is_alone = self.lone == self.samples and self.frames > 1
+        share_outside = outside / max(1, outside + self.samples)
+        points = [
+            f"{name} at ({x:.6g}, {y:.6g}) in {count} frames"
+            for name, (x, y, count) in self.stuck.items()
+        ]
+        are_all_lone = self.lone == self.samples and self.frames > 1
         is_slow = self.step_s > _LONG_STEP_S or 0.0 < self.median_speed_cm_s < _SLOW_CM_S
         doubts = {
-            "no boat appears in two successive frames: are the names right?": is_alone,
+            "no boat appears in two successive frames: are the names right?": are_all_lone,
             "the cosine is far from 1: are y_down, heading_unit, heading_turns, heading_zero and "
-            "the order of x and y right, and are the headings not axes?": self.cosine < _WEAK,
+            "the order of x and y right, and are the headings not axes?": self.cosine < _LOW_COSINE,
             f"rows are not in the order of time ({self.unsorted} steps back), and were sorted: is "
             "it one film?": self.unsorted > 0,
             "the column of names is empty: all rows are of one boat": self.unnamed,
             "that is slow for boats: are times in s? `fps` says how many units one second has": (
                 is_slow
             ),
-            f"{share:.0%} of the detections lie beside the pool: do cm_per_unit, center and pool "
-            "fit?": share > _MANY_OUTSIDE,
+            f"{share_outside:.0%} of the detections lie beside the pool: do cm_per_unit, center "
+            "and pool fit?": share_outside > _MANY_OUTSIDE,
             f"the same point in many frames: {_first_five(points)}; if one stands for a lost boat, "
             "name it in `lost`": len(points) > 0,
             f"the same heading in many frames{_by_boat(self.held)}; if a number stands for no "
@@ -124,22 +127,22 @@ def report_of(
     speed = np.hypot(*np.moveaxis(motion.velocity, -1, 0)[:2])
     used, omitted = samples[samples["why"] == ""], samples[samples["why"] != ""]
     counts = omitted.fillna({"id": ""}).groupby(["why", "id"]).size()
-    gaps = np.concatenate([motion.split(boat)[1] for boat in range(pose.shape[1])])
+    gaps_s = np.concatenate([gaps for _, gaps in map(motion.split, range(pose.shape[1]))])
     steps, speeds, count = np.diff(time_s), speed[~np.isnan(speed)], int(motion.present.sum())
     step_s = float(np.median(steps)) if len(steps) else 0.0
-    # On a regular clock, frames without a boat have no row.
-    empty = int((np.rint(steps[steps > motion.longest_s] / step_s) - 1).sum())
+    # Frames without any row are those that a gap in the times skips on a regular clock.
+    empty_frames = int((np.rint(steps[steps > motion.longest_s] / step_s) - 1).sum())
     return TrackReport(
         frames=len(time_s),
         boats=pose.shape[1],
         samples=count,
-        missing=pose.shape[1] * (len(time_s) + empty) - count,
+        missing=pose.shape[1] * (len(time_s) + empty_frames) - count,
         duration_s=float(time_s[-1]),
         step_s=step_s,
         median_speed_cm_s=float(np.median(speeds)) if len(speeds) else float("nan"),
         left_out={why: counts[why].to_dict() for why in counts.index.unique(0)},
-        gaps=len(gaps),
-        longest_gap_s=float(gaps.max(initial=0.0)),
+        gaps=len(gaps_s),
+        longest_gap_s=float(gaps_s.max(initial=0.0)),
         broken=motion.broken,
         lone=int((motion.present & np.isnan(speed)).sum()),
         cosine=motion.cosine(pose[..., 2]),
@@ -151,23 +154,26 @@ def report_of(
 def _stuck(used: "pd.DataFrame", layout: TrackLayout) -> dict[str, tuple[float, float, int]]:
     """Return boats that stay at exactly one point in many samples, as `TrackReport.stuck`."""
     counts = used.value_counts(["id", "x", "y"]).reset_index()
-    share = counts.groupby("id")["count"].transform("sum") / 10
-    # Two boats are never at one point.
+    tenth = counts.groupby("id")["count"].transform("sum") / 10
+    # Hulls do not overlap, so several boats at one point in many samples are lost ones.
     shared = used[used.duplicated(["frame", "x", "y"], keep=False)].value_counts(["x", "y"])
-    is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= 6])
-    counts = counts[is_shared | ((counts["count"] >= _STUCK) & (counts["count"] >= share))]
-    (x, y), scale = layout.center, layout.cm_per_unit or 1.0
-    up = -scale if layout.y_down else scale
+    is_shared = counts.set_index(["x", "y"]).index.isin(shared.index[shared >= _MANY_TOGETHER])
+    counts = counts[is_shared | ((counts["count"] >= _MANY_SAMPLES) & (counts["count"] >= tenth))]
+    (center_x, center_y), x_scale = layout.center, layout.cm_per_unit or 1.0
+    y_scale = -x_scale if layout.y_down else x_scale
     stuck = counts.drop_duplicates("id").itertuples(index=False)
-    return {str(n): (x_cm / scale + x, y_cm / up + y, int(count)) for n, x_cm, y_cm, count in stuck}
+    return {
+        str(name): (x_cm / x_scale + center_x, y_cm / y_scale + center_y, int(count))
+        for name, x_cm, y_cm, count in stuck
+    }
 
 
 def _held(used: "pd.DataFrame") -> dict[str, int]:
     """Return boats that move with one heading in many samples, as `TrackReport.held`."""
-    # A boat at rest keeps its heading, so each of its points counts once.
+    # A boat at rest keeps its heading, so samples at one point count once.
     moving = used.drop_duplicates(["id", "x", "y"])
     counts: Any = moving.value_counts(["id", "heading"]).groupby("id")
-    # `value_counts` sorts, so that the second entry of a boat is its second most frequent heading.
+    # `value_counts` sorts, so a boat's entry 1 is its second most frequent heading.
     most, second = counts.max(), counts.nth(1).droplevel("heading")
-    held = most[(most >= _STUCK) & (most >= 10 * second.reindex(most.index, fill_value=0))]
+    held = most[(most >= _MANY_SAMPLES) & (most >= 10 * second.reindex(most.index, fill_value=0))]
     return {str(name): int(count) for name, count in held.items()}

@@ -41,8 +41,9 @@ def samples_of(rows: "pd.DataFrame", layout: TrackLayout) -> "tuple[pd.DataFrame
     table, names = long_table(rows, layout)
     columns = layout.columns
     points, is_lost = points_of(table, columns["x"], columns["y"], layout)
-    corner, size = points.mean(axis=0), table[[*columns["box"]]].to_numpy() / 2
-    position = corner + size @ [1, 1j][: size.shape[1]]
+    # The center, or the corner of a box. Without a box `half_size` has no columns, and adds 0.
+    reference, half_size = points.mean(axis=0), table[[*columns["box"]]].to_numpy() / 2
+    position = reference + half_size @ [1, 1j][: half_size.shape[1]]
     position = (position - complex(*layout.center)) * (layout.cm_per_unit or 1.0)
     position = position.conj() if layout.y_down else position
     if len(columns["heading"]) == 1:
@@ -79,7 +80,7 @@ def points_of(
 def _check_water(samples: "pd.DataFrame") -> None:
     """Refuse tracks of which most lie outside the pool.
 
-    Up to three points outside that several rows share are left out, since they may mark lost boats.
+    The three points outside that most rows share do not count, since they may mark lost boats.
     """
     counts = samples[samples["why"] == "outside the water"].value_counts(["x", "y"])
     outside = counts.sum() - counts[counts > 1].head(3).sum()
@@ -106,9 +107,11 @@ def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
         times = numbers(column, layout)
         _check_clock(times, layout)
         times = times / (layout.fps or 1.0)
-    for line in column.index[~np.isfinite(times)][:1]:
+    without_time = column.index[~np.isfinite(times)]
+    if len(without_time):
         raise ParameterError(
-            f"column {layout.frame!r} has rows without a number, such as {column.index.name} {line}"
+            f"column {layout.frame!r} has rows without a number, such as {column.index.name} "
+            f"{without_time[0]}"
         )
     return np.asarray(times - times.min(initial=np.inf))
 
@@ -135,7 +138,7 @@ def _dates_or_durations(column: "pd.Series[Any]", first: str) -> "pd.Series[Any]
 def _past_midnight(seconds: Floats) -> Floats:
     """Return times of day, with a day added to those past midnight.
 
-    These are the times before a gap of at least half a day.
+    If the sorted times have a gap of at least half a day, those before the gap are past midnight.
     """
     stamps = np.unique(seconds[np.isfinite(seconds)])
     steps = np.diff(stamps)
@@ -169,7 +172,7 @@ def _check_clock(times: Floats, layout: TrackLayout) -> None:
 
 
 def _headings(table: "pd.DataFrame", layout: TrackLayout) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return headings in rad from x (0 without a column), and which exceed a full turn."""
+    """Return headings in rad from x, and whether each exceeds a full turn; 0 without a column."""
     columns, is_too_large = layout.columns["heading"], np.zeros(len(table), bool)
     turns = layout.heading_turns or ("cw" if layout.y_down else "ccw")
     if len(columns) == 4:
@@ -210,7 +213,8 @@ def _yaw(quaternions: "pd.DataFrame", handedness: float) -> Floats:
 def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout) -> None:
     """Refuse a component of a quaternion, a sine or a cosine as a heading.
 
-    Whatever its name, its square and those of one or three neighboring columns add up to 1.
+    Such a column is recognized by its values: its squares and those of one or three neighboring
+    columns add up to 1.
     """
     name = heading.replace("{id}", boats_of(rows, layout)[0])
     heading_index = index_of(name, rows, indices_of(rows))
@@ -234,7 +238,10 @@ def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout)
 
 
 def _check_largest(heading: Floats, is_too_large: NDArray[np.bool_], layout: TrackLayout) -> None:
-    """Refuse headings if many exceed a full turn; a single such value may mark lost boats."""
+    """Refuse headings if many exceed a full turn; a single such value may mark lost boats.
+
+    It is accepted unless every heading has it.
+    """
     share = is_too_large.sum() / max(1, np.isfinite(heading).sum())
     is_mark = len(np.unique(heading[is_too_large])) == 1 and share < 1.0
     if share <= _MOST_TOO_LARGE or is_mark:
@@ -287,7 +294,7 @@ def poses_of(
     # Sorted by length, then alphabetically, so that 2 comes before 10.
     names = sorted(used["id"].unique(), key=lambda name: (len(name), name))
     time_s = samples.groupby("frame")["time"].agg(["min", "max"]).mean(axis=1).to_numpy()
-    # Arrays hold a pose for each frame and name. Of large arrays a sixteenth must be filled.
+    # The array holds a pose for each frame and name. If it is large, a sixteenth must be filled.
     if len(time_s) * len(names) > max(1 << 22, 16 * len(samples)):
         raise ParameterError(
             f"{len(names)} names in {len(time_s)} frames are too many for {len(samples)} rows: "
@@ -295,13 +302,14 @@ def poses_of(
         )
     pose = np.full((len(time_s), len(names), 3), np.nan)
     stamps = np.tile(time_s[:, None], len(names))
-    entries = used["frame"], require("pandas", "plot").Index(names).get_indexer(used["id"])
-    pose[entries], stamps[entries] = used[["x", "y", "heading"]], used["time"]
+    boats = require("pandas", "plot").Index(names).get_indexer(used["id"])
+    pose[used["frame"], boats] = used[["x", "y", "heading"]]
+    stamps[used["frame"], boats] = used["time"]
     return names, time_s - time_s[0], stamps, pose
 
 
 def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
-    """Return the number of the frame of each row; rows must be in the order of time.
+    """Return each row's frame number, from 0; rows must be in the order of time.
 
     Rows with the same time are one frame. If each boat has its own time stamps, a frame ends before
     one of its boats is seen again, and lasts at most 0.9 of the time between two rows of a boat.
@@ -311,16 +319,17 @@ def frames_of(rows: "pd.DataFrame") -> NDArray[np.intp]:
     boat_steps = boat_steps[boat_steps > 0.0]
     if len(stamps) < 3 or not len(boat_steps):
         return frames
+    # If stamps are about as far apart as the samples of one boat, all boats share their stamps.
     if np.quantile(np.diff(stamps), 0.25) > 0.6 * boat_steps.quantile(0.1):
         return frames
     names, times = rows["id"].to_numpy(), rows["time"].to_numpy()
     longest_s = 0.9 * float(boat_steps.median())
-    number, start, last_seen = -1, -np.inf, dict[str, float]()
+    frame, start, last_seen = -1, -np.inf, dict[str, float]()
     for index, (name, time) in enumerate(zip(names, times, strict=True)):
         # Repeated rows are in one frame, and rows without a name belong to no boat.
         if last_seen.get(name, time) < time or time - start > longest_s:
-            number, start, last_seen = number + 1, time, {}
+            frame, start, last_seen = frame + 1, time, {}
         if isinstance(name, str):
             last_seen[name] = time
-        frames[index] = number
+        frames[index] = frame
     return frames

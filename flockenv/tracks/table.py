@@ -95,9 +95,11 @@ def spelling_of(path: Path) -> dict[str, Any]:
     separator = _separator_of(lines)
     rows = [line.split(None if separator == " " else separator) for line in lines]
     widths = [*map(len, rows)]
-    # The header is the first line of a header in levels, or the first one of the widest lines.
-    heights = enumerate(_header(rows[line : line + 10])[1] for line in range(min(4, len(rows))))
-    skip = next((line for line, height in heights if height > 1), widths.index(max(widths)))
+    # A multi-line header has its first line among the first four. Any other header is one line,
+    # the first one with the most cells.
+    headers = [_header(rows[line : line + 10]) for line in range(min(4, len(rows)))]
+    multi_line = [line for line, (_, height) in enumerate(headers) if height > 1]
+    skip = multi_line[0] if multi_line else widths.index(max(widths))
     form: dict[str, Any] = {"skip": skip} if skip else {}
     if separator != _usual_separator(path):
         form["separator"] = separator
@@ -109,9 +111,9 @@ def spelling_of(path: Path) -> dict[str, Any]:
 
 
 def _separator_of(lines: list[str]) -> str:
-    """Return the separator that is most frequent in a line, of those that may be set."""
+    """Return the separator that occurs most often in one line."""
     counts = {mark: max(line.count(mark) for line in lines) for mark in ";\t|,"}
-    if max(counts.values()) < 2:  # Blanks come last, since names may hold them, too.
+    if max(counts.values()) < 2:  # Blanks are tried last, since names may hold them, too.
         counts[" "] = max(len(line.split()) - 1 for line in lines)
     return max(counts, key=lambda mark: counts[mark])
 
@@ -158,16 +160,16 @@ def _names_in(text: str, layout: TrackLayout, separator: str) -> tuple[list[str]
         if any(row[len(names) :]):
             raise ParameterError(
                 f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
-                f"every column needs a name{_separator_hint(names)}"
+                f"every column needs a name{_header_hint(names)}"
             )
     unnamed = range(len(names), max(map(len, rows)))
     return names + [f"unnamed {index}" for index in unnamed], first
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
-    """Return the names of columns, and the number of lines that they take.
+    """Return the names of columns, and the number of lines in the header.
 
-    The first one or two columns hold times. In a header in levels they hold the levels' names.
+    The first one or two columns hold times. In a multi-line header they say what each line names.
     """
     starts = [next(filter(None, row[:2]), "").lower() for row in rows]
     n_time_columns = 1 if any(rows[0][:1]) else 2
@@ -182,7 +184,7 @@ def _header(rows: list[list[str]]) -> tuple[list[str], int]:
 
 
 def _joined(levels: Iterable[object]) -> str:
-    """Return "individual.part_coord" for a column that is named in these levels."""
+    """Return "individual.part_coord" for a column's names, one per level of its header."""
     *individual, part, coord = map(str, levels)
     return f"{'.'.join([*individual, part])}_{coord}"
 
@@ -232,8 +234,8 @@ def long_table(
     pandas, indices, boats = require("pandas", "plot"), indices_of(rows), boats_of(rows, layout)
 
     def column_of(name: str) -> "pd.Series[Any]":
-        of_boats = [index_of(name.replace("{id}", boat), rows, indices) for boat in boats]
-        column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in of_boats])
+        indices_of_boats = [index_of(name.replace("{id}", boat), rows, indices) for boat in boats]
+        column: pd.Series[Any] = pandas.concat([rows.iloc[:, index] for index in indices_of_boats])
         return column.rename(name)
 
     ids = column_of(layout.id) if layout.id and not layout.is_wide else None
@@ -256,14 +258,18 @@ def _texts(column: "pd.Series[Any]") -> "pd.Series[str]":
 
 
 def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
-    """Return the boats' names in place of {id} in names of columns; ["0"] without {id}."""
+    """Return the boats' names, which columns have in place of {id}; ["0"] without {id}."""
     if not layout.is_wide:
         return ["0"]
     names, indices = [*map(str, rows)], indices_of(rows)
     fields = sum(layout.columns.values(), ())
-    first = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-    boats = [match[1] for name in names if (match := first.fullmatch(name.strip()))]
-    boats = [b for b in boats if all(_key(f.replace("{id}", b)) in indices for f in fields)]
+    pattern = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+    boats = [match[1] for name in names if (match := pattern.fullmatch(name.strip()))]
+    boats = [
+        boat
+        for boat in boats
+        if all(_key(field.replace("{id}", boat)) in indices for field in fields)
+    ]
     if not boats:
         patterns = " and ".join(map(repr, fields))
         raise ParameterError(f"no columns look like {patterns}; there are {listed(names)}")
@@ -286,13 +292,13 @@ def index_of(name: str, rows: "pd.DataFrame", indices: dict[str, list[int]]) -> 
         raise ParameterError(f"there are several columns {name!r}: give each its own name")
     if not matches:
         names = [*map(str, rows)]
-        hint = f"there are {listed(names)}{_separator_hint(names)}"
+        hint = f"there are {listed(names)}{_header_hint(names)}"
         raise ParameterError(f"column {name!r} is missing; {hint}")
     return matches[0]
 
 
 def _key(name: object) -> str:
-    """Return a column's name without case, blanks around it and marks of remarks before it."""
+    """Return a column's name in lower case, without comment marks or blanks around it."""
     return str(name).strip().lstrip("#%").strip().casefold()
 
 
@@ -302,11 +308,11 @@ def listed(names: list[str]) -> str:
     return f"{', '.join(names[:40])}{more}"
 
 
-def _separator_hint(names: list[str]) -> str:
+def _header_hint(names: list[str]) -> str:
     """Return a hint if a header was read as one name, or if it consists of numbers."""
     if sum(map(is_value, names)) > len(names) / 2:
         return ": `header` names the columns of a file whose first line does not"
-    if names[0][:1] in ("#", "%", "/") and len(names) == 1:
+    if len(names) == 1 and names[0][:1] in ("#", "%", "/"):
         return ": `skip` leaves out lines before the header, such as remarks"
     separator = _separator_of(names)
     if len(names) > 1 or separator not in names[0]:
@@ -322,7 +328,8 @@ def numbers(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
         parsed = to_numeric(texts.str.replace(layout.decimal, "."), errors="coerce")
         missing_texts = NO_NUMBER | {word.strip().lower() for word in layout.missing}
         other_texts = texts[parsed.isna() & ~texts.str.lower().isin(missing_texts)]
-        for line, text in other_texts.head(1).items():
+        if len(other_texts):
+            line, text = other_texts.index[0], other_texts.iloc[0]
             decimal = "," if layout.decimal == "." else "."
             hint = f"; is decimal = {decimal!r}?" if _has_decimal(text, decimal) else ""
             raise ParameterError(
