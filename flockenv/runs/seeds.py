@@ -17,9 +17,8 @@ class SeedRange:
     use: str
     #: First seed of run 0.
     first: int
-    #: Number of seeds of each run, and number of runs.
-    of_a_run: int
-    runs: int = 1
+    of_a_run: int  #: Number of seeds of each run.
+    runs: int = 1  #: Number of runs.
 
     @property
     def every(self) -> range:

@@ -57,7 +57,7 @@ def guess_layout(path: str | os.PathLike[str]) -> list[str]:
 
 
 def _guessed(path: Path) -> tuple[Form, Doubts]:
-    """Return the fields of a layout that follow from a table, and those that the user must check."""
+    """Return a layout's fields that follow from a table, and those that the user must check."""
     form, doubts = spelling_of(path), Doubts()
     rows = read_table(path, TrackLayout(pool="wide", **form))
     names = [*map(str, rows)]

@@ -84,7 +84,7 @@ def _recording(
 ) -> Recording:
     """Return the rows of a table as a recording, and call `report` with what was left out."""
     samples, is_named = samples_of(rows, layout)
-    unsorted = samples[samples["why"] != REPEATED].groupby("id")["time"].diff() < 0.0
+    goes_back = samples[samples["why"] != REPEATED].groupby("id")["time"].diff() < 0.0
     samples = samples.sort_values("time", kind="stable")
     samples["frame"] = frames_of(samples)
     used = samples[samples["why"] == ""]
@@ -95,7 +95,7 @@ def _recording(
     recording = recording_of(time_s, pose, velocity=motion.velocity, ids=names, **flock)
     track_report = report_of(samples, time_s, pose, motion, layout)
     unnamed = layout.id is not None and not is_named
-    report(replace(track_report, unsorted=int(unsorted.sum()), unnamed=unnamed))
+    report(replace(track_report, unsorted=int(goes_back.sum()), unnamed=unnamed))
     return recording
 
 

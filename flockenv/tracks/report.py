@@ -20,16 +20,14 @@ _MANY_OUTSIDE, _LONG_STEP_S, _SLOW_CM_S = 0.1, 10.0, 0.1
 class TrackReport:
     """Report of tracks: what was used, and what was left out. As text it names what is doubtful."""
 
-    #: Numbers of different times, of different names, and of used poses.
-    frames: int
-    boats: int
-    samples: int
+    frames: int  #: Number of different times.
+    boats: int  #: Number of different names.
+    samples: int  #: Number of used poses.
     #: Number of frames without a pose, summed over boats; frames without any row count, too.
     missing: int
-    #: Time from first to last frame, median step, and median of the boats' speeds (NaN without
-    #: any): a wrong `fps` or `cm_per_unit` shows in them.
-    duration_s: float
-    step_s: float
+    duration_s: float  #: Time from first to last frame; a wrong `fps` shows in it.
+    step_s: float  #: Median step between two frames.
+    #: Median of the boats' speeds, NaN without any. A wrong `fps` or `cm_per_unit` shows in it.
     median_speed_cm_s: float
     #: Omitted rows by reason and boat; the boat is "" for rows without one.
     left_out: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
@@ -45,7 +43,7 @@ class TrackReport:
     broken: int = 0
     #: Samples without a neighbor in time. They have no velocity, and quantities leave them out.
     lone: int = 0
-    #: Mean cosine between heading and motion, weighted by distance: near 1 for boats that move
+    #: Mean cosine between heading and motion, weighted by speed: near 1 for boats that move
     #: ahead, small or negative if axes, units or directions are wrong; NaN if nothing moves.
     cosine: float = float("nan")
     #: Boats that are at exactly one point in at least 20 samples and a tenth of all their samples,
