@@ -196,17 +196,19 @@ def _with_id(boat: re.Match[str], name: str) -> str:
 def _fields_of(program: Format, names: Names, *, has_ids: bool) -> dict[str, Any] | None:
     """Return the fields of a layout if the table is this program's, otherwise None."""
     matches = {field: _matches(pattern, names) for field, pattern in program.columns.items()}
-    pairs = [x for x in matches["x"] if "y" in program.fields or _siblings(x[0], "x", "y", names)]
+    has_fixed_y = "y" in program.fields
+    x_with_y = [x for x in matches["x"] if has_fixed_y or _siblings(x[0], "x", "y", names)]
     # In a table with names x1, y1, x2 and y2 may be a box around each boat instead of two boats.
-    is_box = has_ids and sorted(str(x.groupdict().get("id")) for x in pairs) == ["1", "2"]
-    if not pairs or not all(matches.values()) or is_box:
+    is_box = has_ids and sorted(str(x.groupdict().get("id")) for x in x_with_y) == ["1", "2"]
+    if not x_with_y or not all(matches.values()) or is_box:
         return None
-    first = pairs[0]
+    first = x_with_y[0]
     known = {field: [field_matches[0][0]] for field, field_matches in matches.items()}
     if "part" in first.groupdict():
         boat = first.groupdict().get("id")
-        points = [pair for pair in pairs if pair.groupdict().get("id") == boat]
+        points = [x for x in x_with_y if x.groupdict().get("id") == boat]
         del known["x"]
+        # A name without its last letter, the axis, is the stem of the key point's columns.
         columns = key_points({point["part"]: point[0][:-1] for point in points}, names)
     else:
         columns = {"x": [first[0]], "y": _siblings(first[0], "x", "y", names)}

@@ -121,14 +121,14 @@ def _separator_of(lines: list[str]) -> str:
 def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame":
     """Return the rows of a text, without empty ones and without units under the header."""
     pandas = require("pandas", "plot")
-    names, first = _names_in(text, layout, separator)
+    names, first_line = _names_in(text, layout, separator)
     # Numbers that are names of boats stay texts: 007 is not 7.
     id_key = _key(layout.id or "")
     table: pd.DataFrame = pandas.read_csv(
         io.StringIO(text),
         sep=r"\s+" if separator == " " else separator,
         decimal=layout.decimal,
-        skiprows=first - 1,
+        skiprows=first_line - 1,
         header=None,
         names=range(len(names)),
         index_col=False,
@@ -139,7 +139,7 @@ def _read_text(text: str, layout: TrackLayout, separator: str) -> "pd.DataFrame"
         skipinitialspace=True,
         skip_blank_lines=False,
     )
-    lines = pandas.RangeIndex(first, first + len(table), name="line")
+    lines = pandas.RangeIndex(first_line, first_line + len(table), name="line")
     table = table.set_axis(names, axis=1).set_axis(lines).dropna(how="all")
     # Some programs write units, or longer names, into the lines under the header.
     head = table.head(0 if layout.header else 4)
@@ -155,15 +155,15 @@ def _names_in(text: str, layout: TrackLayout, separator: str) -> tuple[list[str]
     if not layout.header and not any(rows[0]):
         raise ParameterError("there is no header in its first line")
     names, height = ([*layout.header], 0) if layout.header else _header(rows)
-    first = layout.skip + height + 1
-    for line, row in enumerate(rows[height:], first):
+    first_line = layout.skip + height + 1
+    for line, row in enumerate(rows[height:], first_line):
         if any(row[len(names) :]):
             raise ParameterError(
                 f"the header names {len(names)} columns, and line {line} holds {len(row)} values: "
                 f"every column needs a name{_header_hint(names)}"
             )
     unnamed = range(len(names), max(map(len, rows)))
-    return names + [f"unnamed {index}" for index in unnamed], first
+    return names + [f"unnamed {index}" for index in unnamed], first_line
 
 
 def _header(rows: list[list[str]]) -> tuple[list[str], int]:
