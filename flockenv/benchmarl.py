@@ -57,7 +57,7 @@ class LeadersTaskClass(TaskClass):
         super().__init__(name, config)
         options = {key: value for key, value in self.config.items() if key != "state"}
         refuse_unknown((self.config.get("state", "none"),), STATES, "state")
-        EnvOptions.parse(options)
+        EnvOptions.parse(options)  # Only for its errors.
 
     def get_env_fun(
         self,
@@ -197,11 +197,13 @@ def network_policy(
             "MlpConfig, share_policy_params)"
         )
     network = networks[0].mlp.get_stateful_net()
+    # The last parameters are the outputs' biases: of the mean, or of the mean and the spread.
+    n_outputs = [*network.parameters()][-1].shape[-1]
     return NetworkPolicy.from_module(
         network,
         env.observation_space,
         squashed=getattr(algorithm, "use_tanh_normal", False),
-        has_spread=[*network.parameters()][-1].shape[-1] == 2,
+        has_spread=n_outputs == 2,
         provenance=provenance,
     )
 

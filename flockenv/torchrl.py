@@ -183,7 +183,8 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         set_state: bool | None = None,
         **others: object,
     ) -> TensorDictBase:
-        for name in others:
+        if others:
+            name = next(iter(others))
             raise UnknownOptionError(
                 f"reset got an unexpected keyword argument {name!r}: options of a reset are given "
                 f"as options={{...}}, the seed by set_seed"
@@ -250,7 +251,7 @@ def _boat_rows(states: NDArray[np.float32], boats: int) -> NDArray[np.float32]:
 
     `states` has shape (flocks, state size), and the result (flocks, boats, entries).
     """
-    n_clock = len(state_entries(0))
+    n_clock = len(state_entries(0))  # A state of no boats holds the entries of the clock only.
     boat_entries = states[:, :-n_clock].reshape(len(states), boats, -1)
     clock = np.broadcast_to(states[:, None, -n_clock:], (len(states), boats, n_clock))
     return np.concatenate([boat_entries, clock], axis=2)

@@ -119,6 +119,7 @@ def _draw_frame(recording: Recording, axes: "Axes") -> None:
     for boat, position in zip(boats, zip(x, y, strict=True), strict=True):
         axes.annotate(str(names[boat]), position, (5, 5), textcoords="offset points", fontsize=8)
     angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    # In open water the outer radius is infinite. Without an island the inner radius is 0.
     for radius in pool_radii_cm(parameters.pool):
         if 0.0 < radius < np.inf:
             axes.plot(radius * np.cos(angle), radius * np.sin(angle), color="0.5")

@@ -92,6 +92,7 @@ def _unknown_option(words: Sequence[str], unknown: str, known: list[str]) -> str
     candidates = (*options, *settable)
     match = name if name in candidates else nearest(name, candidates, cutoff=0.6)
     if match is None:
+        # Only a command without --set gets here with the name of a field.
         if name in _FIELDS:
             line = shlex.join(["flockenv", "run", "--set", f"{name}={value or 'VALUE'}"])
             return f"{refused}: {name} is a field of the flock: set it by `{line}`"

@@ -40,7 +40,11 @@ def compare(options: CompareOptions) -> None:
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
-    for package in ("matplotlib", "pandas", "scipy"):  # Before hours of runs, not after them.
+    for package in (
+        "matplotlib",
+        "pandas",
+        "scipy",
+    ):  # Missing ones are found before hours of runs.
         require(package, "plot")
     if options.suite == LEVELS_SUITE:
         refuse_all_but(_OPTIONS_OF_ENTRIES, options)

@@ -162,9 +162,10 @@ def _case_policies(
     Prints which references are left out because they are not made for the pool.
     """
     policies = {name: _load(text, pool, options.trust) for name, text in typed.items()}
-    references: tuple[str, ...] = () if options.only else REFERENCES
     if options.suite:
-        references = (REFERENCE,)
+        references: tuple[str, ...] = (REFERENCE,)
+    else:
+        references = () if options.only else REFERENCES
     for name in references:
         # One of the user's policies may be the same. A suite needs the reference by its name.
         if name in typed.values() and not options.suite:
@@ -212,7 +213,8 @@ def _flock_cases(options: CompareOptions) -> list[Case]:
     if options.policy and not any(leaders):
         raise ParameterError("--policy is not accepted with --n-leaders 0: nobody is steered")
     alternates = environment.get("target") == "alternate"
-    minutes = options.minutes if options.minutes is not None else 16.0 if alternates else 8.0
+    default_minutes = 16.0 if alternates else 8.0
+    minutes = default_minutes if options.minutes is None else options.minutes
     return [
         Case(
             name=f"{_pool_name(parameters.pool)}-bw-{parameters.bw_s!r}",

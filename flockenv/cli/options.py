@@ -43,7 +43,10 @@ def argument(help: str, default: Any = MISSING, **settings: Any) -> Any:  # noqa
 
 
 def takes(options: type[Options]) -> Callable[[Callable[[Options], None]], Callable[..., None]]:
-    """Return a decorator: the command line fills a dataclass, with which it calls the command."""
+    """Return a decorator that gives a command an option for each field of a dataclass.
+
+    The command is called with an instance that holds the values from the command line.
+    """
     hints = get_type_hints(options)
     parameters = [
         inspect.Parameter(

@@ -105,7 +105,8 @@ def open_page(page: Path) -> None:
 
 def summary_of(recording: Recording) -> dict[str, float | None]:
     """Return a run's quantities as in the table of a sweep; None for undefined values."""
-    return {name: None if np.isnan(n) else n for name, n in summary(recording).items()}
+    values = summary(recording)
+    return {name: None if np.isnan(value) else value for name, value in values.items()}
 
 
 def in_words(recording: Recording) -> str:
@@ -118,6 +119,7 @@ def in_words(recording: Recording) -> str:
         if quantity.name == "signed_order" and not has_target:
             continue
         mean = means[f"{quantity.name}_mean"]
+        # Only symbols with an index, such as Ψ_o, say enough by themselves.
         has_index = "_" in quantity.symbol
         label = f"mean {quantity.symbol}" if has_index else quantity.label.partition(",")[0]
         parts.append(f"{label} {'undefined' if mean is None else f'{mean:.3f}'}")

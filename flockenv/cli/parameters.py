@@ -42,16 +42,19 @@ class Flocks:
         """Return the fields that the options or the file name, and ``preset`` if they name one."""
         file, preset = self.params, self.preset
         fields = {} if file is None else read_toml_file(file, f"--params {file}")
-        if preset is not None and fields.setdefault("preset", preset) != preset:
-            raise ParameterError(
-                f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
-            )
+        if preset is not None:
+            if fields.get("preset", preset) != preset:
+                raise ParameterError(
+                    f"--preset {preset} contradicts preset = {fields['preset']!r} in {file}"
+                )
+            fields["preset"] = preset
         changed = changed_fields(self.changes or ())
         for name in self.named:
             value = getattr(self, name)
             if value is not None and name in changed:
                 raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
             if value is not None:
+                # The only option with a text is the pool.
                 changed[name] = pool_of(value) if isinstance(value, str) else value
         return fields | changed
 
@@ -94,7 +97,10 @@ def pool_of(text: str) -> Any:
 
 
 def _value(text: str) -> object:
-    """Return the TOML value of a text, a list of its words, or the text itself."""
+    """Return the TOML value of a text.
+
+    For a text that is not TOML: a list of its words if it has brackets or commas, or else the text.
+    """
     if text[0] in "([" and text[-1] in ")]":
         text = text.replace("(", "[").replace(")", "]")
     try:
@@ -104,5 +110,5 @@ def _value(text: str) -> object:
         items = [word.strip() for word in (text[1:-1] if is_list else text).split(",")]
         is_word_list = all(map(str.isidentifier, items)) and (is_list or len(items) > 1)
         return items if is_word_list else text
-    # A text of several lines could hold further keys.
+    # A text of several lines could hold further keys. It is returned as a text.
     return table["value"] if table.keys() == {"value"} else text

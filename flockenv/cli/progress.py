@@ -13,7 +13,7 @@ from flockenv.cli.console import echo, errors
 
 
 def checkpoint_note(folder: Path) -> str:
-    """Return the sentence that tells where an interrupted training left its checkpoint."""
+    """Return the sentence on an interrupted training: where its checkpoint is."""
     return f"{folder} holds the last checkpoint: --resume continues from it."
 
 
@@ -48,7 +48,10 @@ def progress(
 
 
 def ends_on_interrupt(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that ends with exit code 130 after Ctrl-C, once no work is half done."""
+    """Return a command that ends with exit code 130 after Ctrl-C, at the next safe point.
+
+    Safe points are the calls of `end_if_interrupted`, and the end of the command.
+    """
 
     @functools.wraps(command)
     def wrapped(*arguments: object, **options: object) -> None:

@@ -55,13 +55,13 @@ def train_branches(
     measurements = compare_with_laws(policy, training.parameters, flocks)
     orders = {name: columns["signed_order"] for name, columns in measurements.items()}
     _write(out, training, orders)
-    gain, gain_error = _mean(orders[TRAINED] - orders[TUNED_LAW])
+    gain, gain_error = _mean_and_error(orders[TRAINED] - orders[TUNED_LAW])
     if printing.as_json:
-        means = {name: _mean(values)[0] for name, values in orders.items()}
+        means = {name: _mean_and_error(values)[0] for name, values in orders.items()}
         print_json({"signed_order": means, "gain": [gain, gain_error], "policy": str(out / POLICY)})
         return
     for name, values in orders.items():
-        mean, error = _mean(values)
+        mean, error = _mean_and_error(values)
         echo(f"{name}: signed order {mean:.3f} ± {error:.3f} in {len(values)} fresh flocks")
     echo(f"{TRAINED} minus {TUNED_LAW}: {gain:+.3f} ± {gain_error:.3f} (standard errors)")
     notes = overlap_note(*training.overlaps, "branches of the training")
@@ -100,7 +100,7 @@ def _lines(is_quiet: bool) -> Callable[[Progress], None]:
     return report
 
 
-def _mean(values: NDArray[np.float64]) -> tuple[float, float]:
+def _mean_and_error(values: NDArray[np.float64]) -> tuple[float, float]:
     """Return a mean and its standard error."""
     return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
 

@@ -56,11 +56,13 @@ class Case:
         Raises the errors of `compare_leaders`.
         """
         targets = self.targets or (self.parameters.target,)
+        # `compare_leaders` refuses policies without leaders.
+        steering = policies if any(self.leaders) else {}
         parts = [
             compare_leaders(
                 self.parameters.replace(target=target),
                 self.leaders,
-                policies if any(self.leaders) else {},
+                steering,
                 self.seeds[index :: len(targets)],
                 self.episode_s,
                 progress,

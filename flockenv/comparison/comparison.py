@@ -75,6 +75,7 @@ class Comparison:
         entries = []
         for name, policy in ({NO_LEADERS: None} | named_policies).items():
             for k in counts:
+                # A policy needs leaders, and only `NO_LEADERS` has none.
                 if (k == 0) != (name == NO_LEADERS):
                     continue
                 flock, steering = parameters.replace(n_leaders=k), policy

@@ -80,11 +80,11 @@ class Episodes:
             **_decision_options(leaders, options),
         }
         episodes = cls(EnvOptions.parse(settings), leaders, k, seeds_of_episodes(seeds))
-        episodes._batch(1)  # It raises errors before anything runs.
+        episodes._batch(1)  # Only for its errors, before anything runs.
         return episodes
 
     def _batch(self, flocks: int) -> LeaderBatch:
-        """Return a batch of this many flocks, all with the number of leaders."""
+        """Return a batch of this many flocks, each with `n_leaders` leaders."""
         return LeaderBatch(self.flock, [self.n_leaders] * flocks, "disabled")
 
     def measure(self, progress: Progress = no_progress) -> dict[str, NDArray[Any]]:

@@ -53,6 +53,7 @@ def leader_curve(
             case_means = means[means["case"] == case]
             for index, (policy, color) in enumerate(policy_colors(policies).items()):
                 shift = 0.1 * (index - (len(policies) - 1) / 2)
+                # At k = 0 every policy has the same flocks.
                 names = [policy, NO_LEADERS]
                 if runs is not None:
                     dots = runs[(runs["case"] == case) & runs["policy"].isin(names)]

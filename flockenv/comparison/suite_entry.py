@@ -94,21 +94,22 @@ class SuiteEntry:
 
     @classmethod
     def _from_values(cls, values: Mapping[str, Any], folder: Path, trust: bool) -> Self:
+        """Return the entry of a file's values by key; policies are searched in `folder`."""
         refuse_unknown(values, _KEYS, "key of an entry")
         missing = [key for key in _KEYS if key not in values and key != "searched_hours"]
         if missing:
             raise ParameterError(f"{missing[0]} is missing")
         _check_suite(values)
         _check_training_seeds(values["training_seeds"])
-        searched = values.get("searched_hours")
+        searched_hours = math.nan
+        if values.get("searched_hours") is not None:
+            searched_hours = _checked_hours(values["searched_hours"], "searched_hours")
         return cls(
             name=_checked_text(values["name"], "name"),
             kind=_checked_text(values["class"], "class"),
             link=_checked_text(values["link"], "link"),
             flock_hours=_checked_hours(values["flock_hours"], "flock_hours"),
-            searched_hours=math.nan
-            if searched is None
-            else _checked_hours(searched, "searched_hours"),
+            searched_hours=searched_hours,
             trainings={
                 name: _trainings(policies, LEVELS[name], folder, trust)
                 for name, policies in _levels(values["levels"]).items()
@@ -178,7 +179,7 @@ class Scored(NamedTuple):
     rows: "pd.DataFrame"
     #: `MEASURED` for all flocks; those of each level's two references come first.
     orders: "pd.DataFrame"
-    #: For each entry without a row, a sentence that tells why.
+    #: For each entry without a row, the reason.
     broken: tuple[str, ...]
 
 

@@ -25,31 +25,24 @@ class AsTrained:
         self.model = _unwrapped(model)
         self._flock_of_row = leaders.flock_of_slot
         training_layer, layers = vec_normalize_of(self.model), normalizing_layers(flocks)
-        layers_here = [layer for layer in layers if layer.norm_obs]
+        observation_layers = [layer for layer in layers if layer.norm_obs]
         if not layers and lacks_vec_normalize(self.model):
             raise ParameterError(
                 f"{short_repr(self.model)} was trained in VecNormalize and loaded without it: "
                 "evaluate it in VecNormalize.load(..., env), which holds the statistics"
             )
         knows_training = getattr(self.model, "env", None) is not None
-        if layers_here and training_layer is None and knows_training:
+        if observation_layers and training_layer is None and knows_training:
             raise ParameterError(
                 f"{short_repr(self.model)} was trained on observations that are not normalized: "
                 "evaluate it without VecNormalize"
             )
-        statistics: Any = layers_here[0].obs_rms if layers_here else None
-        shape = statistics.mean.shape if layers_here else flocks.observation_space.shape
         if training_layer is not None:
-            trained_shape = training_layer.obs_rms.mean.shape
-            if trained_shape != shape:
-                raise ParameterError(
-                    f"{short_repr(self.model)} was trained on normalized observations of shape "
-                    f"{trained_shape}, not {shape}: evaluate it in wrappers in the same order"
-                )
-            for layer in layers_here:
+            _check_normalized_shape(self.model, training_layer, flocks, observation_layers)
+            for layer in observation_layers:
                 _copy_statistics(training_layer, layer)
         #: The training's `VecNormalize`, if the flocks do not normalize observations themselves.
-        self._normalizing = None if layers_here else training_layer
+        self._normalizing = None if observation_layers else training_layer
 
     def predict(
         self,
@@ -81,6 +74,27 @@ def normalizing_layers(flocks: VecEnv) -> list[VecNormalize]:
     return [layer for layer in layers_of(flocks) if isinstance(layer, VecNormalize)]
 
 
+def _check_normalized_shape(
+    model: object,
+    training_layer: VecNormalize,
+    flocks: VecEnv,
+    observation_layers: list[VecNormalize],
+) -> None:
+    """Refuse flocks whose observations, as normalized, have another shape than in the training.
+
+    The outermost of `observation_layers` normalizes them; without layers, `AsTrained` does.
+    """
+    statistics: Any = observation_layers[0].obs_rms if observation_layers else None
+    shape = statistics.mean.shape if observation_layers else flocks.observation_space.shape
+    training_statistics: Any = training_layer.obs_rms
+    trained_shape = training_statistics.mean.shape
+    if trained_shape != shape:
+        raise ParameterError(
+            f"{short_repr(model)} was trained on normalized observations of shape "
+            f"{trained_shape}, not {shape}: evaluate it in wrappers in the same order"
+        )
+
+
 def _copy_statistics(source: VecNormalize, target: VecNormalize) -> None:
     """Let `target` normalize as `source` does."""
     target.obs_rms, target.ret_rms = copy.deepcopy((source.obs_rms, source.ret_rms))
@@ -101,7 +115,8 @@ def _check_task(wrapped_model: object, flocks: VecEnv, leaders: LeaderVecEnv) ->
     policy = Policy.from_source(model)
     policy.check_pool(leaders._batch.parameters(0).pool)
     space, options = getattr(model, "observation_space", None), leaders.observation_space.options
-    # The space of a wrapper may lack the options, and the space under it may be of another flock.
+    # Both are checked: the model's space may lack the options, and the space under its wrappers may
+    # be of another flock.
     spaces_with_options = [
         candidate for candidate in (space, space_under_wrappers(model)) if _has_options(candidate)
     ]

@@ -76,7 +76,7 @@ class FlockEvalCallback(EvalCallback):
             # `PerFlock` makes the types differ, on purpose.
             warnings.filterwarnings("ignore", "Training and eval env are not of the same type")
             super()._init_callback()
-        as_trained(self.model, self.eval_env)  # It raises errors before the training.
+        as_trained(self.model, self.eval_env)  # Only for its errors, before the training.
         if self.log_path is not None:
             check_writable(f"{self.log_path}.npz")
         if self.best_model_save_path is not None:
@@ -105,7 +105,7 @@ class FlockEvalCallback(EvalCallback):
         unknown = np.full(columns["results"].shape, np.nan)
         self._evaluations_order = columns.get("signed_order", unknown).tolist()
         for orders, returns in zip(self._evaluations_order, self.evaluations_results, strict=True):
-            self._is_best(float(np.mean(orders)), float(np.mean(returns)))
+            self._update_best(float(np.mean(orders)), float(np.mean(returns)))
 
     def _on_step(self) -> bool:
         if self.eval_freq <= 0 or self.n_calls % self.eval_freq != 0:
@@ -124,7 +124,7 @@ class FlockEvalCallback(EvalCallback):
         self._store(evaluation)
         self._log(evaluation)
         self.last_mean_reward = float(evaluation.returns.mean())
-        is_best = self._is_best(evaluation.mean, self.last_mean_reward)
+        is_best = self._update_best(evaluation.mean, self.last_mean_reward)
         if self.verbose >= 1:
             best = ", the best so far" if is_best else ""
             print(f"{self.num_timesteps} steps: {evaluation}{best}")  # noqa: T201
@@ -137,8 +137,11 @@ class FlockEvalCallback(EvalCallback):
                 goes_on = self.callback_on_new_best.on_step()
         return goes_on and (self.callback is None or self._on_event())
 
-    def _is_best(self, order: float, mean_return: float) -> bool:
-        """Return whether a model is the best so far; if so, store its order and return."""
+    def _update_best(self, order: float, mean_return: float) -> bool:
+        """Store the order and the return of a model if it is the best so far.
+
+        Return whether it is.
+        """
         if math.isnan(order) and math.isnan(self.best_signed_order):
             is_best = mean_return > self.best_mean_reward
         else:

@@ -50,6 +50,7 @@ class LeaderSlot:
         return upcoming
 
     def _upcoming(self) -> dict[str, Any]:
+        """Return ``bw_s`` and ``target`` of the flock's next episodes."""
         return self._env._batch.core.upcoming(self.flock_index)
 
     @property

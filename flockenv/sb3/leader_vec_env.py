@@ -1,5 +1,6 @@
 """`LeaderVecEnv`: stable-baselines3's vector interface, one slot per leader."""
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, ClassVar
@@ -197,7 +198,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         self._reset_options()
         values = materialized({} if options is None else options)
         by_slot: Any = [values] * self.num_envs if isinstance(values, Mapping) else values
-        self._requests(by_slot)  # It raises the errors.
+        self._requests(by_slot)  # Only for its errors.
         super().set_options(list(by_slot))
 
     def _drawn_seed(self) -> int:
@@ -292,7 +293,7 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
             if leader == 0:
                 # As in the infos of `Monitor`, but without the wall-clock time, on which results
                 # must not depend.
-                decisions = -(-summary["steps"] // self._batch.period_steps)
+                decisions = math.ceil(summary["steps"] / self._batch.period_steps)
                 infos[slot]["episode"] = {"r": summary["total_reward"], "l": decisions}
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:

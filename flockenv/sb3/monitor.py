@@ -55,17 +55,20 @@ class FlockMonitor(VecEnvWrapper):
         self._keywords = summary_keywords = tuple(items(summary_keywords, "summary_keywords"))
         path = _path(str(filename))
         columns = ["r", "l", "t", *summary_keywords]
-        started = None if override_existing is True else _start_of(path, columns)
-        if started is not None and override_existing is None:
+        stored_start = None if override_existing is True else _start_of(path, columns)
+        if stored_start is not None and override_existing is None:
             raise ParameterError(
                 f"{path} has episodes already: override_existing=True replaces them, False adds "
                 "to them"
             )
-        self._start = time.time() if started is None else started
+        self._start = time.time() if stored_start is None else stored_start
         spec = venv.get_attr("spec")[0]
-        header: dict[str, float | str] = {"t_start": self._start, "env_id": str(spec and spec.id)}
-        # The writer would start a file without a header if told to append to a missing one.
-        self._writer = ResultsWriter(str(path), header, summary_keywords, started is None)
+        env_id = str(None if spec is None else spec.id)
+        header: dict[str, float | str] = {"t_start": self._start, "env_id": env_id}
+        # A file without episodes is replaced too: appending to a missing one writes no header.
+        self._writer = ResultsWriter(
+            str(path), header, summary_keywords, override_existing=stored_start is None
+        )
 
     def reset(self) -> VecEnvObs:
         """Start episodes in all flocks."""
@@ -102,7 +105,10 @@ def _path(filename: str) -> Path:
 
 
 def _start_of(path: Path, columns: list[str]) -> float | None:
-    """Return the start time of a monitor file's training, or None for a file without episodes."""
+    """Return the start time in a monitor file; None if the file is missing or has no episodes.
+
+    Refuses a file with other columns.
+    """
     if not path.is_file():
         return None
     with path.open(encoding="utf-8", newline="") as file:
@@ -110,7 +116,7 @@ def _start_of(path: Path, columns: list[str]) -> float | None:
     if not first_row:
         return None
     try:
-        started = float(json.loads(header.removeprefix("#"))["t_start"])
+        stored_start = float(json.loads(header.removeprefix("#"))["t_start"])
     except (ValueError, KeyError, TypeError) as error:
         raise ParameterError(f"{path} is not a monitor file: give another name") from error
     present_columns = column_line.strip().split(",")
@@ -119,4 +125,4 @@ def _start_of(path: Path, columns: list[str]) -> float | None:
             f"{path} has the columns {', '.join(present_columns)}, and not {', '.join(columns)}: "
             "give another name, or override_existing=True"
         )
-    return started
+    return stored_start

@@ -197,6 +197,10 @@ class SharedNoisePolicy(ActorCriticPolicy):
         super().__init__(observation_space, action_space, lr_schedule, **options)
 
     def _build(self, lr_schedule: Schedule) -> None:
+        """Replace stable-baselines3's distribution by the one with shared noise; make the networks.
+
+        Refuses discrete actions.
+        """
         distribution, actions = type(self.action_dist), get_action_dim(self.action_space)
         if distribution is DiagGaussianDistribution:
             self.action_dist = SharedNoiseDistribution(actions, **self._noise_options)

@@ -60,8 +60,15 @@ def critical_noise(
         return unknown
 
     def noise_of_drawn_runs(*indices: object, axis: int) -> NDArray[np.float64]:
-        """Return the critical noise of the runs with these indices, an array for each level."""
-        drawn = [group[np.asarray(runs, int)] for group, runs in zip(groups, indices, strict=True)]
+        """Return the critical noise of drawn runs.
+
+        `indices` holds an array of runs' indices for each level. Means are over its last axis, as
+        the bootstrap asks with `axis`.
+        """
+        drawn = [
+            group[np.asarray(level_indices, int)]
+            for group, level_indices in zip(groups, indices, strict=True)
+        ]
         psi_o, rotation = (
             np.stack(np.broadcast_arrays(*(level[..., column].mean(-1) for level in drawn)))
             for column in (0, 1)
@@ -111,5 +118,5 @@ def _noise_at_middle(
     last_above = strongest + int(np.flatnonzero(psi_o[strongest:] >= middle)[-1])
     if last_above == len(levels) - 1:
         return float(levels[-1])
-    share = (psi_o[last_above] - middle) / (psi_o[last_above] - psi_o[last_above + 1])
-    return float(levels[last_above] + share * (levels[last_above + 1] - levels[last_above]))
+    fraction = (psi_o[last_above] - middle) / (psi_o[last_above] - psi_o[last_above + 1])
+    return float(levels[last_above] + fraction * (levels[last_above + 1] - levels[last_above]))

@@ -147,7 +147,8 @@ def bootstrap_interval(
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         result = bootstrap(n_resamples=_BCA_RESAMPLES, rng=np.random.default_rng(seed))
-    # BCa is undefined if the statistic stays the same whichever run is left out.
+    # BCa is undefined if the statistic stays the same whichever run is left out. Then the ends are
+    # percentiles of the same draws.
     if np.isnan(result.confidence_interval).any():
         result = bootstrap(n_resamples=0, bootstrap_result=result, method="percentile")
     low, high = result.confidence_interval
@@ -192,11 +193,11 @@ def two_way_interval(values: ArrayLike, seed: int = 0) -> tuple[float, float, fl
     if not np.isfinite(table).all():
         raise ParameterError("values must be finite")
     mean, random = table.mean(), np.random.default_rng(seed)
-    drawn = np.full(_BCA_RESAMPLES, mean)
+    drawn_means = np.full(_BCA_RESAMPLES, mean)
     for axis in (0, 1):
         deviations = table.mean(1 - axis) - mean
-        drawn += _width_ratio(len(deviations)) * _means_of_draws(deviations, random)
-    low, high = np.quantile(drawn, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
+        drawn_means += _width_ratio(len(deviations)) * _means_of_draws(deviations, random)
+    low, high = np.quantile(drawn_means, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
     return float(mean), float(low), float(high)
 
 
@@ -213,6 +214,7 @@ def _width_ratio(count: int) -> float:
     """Return the width of Student's interval over that of a bootstrap, for normal values."""
     stats, upper = require("scipy.stats", "plot"), (1 + CONFIDENCE) / 2
     ratio = stats.t.ppf(upper, count - 1) / stats.norm.ppf(upper)
+    # The bootstrap's variance is over `count`, and Student's over `count` - 1.
     return float(ratio * math.sqrt(count / (count - 1)))
 
 

@@ -70,6 +70,7 @@ def kaplan_meier(times_s: ArrayLike, until_s: ArrayLike) -> Survival:
         their run.
     """
     survival = require("scipy.stats", "plot").ecdf(_censored(times_s, until_s)).sf
+    # The curve also has points at the ends of runs without the event. There it does not fall.
     is_event = np.diff(survival.probabilities, prepend=1.0) < 0.0
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)  # The logarithms of a share of 0 or 1.
@@ -101,6 +102,6 @@ def _censored(times_s: ArrayLike, until_s: ArrayLike) -> "CensoredData":
         raise ParameterError("until_s is not accepted: finite times, at least 0 s")
     if (np.isfinite(times) & (times > ends)).any():
         raise ParameterError("times_s holds events after until_s, the end of their run")
-    waits = ~np.isfinite(times)
+    is_censored = ~np.isfinite(times)
     censored: type[CensoredData] = require("scipy.stats", "plot").CensoredData
-    return censored.right_censored(np.where(waits, ends, times), waits)
+    return censored.right_censored(np.where(is_censored, ends, times), is_censored)

@@ -114,7 +114,10 @@ class BranchTraining:
 
     @property
     def overlaps(self) -> tuple[int, int, float]:
-        """Branches, those with overlaps beyond ``tolerance_cm``, and the deepest overlap in cm."""
+        """Numbers of branches and of those with deep overlaps, and the deepest overlap in cm.
+
+        An overlap beyond ``tolerance_cm`` is deep.
+        """
         return self._core.overlaps
 
     def advance(self) -> None:
@@ -136,7 +139,7 @@ class BranchTraining:
         return LeaningLaw.from_json(json.dumps({**values, "provenance": dict(provenance or {})}))
 
     def to_bytes(self) -> bytes:
-        """Return the training after its last whole round, for `from_bytes`."""
+        """Return the state of the training after its last whole round, for `from_bytes`."""
         return self._core.to_bytes()
 
     @classmethod

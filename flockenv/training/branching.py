@@ -23,7 +23,7 @@ Leans = Callable[[NDArray[np.float32]], NDArray[np.floating]]
 
 
 def branch_seed(run: int) -> int:
-    """Return the first of the 2²⁴ seeds that the flocks of a training with this seed have."""
+    """Return the first of the 2²⁴ seeds for the flocks of the training with seed `run`."""
     return _SEEDS.seeds(1, run=run)[0]
 
 
@@ -99,7 +99,7 @@ class BranchingFlocks:
         for _ in range(self.branch_s):
             features = observations.reshape(len(observations), 3, -1)
             observations, rewards, *_ = self.env.step(np.clip(leans(features), -1.0, 1.0))
-            orders.append(rewards)
+            orders.append(rewards)  # A reward is the signed order of a second.
         drawn_members = (self._random.random(self.groups) * self.size).astype(int)
         snapshots = self.env.snapshots()
         self._snapshots = [
@@ -112,18 +112,23 @@ class BranchingFlocks:
         """Start the next branch of each group, and return the leaders' observations."""
         if self._snapshots:
             continues = self._branches_done < self._branches_of_episode
-            options = {"snapshot": self.size * self._snapshots, "target": self._target_of_flocks()}
+            # The list of the groups' snapshots, repeated for each member.
+            snapshots = self.size * self._snapshots
+            options = {"snapshot": snapshots, "target": self._target_of_flocks()}
             self.env.reset(options={**options, "reset_mask": np.tile(continues, self.size)})
             if not continues.all():
                 self._start_episodes(~continues)
                 self._branches_done[~continues] = 0
         return self.env.observe()
 
-    def _start_episodes(self, groups: NDArray[np.bool_]) -> None:
-        """Start the episodes of these groups at rest; all flocks of a group have the same seed."""
-        seeds = [next(self._seeds) if starts else None for starts in groups]
-        self._targets[groups] = self._random.choice(["cw", "ccw"], groups.sum())
-        options = {"target": self._target_of_flocks(), "reset_mask": np.tile(groups, self.size)}
+    def _start_episodes(self, starts: NDArray[np.bool_]) -> None:
+        """Start episodes at rest, in the groups for which `starts` is True.
+
+        All flocks of a group have the same seed.
+        """
+        seeds = [next(self._seeds) if is_started else None for is_started in starts]
+        self._targets[starts] = self._random.choice(["cw", "ccw"], starts.sum())
+        options = {"target": self._target_of_flocks(), "reset_mask": np.tile(starts, self.size)}
         self.env.reset(seed=self.size * seeds, options=options)
 
     def _target_of_flocks(self) -> list[str]:

@@ -50,10 +50,11 @@ def learning_curve(folder: Path, decisions_hz: float, points: int = 40) -> "pd.D
         ``flock_hours`` and ``signed_order``.
     """
     episodes = episodes_of(folder)
+    # The column "l" holds the episodes' decisions.
     hours = episodes["l"].cumsum() / decisions_hz / 3600.0
-    point = (episodes.index * points // max(1, len(episodes))).to_numpy()
-    orders = episodes["signed_order"].groupby(point).mean()
-    curve = orders.to_frame().assign(flock_hours=hours.groupby(point).last())
+    point_of_episode = (episodes.index * points // max(1, len(episodes))).to_numpy()
+    orders = episodes["signed_order"].groupby(point_of_episode).mean()
+    curve = orders.to_frame().assign(flock_hours=hours.groupby(point_of_episode).last())
     return curve[["flock_hours", "signed_order"]]
 
 

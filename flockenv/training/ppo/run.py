@@ -145,7 +145,10 @@ def resume(
 
 
 def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingSettings:
-    """Return the settings with which `resume` continues; raise its errors."""
+    """Return the settings with which `resume` continues the training of a folder.
+
+    Raises ParameterError if there is no checkpoint or the settings are not accepted.
+    """
     if not (Path(folder) / CHECKPOINT).exists():
         raise ParameterError(f"{folder} holds no checkpoint to resume")
     settings = TrainingSettings.from_file(Path(folder) / SETTINGS)
@@ -174,7 +177,7 @@ def _advance(
     rollouts = done // (model.n_steps * venv.num_envs)
     seeds = POLICY_SEEDS["training"]
     # A resumed training has new flocks: the index of their first seed depends on the rollouts.
-    first = rollouts * venv.num_flocks % (seeds.of_a_run - venv.num_flocks)
+    first_index = rollouts * venv.num_flocks % (seeds.of_a_run - venv.num_flocks)
     threads = torch.get_num_threads()
     # More threads do not speed up small networks, and sums would depend on the number of threads.
     torch.set_num_threads(1)
@@ -186,7 +189,7 @@ def _advance(
             stack.callback(monitor.close)
             model.set_env(monitor)
             model.set_random_seed((settings.seed + rollouts) % (1 << 32))
-            monitor.seed(seeds.seeds(1, settings.seed, first)[0])
+            monitor.seed(seeds.seeds(1, settings.seed, first_index)[0])
             log = configure(str(folder / f"log-{done}"), ["csv"])
             stack.callback(log.close)
             model.set_logger(log)

@@ -35,6 +35,8 @@ _OBSERVATION: Mapping[str, Any] = {
     "order": False,
     "lean_features": True,
 }
+#: Length of a rollout in s, and number of minibatches into which its samples are divided.
+_ROLLOUT_S, _BATCHES = 240, 8
 _PHYSICS: Mapping[str, Any] = {"physics": "training"}
 #: Arguments of PPO that `TrainingSettings` sets, so that ``ppo`` may not hold them.
 _SET_HERE = ("policy", "env", "seed", "_init_setup_model")
@@ -79,6 +81,7 @@ class TrainingSettings:
     ppo: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
+        # A list: a dictionary would raise TypeError for an unhashable pool.
         if self.pool not in [*_TIMES_S]:
             raise ParameterError(f"pool = {short_repr(self.pool)} is not accepted: wide or narrow")
         hours: object = self.flock_hours
@@ -92,7 +95,7 @@ class TrainingSettings:
             if not isinstance(getattr(self, name), Mapping):
                 raise ParameterError(f"{name} = {short_repr(getattr(self, name))} is not a table")
         refuse_unknown(self.ppo, set(signature(PPO).parameters) - {*_SET_HERE}, "option of PPO")
-        POLICY_SEEDS["training"].seeds(1, as_int(self.seed, "seed"))
+        POLICY_SEEDS["training"].seeds(1, as_int(self.seed, "seed"))  # Only for its errors.
 
     def flocks(self) -> dict[str, Any]:
         """Return the options of the environment for the pool, boats, leaders and noise."""
@@ -147,10 +150,10 @@ class TrainingSettings:
             For options that PPO refuses.
         """
         times, hz = _TIMES_S[self.pool], venv.unwrapped.decisions_hz
-        n_steps = max(2, round(240 * hz))
+        n_steps = max(2, round(_ROLLOUT_S * hz))
         options: dict[str, Any] = {
             "n_steps": n_steps,
-            "batch_size": max(2, n_steps * venv.num_envs // 8),
+            "batch_size": max(2, n_steps * venv.num_envs // _BATCHES),
             "n_epochs": 4,
             "learning_rate": LinearSchedule(2e-3, 0.0, 1.0),
             "gamma": 1.0 - 1.0 / (times["discount"] * hz),
@@ -180,6 +183,7 @@ class TrainingSettings:
     def samples(self, venv: LeaderVecEnv) -> int:
         """Return the number of samples (leaders' decisions) in `flock_hours`."""
         decisions = self.flock_hours * 3600.0 * venv.decisions_hz / venv.num_flocks
+        # Rounded first: a rounding error must not add a decision.
         return math.ceil(round(decisions, 6)) * venv.num_envs
 
     def replace(self, **changes: object) -> Self:
