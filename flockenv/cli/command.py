@@ -27,7 +27,7 @@ class Command(typer.core.TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the command's arguments, as click does."""
-        if not ctx.resilient_parsing:
+        if not ctx.resilient_parsing:  # A shell's completion parses unfinished lines.
             words = [self.name or "", *args]
             try:
                 _, _, parsed_options = self.make_parser(ctx).parse_args(args=list(args))
@@ -50,7 +50,7 @@ def _refuse_decimal_comma(args: Sequence[str], error: typer.BadParameter) -> Non
     """Suggest a point for a number that was typed with a comma."""
     spellings = error.param.opts if error.param else []
     if "integer" in error.message:
-        return
+        return  # A whole number with a point would be refused, too.
     for argument, next_argument in zip(args, [*args[1:], ""], strict=True):
         name, equals, value = argument.partition("=")
         number = value if equals else next_argument
@@ -83,6 +83,7 @@ def _unknown_option(words: Sequence[str], unknown: str, known: list[str]) -> str
     index = [word.partition("=")[0] for word in words].index(unknown)
     spelling, equals, value = words[index].partition("=")
     following = list(words[index + 1 :])
+    # Without an equals sign, the next word may be the value.
     if not equals and following and not following[0].startswith("--"):
         value = following.pop(0)
     refused = f"flockenv {words[0]} has no option {spelling}"

@@ -294,6 +294,7 @@ def _user_policies(options: CompareOptions) -> dict[str, TypedPolicy]:
         is_per_leader = text.startswith("leader_")
         is_file = text.endswith(FILES) and not is_per_leader
         name = printable(names[index] if names else Path(text).stem if is_file else text)
+        # Only a reference itself may have a reference's name.
         if name in policies or (name in REFERENCES and text != name):
             if names:
                 raise ParameterError(f"--name {name} is not accepted: another policy has this name")

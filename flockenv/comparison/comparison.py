@@ -151,8 +151,8 @@ def _counts(
         )
     if policies and counts and most == 0:
         raise ParameterError(
-            f"leaders = {short_repr(leaders)} are not accepted with policies: they have nobody to "
-            "steer"
+            f"leaders = {short_repr(leaders)} are not accepted with policies, which would have "
+            "nobody to steer"
         )
     return counts
 

@@ -109,6 +109,7 @@ class Episodes:
         """Return the function that decides in all flocks of a batch."""
         if self.leaders.is_per_leader:
             return _decision_function_per_leader(self.leaders, batch)
+        # The only assignment: one policy for all leaders.
         policy, state = self.leaders.assignments[0].policy.started(), None
         if policy.control_hz is None:
             return lambda observations: None

@@ -195,7 +195,10 @@ def overlap_notes(episodes: "pd.DataFrame", words: str = "episodes") -> list[str
 
 
 def overlap_note(total: int, deep: int, worst_cm: float, words: str) -> list[str]:
-    """Return what `overlap_notes` does if `deep` of `total` episodes had such overlaps."""
+    """Return a line on the `deep` of `total` episodes whose overlaps exceeded the tolerance.
+
+    The list is empty if `deep` is 0; `words` names the episodes.
+    """
     if deep == 0:
         return []
     return [

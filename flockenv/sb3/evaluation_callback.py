@@ -96,8 +96,8 @@ class FlockEvalCallback(EvalCallback):
         episodes = columns["results"].shape[1]
         if episodes != self.n_eval_episodes:
             raise ParameterError(
-                f"n_eval_episodes = {self.n_eval_episodes} is not accepted: {path} goes on, which "
-                f"has {episodes} episodes in each evaluation"
+                f"n_eval_episodes = {self.n_eval_episodes} is not accepted: {path}, which this "
+                f"training continues, has {episodes} episodes in each evaluation"
             )
         self.evaluations_timesteps = columns["timesteps"].tolist()
         self.evaluations_results = columns["results"].tolist()
