@@ -52,8 +52,11 @@ class TrainOptions(Printing):
         """Return the settings of the training that the user has set."""
         environment = changed_fields(self.change or [])
         for name, value in (("n_boats", self.n_boats), ("bw_s", self.bw_s)):
-            if value is not None and environment.setdefault(name, value) is not value:
+            if value is None:
+                continue
+            if name in environment:
                 raise ParameterError(f"{option_of(name)} and --set {name} are both given: give one")
+            environment[name] = value
         settings = {
             "pool": self.pool,
             "n_leaders": self.n_leaders,
