@@ -69,7 +69,7 @@ def critical_noise(
             group[np.asarray(level_indices, int)]
             for group, level_indices in zip(groups, indices, strict=True)
         ]
-        # BCa leaves out a run of one level at a time, so that levels differ in shape.
+        # To be stacked, all levels need the same leading axes, which count resamples.
         psi_o, rotation = (
             np.stack(np.broadcast_arrays(*(level[..., column].mean(-1) for level in drawn)))
             for column in (0, 1)
