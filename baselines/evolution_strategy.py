@@ -8,12 +8,13 @@ With seeds 0 to 4, three leaders in `wide` reach an order of 0.412 to 0.467 afte
 1.8 minutes of one core. The tuned law, from which they start, has 0.451 in the same flocks (results
 version 5).
 
-The policy is linear in what a leader observes. Gaussian perturbations of its weights are tried in
-antithetic pairs, one flock for each, all in one batch of the simulator. The candidates of a
-generation steer the same episode, so that they differ only by their weights. Their mean rewards are
-replaced by ranks, and Adam follows the estimated gradient (Salimans et al. 2017). An interrupted
-command resumes from its last generation. The result is a policy file: the law `policy.json` if
-leaders lean, and `policy.npz` otherwise.
+The policy is linear in what a leader observes. Each generation draws Gaussian perturbations of the
+weights. Each perturbation gives two candidates: it is added in one and subtracted in the other.
+Each candidate leads one flock. All flocks are one batch of the simulator and have the same seed, so
+that candidates differ only by their weights. Their mean rewards are replaced by ranks, and Adam
+follows the estimated gradient (Salimans et al. 2017). An interrupted command resumes from its last
+generation. The result is a policy file: the law `policy.json` if leaders lean, and `policy.npz`
+otherwise.
 
     flockenv compare --policy "paper's law" --policy results/wide/policy.json
 """
@@ -90,9 +91,10 @@ def episode(env: flockenv.LeadersVectorEnv, seeds: list[int], steer: Any) -> tup
 
 
 def linear(weights: np.ndarray, leaders: int) -> Any:
-    """Return a linear map of observations (flocks, leaders * size) to actions, one for each flock.
+    """Return the function that steers each flock by its own linear map of observations.
 
-    `weights` has shape (flocks, size + 1): the last number is the bias.
+    `weights` has shape (flocks, size + 1): the last number is the bias. The function takes
+    observations of shape (flocks, leaders * size), and returns actions (flocks, leaders).
     """
     matrix, bias = weights[:, :-1].astype(np.float32), weights[:, -1:].astype(np.float32)
 
@@ -105,9 +107,9 @@ def linear(weights: np.ndarray, leaders: int) -> Any:
 
 def ranks(values: np.ndarray) -> np.ndarray:
     """Return the ranks of values, scaled from -0.5 for the worst to 0.5 for the best."""
-    places = np.empty(len(values))
-    places[np.argsort(values, kind="stable")] = np.arange(len(values))
-    return places / (len(values) - 1) - 0.5
+    rank = np.empty(len(values))
+    rank[np.argsort(values, kind="stable")] = np.arange(len(values))
+    return rank / (len(values) - 1) - 0.5
 
 
 def next_generation(
@@ -153,7 +155,7 @@ def first_state(size: int) -> dict[str, Any]:
 
 
 def stored_state(path: Path, identity: str) -> dict[str, Any] | None:
-    """Return the state of an interrupted search, or None; exit if it has other options."""
+    """Return the state of an interrupted search, None without one; exit if options differ."""
     if not path.exists():
         return None
     with np.load(path) as file:
@@ -167,16 +169,16 @@ def search(options: argparse.Namespace, command: str) -> np.ndarray:
     """Search, write the policy and the learning curve, and return the average weights."""
     env, start_s = environment(options.task, 2 * options.pairs), time.process_time()
     size = env.single_observation_space.shape[0] // env.num_leaders
-    # A search that is resumed may differ in these options.
-    may_differ = ("out", "flock_hours", "episodes")
-    identity = json.dumps({k: v for k, v in vars(options).items() if k not in may_differ})
+    # Options that may change when a search is resumed.
+    may_change = ("out", "flock_hours", "episodes")
+    identity = json.dumps({k: v for k, v in vars(options).items() if k not in may_change})
     path = options.out / "state.npz"
     state = stored_state(path, identity) or first_state(size + 1)
     options.out.mkdir(parents=True, exist_ok=True)
     hours = env.num_envs * TASKS[options.task]["episode_s"] / 3600.0
     while int(state["generation"]) * hours < options.flock_hours:
         state = next_generation(state, env, options)
-        # Replaced at once, so that an interrupt leaves the previous generation's checkpoint.
+        # Written beside the checkpoint and then renamed, so that an interrupt leaves it whole.
         partial = path.with_suffix(".half.npz")
         np.savez(partial, **state, identity=identity)
         partial.replace(path)
@@ -219,11 +221,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--task", choices=TASKS, default="easy")
     parser.add_argument("--flock-hours", type=float, default=27.0)
-    parser.add_argument("--pairs", type=int, default=64, help="of opposite perturbations")
-    parser.add_argument("--sigma", type=float, default=0.1, help="of the perturbations")
+    parser.add_argument("--pairs", type=int, default=64, help="pairs of opposite perturbations")
+    parser.add_argument("--sigma", type=float, default=0.1, help="their standard deviation")
     parser.add_argument("--learning-rate", type=float, default=0.05, help="of Adam")
-    parser.add_argument("--moving-average", type=float, default=0.1, help="1: the last weights")
-    parser.add_argument("--episodes", type=int, default=64, help="held-out ones at the end")
+    parser.add_argument("--moving-average", type=float, default=0.1, help="share of the newest weights")
+    parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))
     options = parser.parse_args(arguments)

@@ -66,7 +66,7 @@ def orders(policy: Any, flocks: int) -> np.ndarray:
 class Curve(BaseCallback):
     """Scores the mean policy at regular intervals of samples.
 
-    `law` is the signed order of the paper's law in the same flocks.
+    `law` is the signed order of the paper's law in each of the same flocks.
     """
 
     def __init__(self, seed: int, samples: int, law: np.ndarray) -> None:

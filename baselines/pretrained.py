@@ -1,7 +1,7 @@
-"""Make the pretrained leaders from nothing but these settings.
+"""Train, choose and judge the pretrained leaders of both pools.
 
     make pretrained                              # an hour and a half of one core
-    python baselines/pretrained.py --trial       # all of it with little of everything, a minute
+    python baselines/pretrained.py --trial       # every step with few flocks, a minute
     python baselines/pretrained.py --ship        # copies what passes to src/policies/learned
 
 In `wide` three leaders reach a signed order of 0.503 on average over eight seeds (0.481 to 0.520).
@@ -86,7 +86,7 @@ TRIAL = Settings(
 
 
 class SaveEarly(BaseCallback):
-    """Saves the policy once a training has taken this many samples."""
+    """Saves the policy at the first rollout that starts after this many samples."""
 
     def __init__(self, samples: int, pool: str, path: Path) -> None:
         super().__init__()
@@ -106,24 +106,24 @@ def at_every_step(law: LeaningLaw, provenance: dict[str, str]) -> LeaningLaw:
     return LeaningLaw(law.pool, law.bias, law.weights, provenance=provenance)
 
 
-def train_wide(given: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
+def train_wide(settings: Settings, seed: int, folder: Path, command: str) -> LeaningLaw:
     """Return the law of leans that PPO learns with this seed."""
     start_s = time.process_time()
-    settings = TrainingSettings(
+    training = TrainingSettings(
         pool="wide",
         seed=seed,
-        flock_hours=given.wide_hours,
-        num_flocks=given.num_flocks,
-        environment=given.environment,
+        flock_hours=settings.wide_hours,
+        num_flocks=settings.num_flocks,
+        environment=settings.environment,
     )
-    env = settings.venv()
+    env = training.venv()
     env.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
-    model = settings.model(env)
+    model = training.model(env)
     model.set_logger(configure(str(folder), ["csv"]))
-    early = settings.replace(flock_hours=given.early_hours)
-    early_folder = folder.parent.with_name(f"{folder.parent.name}-{given.early_hours:g}")
+    early = training.replace(flock_hours=settings.early_hours)
+    early_folder = folder.parent.with_name(f"{folder.parent.name}-{settings.early_hours:g}")
     model.learn(
-        settings.samples(env),
+        training.samples(env),
         callback=SaveEarly(early.samples(env), "wide", early_folder / str(seed) / "policy.json"),
     )
     model.logger.close()
@@ -132,15 +132,15 @@ def train_wide(given: Settings, seed: int, folder: Path, command: str) -> Leanin
         seed=seed,
         samples=model.num_timesteps,
         cpu_s=time.process_time() - start_s,
-        flock_hours=model.num_timesteps / env.num_envs * given.num_flocks / 3600.0,
+        flock_hours=model.num_timesteps / env.num_envs * settings.num_flocks / 3600.0,
     )
     return at_every_step(LeaningLaw.from_model(model, "wide"), provenance)
 
 
-def search_narrow(given: Settings, seed: int, folder: Path, _command: str) -> LeaningLaw:
+def search_narrow(settings: Settings, seed: int, folder: Path, _command: str) -> LeaningLaw:
     """Return the law of leans that paired_branches.py finds, with its command as provenance."""
-    words = ["--pool", "narrow", "--pairs", str(given.num_flocks // 2), "--seed", str(seed)]
-    words += ["--flock-hours", str(given.narrow_hours), "--out", str(folder.parent)]
+    words = ["--pool", "narrow", "--pairs", str(settings.num_flocks // 2), "--seed", str(seed)]
+    words += ["--flock-hours", str(settings.narrow_hours), "--out", str(folder.parent)]
     script = Path(__file__).with_name("paired_branches.py")
     subprocess.run([sys.executable, str(script), *words], check=True)
     return LeaningLaw.load(folder / "policy.json")
@@ -159,23 +159,23 @@ def orders(policy: Any, pool: str, leaders: int, seeds: Any, episode_s: float) -
 
 
 def combined_provenance(laws: list[LeaningLaw], command: str, chosen: str) -> dict[str, str]:
-    """Return the provenance of a policy that is chosen or averaged from these laws."""
+    """Return the provenance of a law, or of the mean of several, with sums of their costs."""
     provenances = [law.provenance for law in laws]
     return {
         "command": command,
         "chosen": chosen,
         "flockenv": provenances[0]["flockenv"],
-        "commit": ", ".join(sorted({each["commit"] for each in provenances})),
-        "seed": ", ".join(own["seed"] for own in provenances),
+        "commit": ", ".join(sorted({provenance["commit"] for provenance in provenances})),
+        "seed": ", ".join(provenance["seed"] for provenance in provenances),
         **{
-            name: f"{sum(float(own[name]) for own in provenances):.10g}"
+            name: f"{sum(float(provenance[name]) for provenance in provenances):.10g}"
             for name in ("samples", "flock_hours", "cpu_s")
         },
     }
 
 
 def mean_of(laws: list[LeaningLaw], provenance: dict[str, str] | None = None) -> LeaningLaw:
-    """Return the law whose weights and bias are the means of those of laws of one pool."""
+    """Return the law with the mean weights and the mean bias of these laws of one pool."""
     pool = laws[0].pool
     weights = {
         name: float(np.mean([law.weights[name] for law in laws])) for name in laws[0].weights
@@ -184,36 +184,36 @@ def mean_of(laws: list[LeaningLaw], provenance: dict[str, str] | None = None) ->
     return LeaningLaw(pool, bias, weights, bound=BOUND[pool], provenance=provenance or {})
 
 
-def validated(given: Settings, pool: str, candidates: dict[str, Any]) -> pd.DataFrame:
+def validated(settings: Settings, pool: str, candidates: dict[str, Any]) -> pd.DataFrame:
     """Return the order of each candidate in the validation flocks, by number of leaders."""
-    seeds = POLICY_SEEDS["validation"].seeds(given.validation_flocks)
+    seeds = POLICY_SEEDS["validation"].seeds(settings.validation_flocks)
     rows = []
     for name, policy in candidates.items():
         row = {
-            f"leaders_{k}": orders(policy, pool, k, seeds, given.episode_s).mean()
+            f"leaders_{k}": orders(policy, pool, k, seeds, settings.episode_s).mean()
             for k in (1, 2, 3, 4)
         }
         rows.append({"policy": name, **row, "score": np.mean(list(row.values()))})
     return pd.DataFrame(rows)
 
 
-def trained(given: Settings, pool: str, out: Path, command: str) -> dict[str, LeaningLaw]:
+def trained(settings: Settings, pool: str, out: Path, command: str) -> dict[str, LeaningLaw]:
     """Run the trainings without a stored policy, and return the policy of each seed."""
     laws = {}
-    for seed in given.seeds:
+    for seed in settings.seeds:
         folder = out / pool / str(seed)
         path = folder / "policy.json"
         folder.mkdir(parents=True, exist_ok=True)
         if not path.exists():
-            MAKERS[pool](given, seed, folder, command).save(path)
+            MAKERS[pool](settings, seed, folder, command).save(path)
         laws[f"seed {seed}"] = LeaningLaw.load(path)
     return laws
 
 
-def judged(given: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
-    """Return the order of a policy with three leaders in unused flocks, and their settings."""
-    seeds = release_seeds("pretrained", given.judging_flocks)
-    flock_orders = orders(law, pool, 3, seeds, given.episode_s)
+def judged(settings: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
+    """Return the order of three leaders with this law in unused flocks, and these flocks."""
+    seeds = release_seeds("pretrained", settings.judging_flocks)
+    flock_orders = orders(law, pool, 3, seeds, settings.episode_s)
     score = score_policies({"law": flock_orders}).loc[0, ["signed_order", "low", "high"]]
     signed_order, low, high = (round(float(value), 3) for value in score)
     return {
@@ -222,40 +222,41 @@ def judged(given: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
         "n_boats": 27,
         "n_leaders": 3,
         "bw_s": FlockParameters.critical_bw_s("simulation", pool),
-        "episode_s": given.episode_s,
+        "episode_s": settings.episode_s,
         "seeds": [seeds[0], seeds[-1]],
     }
 
 
-def make(given: Settings, pool: str, out: Path, command: str) -> bool:
+def make(settings: Settings, pool: str, out: Path, command: str) -> bool:
     """Train, choose, judge and write a pool's policy; return whether it ships."""
-    laws = trained(given, pool, out, command)
+    laws = trained(settings, pool, out, command)
     candidates = {"mean": mean_of(list(laws.values())), **laws}
-    others: dict[str, Any] = {"tuned law": DampedLaw.tuned(pool)}
+    to_beat: dict[str, Any] = {"tuned law": DampedLaw.tuned(pool)}
     if (SHIPPED / f"{pool}.json").exists():
-        others["ships"] = LeaningLaw.learned(pool)
-    scores = validated(given, pool, {**others, **candidates})
+        to_beat["ships"] = LeaningLaw.learned(pool)
+    scores = validated(settings, pool, {**to_beat, **candidates})
     scores.round(4).to_csv(out / f"validation-{pool}.csv", index=False)
     print(f"{pool}, validation flocks\n{scores.round(3).to_string(index=False)}", flush=True)
     score = scores.set_index("policy")["score"]
     best = str(score[list(laws)].idxmax())
     chosen = "mean" if score["mean"] >= score[best] else best
     parents = list(laws.values()) if chosen == "mean" else [laws[chosen]]
-    rule = f"{chosen} of seeds {', '.join(map(str, given.seeds))}, by validation flocks"
-    law, order = candidates[chosen], judged(given, pool, candidates[chosen])
+    rule = f"{chosen} of seeds {', '.join(map(str, settings.seeds))}, by validation flocks"
+    law = candidates[chosen]
+    judgment = judged(settings, pool, law)
     provenance = combined_provenance(parents, command, rule)
-    options = {"bound": BOUND[pool], "judged": order, "provenance": provenance}
+    options = {"bound": BOUND[pool], "judged": judgment, "provenance": provenance}
     LeaningLaw(pool, law.bias, law.weights, **options).save(out / f"{pool}.json")
-    low, high = order["interval"]
-    reached = f"{order['signed_order']:.3f} [{low:.3f}, {high:.3f}]"
+    low, high = judgment["interval"]
+    reached = f"{judgment['signed_order']:.3f} [{low:.3f}, {high:.3f}]"
     print(f"{pool}: {chosen}, signed order {reached}", flush=True)
-    return bool(score[chosen] >= score[list(others)].max())
+    return bool(score[chosen] >= score[list(to_beat)].max())
 
 
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pool", choices=tuple(MAKERS), action="append", help="[both]")
-    parser.add_argument("--trial", action="store_true", help="little of everything")
+    parser.add_argument("--trial", action="store_true", help="every step with few flocks")
     parser.add_argument("--ship", action="store_true", help="copy into the core if it passes")
     parser.add_argument("--out", type=Path, default=Path("results/pretrained"))
     options = parser.parse_args(arguments)

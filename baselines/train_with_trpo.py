@@ -43,6 +43,7 @@ if __name__ == "__main__":
     venv.seed(POLICY_SEEDS["training"].seeds(1, run=seed)[0])
     model.learn(settings.samples(venv))
     out.mkdir(parents=True, exist_ok=True)
-    law = LeaningLaw.from_model(model, "wide")  # its copy decides at every control step:
-    LeaningLaw("wide", law.bias, law.weights).save(out / "policy.json")
+    learned = LeaningLaw.from_model(model, "wide")  # decides every second, as the model does
+    law = LeaningLaw("wide", learned.bias, learned.weights)  # decides at every control step
+    law.save(out / "policy.json")
     print(f"{time.process_time() / 60:.1f} minutes of one core")
