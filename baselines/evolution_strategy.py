@@ -224,7 +224,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--pairs", type=int, default=64, help="pairs of opposite perturbations")
     parser.add_argument("--sigma", type=float, default=0.1, help="their standard deviation")
     parser.add_argument("--learning-rate", type=float, default=0.05, help="of Adam")
-    parser.add_argument("--moving-average", type=float, default=0.1, help="share of the newest weights")
+    parser.add_argument(
+        "--moving-average", type=float, default=0.1, help="share of the newest weights"
+    )
     parser.add_argument("--episodes", type=int, default=64, help="held-out episodes at the end")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/evolution"))

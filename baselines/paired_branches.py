@@ -45,8 +45,8 @@ class Settings:
     #: Number of pairs of flocks, and length of a branch in s.
     pairs: int = 64
     branch_s: int = 64
-    #: Length in s of the end of a branch, the only part that counts: at first even a good change may
-    #: lower the order.
+    #: Length in s of the end of a branch. Only the order there counts, since at first even a good
+    #: change may lower it.
     judged_s: int = 32
     episode_s: int = 480
     #: Standard deviation of a weight's changes, and the initial learning rate, which falls to 0.

@@ -22,7 +22,7 @@ _HUE_ROTATION = np.array([[-0.574, 1.43, 0.144], [0.426, 0.43, 0.144], [0.426, 1
 
 
 def plots() -> Iterator[tuple[Path, Path]]:
-    """Yield the path of each plot that README shows, and that of its dark version."""
+    """Yield the paths of each plot in README and of its dark version."""
     readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
     for name in dict.fromkeys(re.findall(r'srcset="(studies/[\w/]+)-dark\.png"', readme)):
         path = (REPOSITORY / f"{name}.png").resolve()

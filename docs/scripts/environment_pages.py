@@ -35,6 +35,7 @@ CLASSES = (
     LeaderVecEnv,
 )
 EVERY_BLOCK = {name: type(default)(1) for name, default in BLOCKS.items()}
+"""An observation with every block: flags are True, and counts 1."""
 
 
 def pages() -> dict[Path, str]:
@@ -84,6 +85,7 @@ def _parameters() -> str:
 
 
 def _by_block(entries: Iterable[Entry]) -> str:
+    """Return a table of entries for each block, below its name."""
     blocks: dict[str, list[Entry]] = {}
     for entry in entries:
         blocks.setdefault(entry.block, []).append(entry)
@@ -108,6 +110,7 @@ def _by_block(entries: Iterable[Entry]) -> str:
 
 
 def _features() -> str:
+    """Return the table of flock features, each with the blocks that have a feature of its name."""
     blocks: dict[str, list[str]] = {}
     entries = {entry.name: entry for entry in flock_feature_entries()}
     for entry in flock_feature_entries():

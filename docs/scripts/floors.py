@@ -16,7 +16,7 @@ OUTSIDE = (
 
 
 def floors() -> str:
-    """Return a row for each layer, from the top down."""
+    """Return the table of modules from the top down; floors are numbered from the bottom."""
     project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text("utf-8"))
     contracts = project["tool"]["importlinter"]["contracts"]
     python = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
@@ -24,14 +24,15 @@ def floors() -> str:
     layers = [(REPOSITORY / "flockenv", names) for names in python]
     layers += [(REPOSITORY / "src", names) for names in cargo["package"]["metadata"]["layers"]]
     body = [["", *row] for row in OUTSIDE]
-    for below, (folder, names) in enumerate(layers):
+    for layers_above, (folder, names) in enumerate(layers):
         for path in (_module(folder, name) for name in names.split(" | ")):
-            number = str(len(layers) - below)
+            number = str(len(layers) - layers_above)
             body.append([number, f"`{path.relative_to(REPOSITORY)}`", _purpose(path)])
     return markdown(["floor", "module", "what it is"], body)
 
 
 def _module(folder: Path, name: str) -> Path:
+    """Return the file or the folder of a module."""
     files = (folder / f"{name}.{ending}" for ending in ("py", "rs"))
     return next((path for path in files if path.exists()), folder / name)
 

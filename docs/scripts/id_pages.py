@@ -103,7 +103,7 @@ def page(env_id: str) -> str:
 
 def _reached(env_id: str) -> str:
     """Return the section on the orders that policies reach; empty without data."""
-    plot_and_words = reached(env_id)
+    plot_and_words = plot_of_orders(env_id)
     if plot_and_words is None:
         return ""
     source = f"../loops/{page_name(env_id)}.png"
@@ -120,17 +120,12 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
     indices: dict[tuple[str, str], list[int]] = {}
     for index, entry in enumerate(entries):
         indices.setdefault((entry.block, entry.name), []).append(index)
-    first = {key: entries[numbers[0]] for key, numbers in indices.items()}
-    table = [
-        [
-            _indices(numbers),
-            f"`{name}`",
-            first[block, name].unit or "1",
-            f"[{first[block, name].low:g}, {first[block, name].high:g}]",
-            plain_cell(first[block, name].meaning),
-        ]
-        for (block, name), numbers in indices.items()
-    ]
+    table = []
+    for (_, name), same_indices in indices.items():
+        entry = entries[same_indices[0]]
+        bounds = f"[{entry.low:g}, {entry.high:g}]"
+        meaning = plain_cell(entry.meaning)
+        table.append([_index_list(same_indices), f"`{name}`", entry.unit or "1", bounds, meaning])
     return {
         "action_space": str(env.action_space),
         "actions": markdown(["index", "meaning", "low", "high"], body),
@@ -141,7 +136,8 @@ def _spaces(env_id: str, env: gymnasium.Env[Any, Any]) -> dict[str, str]:
     }
 
 
-def _indices(indices: list[int]) -> str:
+def _index_list(indices: list[int]) -> str:
+    """Return indices as text: up to three of them, or the first two and the last."""
     return (
         ", ".join(map(str, indices))
         if len(indices) < 4
@@ -165,8 +161,8 @@ USUAL = ("n_boats", "n_leaders", "pool", "bw_s", "target", "episode_s", "control
 
 def _arguments(env_id: str) -> str:
     """Return the arguments that most trainings set, and those that an id sets."""
-    usual, settings = _settings(LEADERS), _settings(env_id)
-    differing = [name for name, value in settings.items() if value != usual[name]]
+    in_leaders, settings = _settings(LEADERS), _settings(env_id)
+    differing = [name for name, value in settings.items() if value != in_leaders[name]]
     names = list(dict.fromkeys([*USUAL, *differing]))
     meanings = {field.name: field.metadata["doc"] for field in fields(FlockParameters)}
     meanings = {name: option.doc for name, option in OPTIONS.items()} | meanings
@@ -177,7 +173,7 @@ def _arguments(env_id: str) -> str:
         meaning = (
             f"block `{block[1]}` of the observation" if block else _first_sentence(meanings[name])
         )
-        body.append([f"`{name}`", f"`{settings[name]}`", f"`{usual[name]}`", meaning])
+        body.append([f"`{name}`", f"`{settings[name]}`", f"`{in_leaders[name]}`", meaning])
     header = ["argument", "here", f"in `{page_name(LEADERS)}`", "meaning"]
     if env_id == LEADERS:
         body, header = (
@@ -198,10 +194,15 @@ def plain_cell(text: str) -> str:
 
 
 def _settings(env_id: str, *, by_block: bool = False) -> dict[str, Any]:
-    """Return all parameters and options of an id by name, with their defaults."""
+    """Return the values of all parameters and options of an id, by name.
+
+    With `by_block`, "observation" has the values of its blocks by name. Otherwise each block is an
+    entry such as 'observation["own"]'.
+    """
     parsed = EnvOptions.parse(ENVIRONMENTS[env_id].options)
     parameters = asdict(parsed.parameters)
     defaults = {name: option.default for name, option in OPTIONS.items()}
+    # Parameters are first in the table, and replace the defaults of options with the same name.
     settings = {**parameters, **defaults, **parameters, **parsed.settings}
     settings["observation"] = {**defaults["observation"], **settings["observation"]}
     if not by_block:
@@ -221,7 +222,7 @@ def draw_films() -> None:
     code = Path(__file__).read_text(encoding="utf-8")
     for env_id, declared in ENVIRONMENTS.items():
         draw(page_name(env_id), partial(film, env_id), repr(declared.options), code)
-        if plot_and_words := reached(env_id):
+        if plot_and_words := plot_of_orders(env_id):
             SHOWN.mkdir(parents=True, exist_ok=True)
             plot_and_words[0].save(SHOWN / f"{page_name(env_id)}.png")
 
@@ -229,7 +230,7 @@ def draw_films() -> None:
 def good_policy(env_id: str) -> str:
     """Return the name of the policy in the film."""
     if _shared_target_words(env_id):
-        # Learned leaders observe the flock mirrored to their own target.
+        # Learned leaders read no target: they see the flock as if their own were clockwise.
         return REFERENCE
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
     return GOOD_POLICIES.get(pool, "damped law")
@@ -270,7 +271,7 @@ _TARGET_ENTRIES = [
 # --- what policies reach --------------------------------------------------------------------------
 
 
-def reached(env_id: str) -> tuple[Plot, str] | None:
+def plot_of_orders(env_id: str) -> tuple[Plot, str] | None:
     """Return the plot of an id's committed data, and the words below it; None without data."""
     task = next((name for name, task_id in TASK_IDS.items() if task_id == env_id), None)
     if task is not None:
@@ -282,6 +283,7 @@ def reached(env_id: str) -> tuple[Plot, str] | None:
 
 
 def _suite(task: str) -> tuple[Plot, str]:
+    """Return the plot and the words of a task of suite v2."""
     scores = rows(SCORES, task=task)
     intervals = {
         f"{row['policy']}: {float(row['signed_order']):z.2f}": _interval(row, "score", "score_")
@@ -294,6 +296,7 @@ def _suite(task: str) -> tuple[Plot, str]:
 
 
 def _level(level: str) -> tuple[Plot, str]:
+    """Return the plot and the words of a level of suite v3."""
     file = STUDIES / "levels" / "results" / "laws.csv"
     orders = rows(file, level=level)
     words = WORDS["level"].substitute(level=level, flocks=orders[0]["flocks"])
@@ -304,6 +307,7 @@ AT_THREE = {"case": "wide-bw-0.31", "leaders": "3"}
 
 
 def _leaders() -> tuple[Plot, str]:
+    """Return the plot and the words of `LEADERS`, with three leaders."""
     by_policy = {
         row["policy"]: _interval(row, "signed_order", "signed_order_")
         for row in rows(MEANS, **AT_THREE)
@@ -313,16 +317,18 @@ def _leaders() -> tuple[Plot, str]:
 
 
 def _easy() -> tuple[Plot, str]:
+    """Return the plot and the words of `EASY`: trainings at their end, and then laws."""
     file = STUDIES / "easy" / "results" / "curve.csv"
     orders = [row for row in rows(file) if "minus" not in row["policy"]]
     most_samples = max(int(row["samples"] or 0) for row in orders)
     most_s = max(float(row["cpu_s"] or 0.0) for row in orders)
+    trainings = [row for row in orders if row["samples"] == str(most_samples)]
+    laws = [row for row in orders if row["samples"] == ""]
+    names = [f"{row['policy']}, seed {row['seed']}" for row in trainings]
+    names += [row["policy"] for row in laws]
     intervals = {
-        f"{row['policy']}, seed {row['seed']}" if row["seed"] else row["policy"]: _interval(
-            row, "signed_order"
-        )
-        for row in sorted(orders, key=lambda row: not row["seed"])
-        if row["samples"] in ("", str(most_samples))
+        name: _interval(row, "signed_order")
+        for name, row in zip(names, [*trainings, *laws], strict=True)
     }
     words = WORDS["easy"].substitute(millions=f"{most_samples / 1e6:.1f}", most_s=f"{most_s:.0f}")
     return _plot([file], intervals), words
@@ -333,6 +339,7 @@ DATA: dict[str, Callable[[], tuple[Plot, str]]] = {LEADERS: _leaders, EASY: _eas
 
 
 def _interval(row: Row, mean: str, ends: str = "") -> Interval:
+    """Return a mean and its interval from columns `mean`, `ends` + "low" and `ends` + "high"."""
     return float(row[mean]), float(row[f"{ends}low"]), float(row[f"{ends}high"])
 
 
@@ -354,4 +361,5 @@ def _plot(
 
 
 def _policy(shown_name: str) -> str:
+    """Return the policy in a name such as `learned: 0.52` or `PPO, seed 0`."""
     return shown_name.partition(":")[0].partition(", seed")[0]

@@ -37,7 +37,7 @@ class LoopError(Exception):
 
 def draw(name: str, make: Callable[[], Frames], *sources: str) -> None:
     """Draw NAME.webp and its still, unless they exist and package and sources are unchanged."""
-    key = hashlib.sha256("\0".join((_package(), *sources)).encode()).hexdigest()
+    key = hashlib.sha256("\0".join((_package_digest(), *sources)).encode()).hexdigest()
     files = [SHOWN / f"{name}.webp", SHOWN / f"{name}-still.webp"]
     key_file = _KEYS / f"{name}.key"
     if key_file.is_file() and key_file.read_text() == key and all(map(Path.is_file, files)):
@@ -52,8 +52,8 @@ def draw(name: str, make: Callable[[], Frames], *sources: str) -> None:
 
 
 @cache
-def _package() -> str:
-    """Return the digest of everything that could draw a flock differently."""
+def _package_digest() -> str:
+    """Return the digest of the package's Python files and compiled modules."""
     folder = Path(flockenv.__file__).parent
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".py", ".so"))
     digests = (hashlib.sha256(path.read_bytes()).hexdigest() for path in files)

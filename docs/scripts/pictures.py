@@ -29,7 +29,7 @@ SHOWN = {
 }
 OURS, OURS_CONTROLLED, THEIRS = OKABE_ITO["blue"], OKABE_ITO["vermilion"], "0.45"
 N_OURS = 6
-WORKERS = {
+WORK_LINES = {
     "fixed step": ("flockenv", "leapfrog", OURS, "o"),
     "controlled step": ("flockenv", "controlled", OURS_CONTROLLED, "s"),
     "rapier": ("rapier2d-f64", "4 iterations", THEIRS, "D"),
@@ -38,7 +38,7 @@ WORKERS = {
     "MuJoCo": ("MuJoCo", "Newton", OKABE_ITO["green"], "X"),
     "pymunk": ("pymunk", "10 iterations", OKABE_ITO["purple"], "P"),
 }
-"""Engine, how its setting begins, color and marker."""
+"""The lines of `work`: engine, beginning of its setting, color and marker."""
 
 
 def engines(figure: Figure) -> None:
@@ -113,9 +113,9 @@ def work(figure: Figure) -> None:
     """Draw the error against the time for a second of a scene, a line for each engine."""
     panels = figure.subplots(1, 3)
     for axes, scene in zip(panels, ("slide", "jam", "cycle"), strict=True):
-        for name, (engine, setting, color, marker) in WORKERS.items():
-            # The first four engines are timed in the runs whose errors are measured.
-            read = _runs if name in [*WORKERS][:4] else _peers
+        for name, (engine, setting, color, marker) in WORK_LINES.items():
+            # Only the first four lines are timed in the runs whose errors are measured.
+            read = _runs if name in [*WORK_LINES][:4] else _peers
             if points := read(scene, engine, setting):
                 times, errors = zip(*points, strict=True)
                 axes.plot(times, errors, marker + "-", color=color, label=name, markersize=5)
@@ -141,9 +141,9 @@ def _runs(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
 
 
 def _peers(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
-    """Return the same for an engine of another program; empty for slides.
+    """Return the time and the error, as `_runs` does, of an engine of another program.
 
-    The time is from runs with noise, and the error from runs without.
+    The time is from runs with noise, and the error from runs without. There are none for slides.
     """
     if scene == "slide":
         return []
@@ -159,6 +159,7 @@ def _peers(scene: str, engine: str, setting: str) -> list[tuple[float, float]]:
 def learners(figure: Figure) -> None:
     """Draw the samples per second of each interface, relative to the batch that it steps."""
     columns = ("median of the batch", "least of the batch", "most of the batch")
+    # The first row is the batch itself.
     shares = {
         row["interface"]: (float(row[columns[0]]), float(row[columns[1]]), float(row[columns[2]]))
         for row in rows(LEARNERS)[1:]
@@ -184,6 +185,7 @@ def many_agents(figure: Figure) -> None:
             marker=marker,
             zorder=3,
         )
+        # An empty series gives the legend its marker in gray.
         axes.scatter([], [], 45, color=THEIRS, marker=marker, label=environments)
     axes.set(xscale="log", xlabel="environment steps per second of one core")
     axes.set_yticks(range(len(lines)), lines)

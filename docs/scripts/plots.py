@@ -52,7 +52,7 @@ def page_style(letters_pt: float = 11.0) -> dict[str, Any]:
     """Return Matplotlib's settings for every picture of the pages, with letters of one size."""
     return {
         "font.size": letters_pt,
-        **dict.fromkeys((*(f"{each}.labelsize" for each in _LABELED), *_TITLED), letters_pt),
+        **dict.fromkeys((*(f"{part}.labelsize" for part in _LABELED), *_TITLED), letters_pt),
         "axes.spines.top": False,
         "axes.spines.right": False,
         "axes.linewidth": 0.6,
@@ -79,14 +79,14 @@ def letters_px(path: Path, shown_px: float) -> float:
 
 
 def is_scrolled(path: Path) -> bool:
-    """Return whether a picture would have too small letters on a phone, which then scrolls it."""
+    """Return whether a phone scrolls a picture, since its letters would be too small otherwise."""
     return letters_px(path, PHONE_PX) < LEAST_LETTERS_PX
 
 
 def smallest_letters(figure: Figure, dpi: float) -> str:
-    """Return the size of the smallest letters of a figure at these dots per inch, in pixels.
+    """Return the size in pixels of a figure's smallest letters at these dots per inch, as text.
 
-    Infinite without letters.
+    It is `inf` without letters.
     """
     figure.draw_without_rendering()  # It gives ticks their text.
     texts = figure.findobj(

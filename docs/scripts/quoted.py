@@ -80,18 +80,24 @@ def mean(column: str) -> Callable[[Any], float]:
 
 
 def gain_of(index: int) -> Callable[[Any], float]:
-    """Return a function for the mean gain of the states (0), or the low (1) or high (2) end."""
+    """Return a function for one of (mean gain of the states, low end, high end) by its index."""
     return lambda rows: mean_interval(rows["gain"])[index]
 
 
-def gain_of_plan(rows: Any, index: int = 0) -> float:
-    """Return the mean difference of the flocks (0), or half the width of its interval (1)."""
-    gain, low, high = student_interval(rows["planned"] - rows["learned"])
-    return (gain, (high - low) / 2)[index]
+def gain_of_plan(rows: Any) -> float:
+    """Return the mean difference of the flocks' orders between planner and learned leaders."""
+    gain, _, _ = student_interval(rows["planned"] - rows["learned"])
+    return gain
+
+
+def margin_of_plan(rows: Any) -> float:
+    """Return half the width of the interval of `gain_of_plan`."""
+    _, low, high = student_interval(rows["planned"] - rows["learned"])
+    return (high - low) / 2
 
 
 def plans(page: str) -> list[Number]:
-    """List what planning ahead adds."""
+    """List the orders that planners and the learned leaders reach."""
     known, fresh = (f"studies/planning/results/plan_{noise}.csv" for noise in ("known", "fresh"))
     return [
         Number(
@@ -100,7 +106,7 @@ def plans(page: str) -> list[Number]:
         Number(page, "and the learned leaders {}", known, column=mean("learned")),
         Number(page, "does not know it reaches {}", fresh, column=mean("planned")),
         Number(page, "a difference of {} ±", fresh, column=gain_of_plan),
-        Number(page, "a difference of # ± {}", fresh, column=lambda rows: gain_of_plan(rows, 1)),
+        Number(page, "a difference of # ± {}", fresh, column=margin_of_plan),
     ]
 
 
@@ -140,12 +146,12 @@ def ranks_of_levels(page: str, noisy: str, wide: str, narrow: str) -> list[Numbe
 
 
 def offset(page: str, words: str, horizon_s: int) -> list[Number]:
-    """List what one step of planning without foresight adds by a horizon, with its interval."""
+    """List the gain by a horizon from one planned step without foresight, with its interval."""
     table, gains = "studies/planning/results/best_of_offsets.csv", [*map(gain_of, range(3))]
     return interval(page, words, table, {"horizon_s": horizon_s}, gains, ".3f")
 
 
 def most_of_an_offset(page: str, words: str) -> Number:
-    """Give the larger upper end of what one such step adds, which is that by 64 s."""
+    """Return the upper end by 64 s, the largest, of the gain from one planned step."""
     table = "studies/planning/results/best_of_offsets.csv"
     return Number(page, words, table, {"horizon_s": 64}, gain_of(2), ".3f")

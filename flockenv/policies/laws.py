@@ -371,7 +371,7 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
     for differs, property_words in (
         (mode != "lean", f"actions of action_mode {mode!r}"),
         (entries != [*LEAN_FEATURES], f"{len(entries)} numbers observed"),
-        (not model_policy.mirror_to_target, "a view that is not mirrored to the target"),
+        (not model_policy.mirror_to_target, "mirror_to_target=False"),
         (control_hz != CONTROL_HZ, f"{control_hz:g} control steps per second"),
         (model_policy.leaders != 1, f"{model_policy.leaders} leaders at once"),
         (vec_normalize_of(model) is not None, "VecNormalize around its environment"),
@@ -380,7 +380,7 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
         if differs:
             raise ParameterError(
                 f"a model with {property_words} is not accepted as a leaning law: its leans must "
-                f"be linear in the {len(LEAN_FEATURES)} lean features, mirrored to the target"
+                f"be linear in the {len(LEAN_FEATURES)} lean features, with mirror_to_target=True"
             )
 
 

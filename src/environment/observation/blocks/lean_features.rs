@@ -1,5 +1,5 @@
-//! Features from which a leader's lean is computed: numbers that the leader sees, mirrored to the target and
-//! standardized.
+//! Features from which a leader's lean is computed: numbers that the leader sees, mirrored so that the target is
+//! clockwise, and standardized.
 
 use super::super::entry::{Entry, Scale};
 use super::super::view::{FlockView, Scaling};
@@ -151,7 +151,7 @@ impl LeanFeatures {
         values
     }
 
-    /// The blocks own, phase, neighbors and order as observed, mirrored to the target.
+    /// The blocks own, phase, neighbors and order as observed, mirrored so that the target is clockwise.
     fn observed_numbers(&mut self, view: &LeaderView) -> [f64; OBSERVED] {
         let physical = &mut self.physical;
         physical.clear();

@@ -137,6 +137,6 @@ declare_blocks! {
     Order = "order": order::{ORDER, Order}, 1 once;
     /// The nearest obstacles.
     Obstacles = "obstacles": obstacles::{OBSTACLE, NearestObstacles}, 0 counted;
-    /// Features that a leader's lean depends on, mirrored to the target and standardized.
+    /// Features that a leader's lean depends on, mirrored so that the target is clockwise, and standardized.
     LeanFeatures = "lean_features": lean_features::{ENTRIES, LeanFeatures}, 0 once;
 }
