@@ -40,6 +40,7 @@ export function opposedTargets(leaders) {
 const onGrid = (value, step) => step * Math.round(value / step);
 
 export class Controls {
+  /** For each control by its parameter, a function that shows a value in it. */
   inputs = new Map();
 
   /** `meanings`: the meaning of each parameter, shown as its title; `change` gets a name and a value. */

@@ -16,7 +16,7 @@ export const NO_BOAT = 1e6;
 /** Fields that may change without emptying the map of order. */
 const NOT_ON_MAP = new Set(["bw_s", "seed", "target"]);
 
-/** The request after a change of one control. `base`: the request before; `values`: the present parameters. */
+/** The request after a change of one control. `base`: the request before; `values`: the present parameters. A visitor who steers gets a leader, and a flock to compare with. */
 export function changed(base, values, laws, name, value) {
   const wanted = { ...base, flock: { ...base.flock }, beside: base.beside && { ...base.beside } };
   const leaders = Number(values.n_leaders);
@@ -33,6 +33,7 @@ export function changed(base, values, laws, name, value) {
   } else {
     wanted.flock[name] = value;
   }
+  // Targets and policies of single leaders follow the number of leaders.
   if (name === "n_leaders" && (wanted.flock.target ?? values.target).includes(",")) {
     wanted.flock.target = Number(value) > 1 ? opposedTargets(Number(value)) : "cw";
   }
@@ -51,12 +52,12 @@ export function changed(base, values, laws, name, value) {
   return wanted;
 }
 
-/** Shortens the names of a pair of flocks to the part in which they differ. */
+/** Shortens the names of two kinds of flocks to the part in which they differ; `copies`: number of flocks of each kind. */
 function distinguished(descriptions, copies) {
   const parts = descriptions.map(({ name }) => name.split(", "));
-  const isPair = parts.length > copies;
-  const index = isPair && parts[0][0] === parts[copies][0] ? 1 : 0;
-  return descriptions.map((flock, k) => ({ ...flock, name: isPair ? parts[k][index] ?? flock.name : flock.name }));
+  const hasTwoKinds = parts.length > copies;
+  const index = hasTwoKinds && parts[0][0] === parts[copies][0] ? 1 : 0;
+  return hasTwoKinds ? descriptions.map((flock, k) => ({ ...flock, name: parts[k][index] ?? flock.name })) : descriptions;
 }
 
 export class Flocks {
@@ -233,7 +234,7 @@ export class Flocks {
   get controlValues() {
     const { flock, beside } = this.shown;
     const target = this.values.target.includes(",") ? "opposed" : this.values.target;
-    const differs = Object.entries(beside ?? {}).map(([name, value]) => `${name}=${value}`).join(" ");
-    return { ...this.values, target, preset: flock.preset ?? "simulation", leaders: this.policy, beside: differs };
+    const besideFields = Object.entries(beside ?? {}).map(([name, value]) => `${name}=${value}`).join(" ");
+    return { ...this.values, target, preset: flock.preset ?? "simulation", leaders: this.policy, beside: besideFields };
   }
 }

@@ -1,11 +1,11 @@
 // A game in rounds: the visitor and the law lead the same flocks. The mean over rounds counts.
 
-import { fixed } from "../flockenv/replay/shared/words.mjs";
+import { withSign } from "../flockenv/replay/shared/words.mjs";
 
 /** Length of a round in s. */
 export const ROUND_SECONDS = 300;
 
-const signed = (value) => fixed(value, 2, true);
+const signed = (value) => withSign(value, 2);
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 /** Mean over flocks of each flock's mean signed order so far. */

@@ -22,7 +22,7 @@ class GrowingColumn {
     return this.values[sample * this.stride + channel];
   }
 
-  /** Appends samples, of which each has `width` numbers. */
+  /** Appends samples that have `width` numbers each, at most `stride`. */
   append(numbers, width = this.stride) {
     const count = width === 0 ? 0 : numbers.length / width;
     if (width === this.stride) {
@@ -92,7 +92,7 @@ export class GrowingRun extends Run {
 
   /** Restarts the means. */
   restartMeans() {
-    Object.assign(this, { sums: { psi_o: 0, rotation: 0, signed_order: 0 }, counted: 0, cycleOrder: [0, 0] });
+    Object.assign(this, { sums: { psi_o: 0, rotation: 0, signed_order: 0 }, counted: 0, windowOrder: { sum: 0, count: 0 } });
   }
 
   /** Appends the simulator's samples; `onCycle` gets the mean order of each analysis window that ends. */
@@ -134,11 +134,11 @@ export class GrowingRun extends Run {
         this.sums[key] += this.value(key, sample);
       }
       this.counted += 1;
-      this.cycleOrder[0] += this.value("psi_o", sample);
-      this.cycleOrder[1] += 1;
-    } else if (this.cycleOrder[1] > 0) {
-      onCycle(this.cycleOrder[0] / this.cycleOrder[1]);
-      this.cycleOrder = [0, 0];
+      this.windowOrder.sum += this.value("psi_o", sample);
+      this.windowOrder.count += 1;
+    } else if (this.windowOrder.count > 0) {
+      onCycle(this.windowOrder.sum / this.windowOrder.count);
+      this.windowOrder = { sum: 0, count: 0 };
     }
   }
 

@@ -1,7 +1,7 @@
 // Signed order against flock-hours of training, with the paper's law as a line.
 
 import { fitted } from "../flockenv/replay/shared/scene.mjs";
-import { fixed, plain } from "../flockenv/replay/shared/words.mjs";
+import { fixed, plain, withSign } from "../flockenv/replay/shared/words.mjs";
 
 const EDGE_OF_CURVE = { left: 34, right: 12, top: 8, bottom: 32 };
 /** The signed orders that the axis always includes. */
@@ -70,7 +70,7 @@ export class LearningCurve {
     if (Number.isNaN(this.law)) {
       return;
     }
-    const words = `the paper's law ${fixed(this.law, 2, true)}`;
+    const words = `the paper's law ${withSign(this.law, 2)}`;
     context.textAlign = "left";
     context.lineWidth = 3;
     context.strokeStyle = palette.water;

@@ -81,7 +81,7 @@ export class LivePage {
     if (isWanted() && !this.broken) {
       this.changing = false;
       this.playback.hold(linked.other.paused === "1");
-      this.#showAnswer("open", false, linked.ignored.join(" "));
+      this.#showAnswer("open", { continues: false, words: linked.ignored.join(" ") });
       await this.#change();
     }
   }
@@ -154,17 +154,17 @@ export class LivePage {
 
   /** Lets the simulator open or change the flocks, and shows them. */
   async #update(wanted, kind) {
-    this.#showAnswer(kind, await this.flocks.update(wanted, kind));
+    this.#showAnswer(kind, { continues: await this.flocks.update(wanted, kind) });
   }
 
-  /** Shows the flocks after an answer of this kind, and says whether they continue. */
-  #showAnswer(kind, isSame, words = "") {
-    if (!isSame) {
+  /** Shows the flocks after they were opened or changed. After a change it says whether they continue, otherwise `words`. */
+  #showAnswer(kind, { continues, words = "" }) {
+    if (!continues) {
       this.playback.restart();
     }
     this.showRuns();
-    const continued = isSame ? "The flock continues from where it is." : "The flock starts again: it cannot continue with this change.";
-    this.say(kind === "change" ? continued : words);
+    const changeWords = continues ? "The flock continues from where it is." : "The flock starts again: it cannot continue with this change.";
+    this.say(kind === "change" ? changeWords : words);
     this.link.write();
   }
 

@@ -15,12 +15,11 @@ export function writeNpz(arrays) {
     const path = new TextEncoder().encode(`${name}.npy`);
     // The fields that a file's own header and its entry in the directory share.
     const shared = new DataView(new ArrayBuffer(26));
-    shared.setUint16(0, 20, true);
-    // 1 January 1980: no clock in the file.
-    shared.setUint16(8, 33, true);
+    shared.setUint16(0, 20, true); // ZIP 2.0
+    shared.setUint16(8, 33, true); // 1 January 1980: no clock in the file
     shared.setUint32(10, crc32(entry), true);
-    shared.setUint32(14, entry.length, true);
-    shared.setUint32(18, entry.length, true);
+    shared.setUint32(14, entry.length, true); // packed
+    shared.setUint32(18, entry.length, true); // unpacked
     shared.setUint16(22, path.length, true);
     const local = [Uint8Array.of(80, 75, 3, 4), new Uint8Array(shared.buffer), path];
     const location = new DataView(new ArrayBuffer(14));
@@ -200,7 +199,7 @@ function textsOf(content, width) {
     const points = letters.subarray(k * width, (k + 1) * width);
     const end = points.findLastIndex((point) => point > 0) + 1;
     if (points.some((point) => point > 0x10ffff)) {
-      throw new Error("an array holds letters that there are not");
+      throw new Error("an array holds codes that are no characters");
     }
     // Converted in parts, since the number of arguments of a call is limited.
     const parts = Array.from({ length: Math.ceil(end / PART) }, (_, part) => String.fromCodePoint(...points.subarray(part * PART, Math.min((part + 1) * PART, end))));

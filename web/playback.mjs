@@ -2,7 +2,7 @@
 
 import { Transport } from "../flockenv/replay/shared/transport.mjs";
 import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
-import { NO_BOAT } from "./flocks.mjs";
+import { NO_BOAT, SAMPLING } from "./flocks.mjs";
 import { Game, scoreOf } from "./game.mjs";
 
 /** Times in ms: how long the simulator may compute for one frame, after how long it counts as slow, and the same for its first answer. */
@@ -144,8 +144,9 @@ export class Playback {
         this.transport.pause();
       }
     } else if (!this.#endRound()) {
-      const ahead = speed === Infinity ? Infinity : this.time + 0.1 + 0.05 * speed - end;
-      this.#advance(Math.ceil(Math.min(10 * ahead, 1e6)));
+      // The samples reach a little beyond the time that is drawn, the more the faster it plays.
+      const missingSeconds = speed === Infinity ? Infinity : this.time + 0.1 + 0.05 * speed - end;
+      this.#advance(Math.ceil(Math.min(SAMPLING * missingSeconds, 1e6)));
     }
     this.show(now);
   }

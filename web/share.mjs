@@ -62,13 +62,13 @@ export function download(bytes, name) {
  * run, and `derive` the quantities of all samples.
  */
 export async function runOfFile(file, about, { check, describe, derive }) {
-  const withWords = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
+  const failAs = (words) => (error) => { throw new Error(`${words}: ${error.message}`); };
   const bytes = await file.arrayBuffer();
   const isZip = new TextDecoder("latin1").decode(bytes.slice(0, 4)) === "PK\x03\x04";
-  const arrays = await readNpz(bytes).catch(isZip ? withWords("is not a complete, undamaged .npz file") :
+  const arrays = await readNpz(bytes).catch(isZip ? failAs("is not a complete, undamaged .npz file") :
     () => { throw new Error("is not an .npz file, in which recordings are saved"); });
   const answer = await checkRecording(arrays, about, async (toml) => check({ parameters: valuesOfToml(toml) }))
-    .catch(withWords("is not a recording of flockenv"));
+    .catch(failAs("is not a recording of flockenv"));
   const description = describe(answer, {
     name: file.name, seed: String(arrays.seed.values[0]), version: arrays.version.values[0],
   });

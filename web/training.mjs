@@ -1,6 +1,6 @@
 // A training that the visitor starts: leaders learn to choose rudders, and are judged at intervals in other flocks.
 
-import { byId, fixed } from "../flockenv/replay/shared/words.mjs";
+import { byId, fixed, withSign } from "../flockenv/replay/shared/words.mjs";
 import { SAMPLING } from "./flocks.mjs";
 import { TRAINED } from "./laws.mjs";
 import { LearningCurve } from "./learning_curve.mjs";
@@ -140,7 +140,7 @@ export class Training {
 
   get #words() {
     const { last, law } = this.curve;
-    return `Signed order in ${this.judges} other flocks: your leaders ${fixed(last, 2, true)}, the paper's law ${fixed(law, 2, true)}.`;
+    return `Signed order in ${this.judges} other flocks: your leaders ${withSign(last, 2)}, the paper's law ${withSign(law, 2)}.`;
   }
 
   /** Draws the curve, and updates the buttons. */

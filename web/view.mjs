@@ -3,7 +3,7 @@
 import { Chart, legendOf } from "../flockenv/replay/shared/chart.mjs";
 import { Panel, parameterTable, runSwitch } from "../flockenv/replay/shared/panel.mjs";
 import { colors, giveColors } from "../flockenv/replay/shared/scene.mjs";
-import { byId, element, fixed } from "../flockenv/replay/shared/words.mjs";
+import { byId, element, fixed, withSign } from "../flockenv/replay/shared/words.mjs";
 import { boatWords, clockwiseWords, flockWords, scoreWords } from "./doing.mjs";
 import { ROUND_SECONDS, scoreOf } from "./game.mjs";
 import { drawLapFrame } from "./lap_frame.mjs";
@@ -120,7 +120,7 @@ export class View {
     this.#wordsAt = this.#announcedAt = -Infinity;
   }
 
-  /** Draws the flocks at a time in s; updates words and numbers at intervals. */
+  /** Draws the flocks at a time in s; while they play, updates words and numbers at intervals. `now`: time in ms; `rate`: the speed in words. */
   show(time, { now = performance.now(), isPlaying = false, rate = "" } = {}) {
     const { runs, areYours } = this.#flocks;
     const trailSeconds = Math.min(TRAIL_SECONDS, TRAIL_BOAT_SECONDS / runs[0].boats);
@@ -137,7 +137,7 @@ export class View {
       chart.draw(time, this.#quantity(key), this.palette);
     }
     this.map.draw(this.palette);
-    if (!isPlaying || !(now - this.#wordsAt < WORDS_EVERY)) {
+    if (!isPlaying || now - this.#wordsAt >= WORDS_EVERY) {
       this.#wordsAt = now;
       this.#showWords(time, rate, isPlaying);
     }
@@ -170,15 +170,15 @@ export class View {
       part.append(element("span", "faint", words), element("b", "", value));
       return part;
     };
-    const signed = (value) => fixed(value, 2, true);
     if (areYours) {
-      const [yours, law] = [runs.slice(0, firstBeside), runs.slice(firstBeside)].map((side) => signed(scoreOf(side)));
+      const [yours, law] = [runs.slice(0, firstBeside), runs.slice(firstBeside)].map((side) => withSign(scoreOf(side), 2));
       const isGame = byId("story").dataset.lesson === "steer";
       const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
       return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
     }
     const key = (run) => wordsOf(byId("story").dataset.lesson).headline ?? (run.target === null ? "psi_o" : "signed_order");
-    const mean = (run) => fixed(run.isRecorded ? run.meanUpTo(key(run), run.sampleAt(time)) : run.mean(key(run)), 2, key(run) !== "psi_o");
+    const meanOf = (run) => (run.isRecorded ? run.meanUpTo(key(run), run.sampleAt(time)) : run.mean(key(run)));
+    const mean = (run) => (key(run) === "psi_o" ? fixed(meanOf(run), 2) : withSign(meanOf(run), 2));
     const words = (run) => `mean ${this.#quantity(key(run)).words.split(",")[0]} so far `;
     const meaning = element("small", "faint", MEANINGS[key(drawnRuns[index])]);
     if (!document.body.classList.contains("pair")) {
@@ -232,7 +232,7 @@ export class View {
     this.#entries.forEach(({ block, place: number, name, meaning }, index) => {
       const row = element("tr");
       row.append(element("th", "", block === "neighbors" ? `neighbor ${number + 1}: ${name}` : name),
-        element("td", "", fixed(this.observed[index], 2, true)), element("td", "faint", meaning));
+        element("td", "", withSign(this.observed[index], 2)), element("td", "faint", meaning));
       table.append(row);
     });
     byId("observation").replaceChildren(table);

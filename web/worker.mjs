@@ -56,15 +56,15 @@ export const ANSWERS = {
     }
   },
 
-  /** Advances all flocks by up to `samples` samples, for about `milliseconds`; leaders of the visitor head as it says. */
+  /** Advances all flocks by up to `samples` samples, for about `milliseconds`. Leaders that the visitor steers get this `heading`. */
   advance({ samples, milliseconds, boat, heading }) {
     const start = performance.now();
     for (const flock of shown.keys()) {
       core.steer(flock, heading);
     }
-    for (let left = samples; left > 0 && performance.now() - start < milliseconds; left -= TURN) {
+    for (let remaining = samples; remaining > 0 && performance.now() - start < milliseconds; remaining -= TURN) {
       for (const flock of shown.keys()) {
-        advanceBy(flock, Math.min(TURN, left));
+        advanceBy(flock, Math.min(TURN, remaining));
       }
     }
     return { ...ANSWERS.look({ boat }), milliseconds: performance.now() - start, memory: core.memory };

@@ -149,8 +149,8 @@ export class Player {
     const letterKeys = {
       "+": () => this.#choose("speed", 1),
       "-": () => this.#choose("speed", -1),
-      t: () => this.#choose("trails", 1, true),
-      c: () => this.#choose("colors", 1, true),
+      t: () => this.#choose("trails", 1, { wraps: true }),
+      c: () => this.#choose("colors", 1, { wraps: true }),
       f: () => forces.click(),
       "]": () => this.#pinNext(1),
       "[": () => this.#pinNext(-1),
@@ -163,8 +163,8 @@ export class Player {
     }
   }
 
-  /** Moves a select by some options; `wraps`: whether the first option follows the last. */
-  #choose(name, by, wraps = false) {
+  /** Moves a select by some options. With `wraps` the first option follows the last. */
+  #choose(name, by, { wraps = false } = {}) {
     const select = this.controls[name];
     const count = select.options.length;
     const next = select.selectedIndex + by;
@@ -185,6 +185,7 @@ export class Player {
     this.show();
   }
 
+  /** Shows the card of the boat under the pointer; null for none. */
   hover(boat) {
     if (boat !== this.hovered) {
       this.hovered = boat;
@@ -192,6 +193,7 @@ export class Player {
     }
   }
 
+  /** Pauses at the last sample, or plays, at the end again from the start. */
   toggle() {
     if (this.playing) {
       this.#transport.pause();
@@ -212,7 +214,7 @@ export class Player {
     return Math.max(this.start, ...times.filter((sampled) => sampled <= time + 1e-9));
   }
 
-  /** Steps to the next or the previous sample of any run. */
+  /** Pauses, and goes to the next sample of any run (`by` is 1) or to the previous one (−1). */
   step(by) {
     this.#transport.pause();
     const nextTime = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
@@ -277,6 +279,6 @@ export class Player {
     scrub.style.setProperty("--done", `${(100 * (this.time - this.start)) / (this.end - this.start || 1)}%`);
     clock.textContent = `${fixed(this.#sampleTime(this.time), 1)} s of ${fixed(this.end, 1)} s`;
     scrub.setAttribute("aria-valuetext", clock.textContent);
-    this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time, true));
+    this.controls.legend.replaceChildren(...legendOf(this.runs, chosen, this.time, { hasMeans: true }));
   }
 }

@@ -94,8 +94,8 @@ export class Chart {
     for (const run of this.runs) {
       const column = run.columns.get(quantity.key);
       if (column) {
-        const dense = (run.length * (this.to - this.from)) / (run.time.at(-1) - run.time[0] || 1);
-        const draw = dense > 2 * this.width ? drawBand : drawLine;
+        const samplesInView = (run.length * (this.to - this.from)) / (run.time.at(-1) - run.time[0] || 1);
+        const draw = samplesInView > 2 * this.width ? drawBand : drawLine;
         draw(this, context, run, column, palette[run.color]);
       }
     }
@@ -148,7 +148,7 @@ export class Chart {
 }
 
 /** The line above a chart: the name of the series, its value in each run at a time and, with `hasMeans`, its mean so far. */
-export function legendOf(runs, quantity, time, hasMeans = false) {
+export function legendOf(runs, quantity, time, { hasMeans = false } = {}) {
   const parts = runs.map((run) => {
     const part = element("span", "value");
     if (runs.length > 1) {
@@ -165,8 +165,10 @@ export function legendOf(runs, quantity, time, hasMeans = false) {
   return [element("span", "", caption(quantity)), ...parts];
 }
 
+/** Ranges of values by the key of their series. */
 const ranges = new Map();
 
+/** The least and the greatest value of a series over all runs; the range includes 0. */
 function valueRange(runs, key) {
   if (!ranges.has(key)) {
     let [low, high] = [0, 0];

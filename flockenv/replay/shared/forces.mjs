@@ -29,7 +29,7 @@ export function forceScale(runs) {
   return typical > 0 ? roundNumber(typical / 2) : 1;
 }
 
-/** The bar of a force: length and width in hull widths, as `boatLength` is. A bar is at most as wide as a boat; length 0 means no bar. */
+/** Length and width of the bar of a force, in hull widths; so is `boatLength`. A bar is at most as wide as a boat; length 0 means no bar. */
 export function barOf(force, scale, boatLength) {
   const [proportional, longest] = [(LENGTH * force) / scale, LONGEST * boatLength];
   const length = proportional < SHORTEST ? 0 : Math.min(proportional, longest);

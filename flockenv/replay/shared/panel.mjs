@@ -2,7 +2,7 @@
 
 import { barOf } from "./forces.mjs";
 import { Scene } from "./scene.mjs";
-import { element, fixed, wrapped } from "./words.mjs";
+import { element, fixed, withSign, wrapped } from "./words.mjs";
 
 /** What the motors do in each phase of their cycle. */
 const PHASES = {
@@ -58,18 +58,18 @@ export function runSwitch(runs, show) {
   return group;
 }
 
-/** A run's canvas with everything around it. */
+/** A run's canvas with everything around it. With `isOneOfTwo` the run's name has the run's color. */
 export class Panel {
   /** The boat and the radius of the hole for which the card's position was chosen. */
   #placement = "";
 
-  constructor(run, index, several) {
+  constructor(run, index, isOneOfTwo) {
     this.run = run;
     this.root = element("article", "run");
     this.root.dataset.run = String(index);
     const title = element("h2");
     const swatch = element("span", `swatch ${run.color}`);
-    title.append(...(several ? [swatch] : []), element("span", "name", run.name),
+    title.append(...(isOneOfTwo ? [swatch] : []), element("span", "name", run.name),
       element("span", "faint origin", run.ids ? "tracks" : `seed ${run.seed} · flockenv ${run.version}`));
     this.picture = element("div", "picture");
     this.canvas = element("canvas");
@@ -165,6 +165,7 @@ export class Panel {
     return corner;
   }
 
+  /** Shows the run at a time in s; `options`: those of `Scene.draw`. */
   show(time, options) {
     const { run } = this;
     if (this.canvas.clientWidth === 0) {
@@ -179,9 +180,9 @@ export class Panel {
       phaseElement.classList.toggle("now", phaseElement.dataset.phase === phase);
     }
     this.psi.textContent = fixed(run.value("psi_o", sample), 2);
-    this.phi.textContent = fixed(run.value("phi_o", sample), 2, true);
+    this.phi.textContent = withSign(run.value("phi_o", sample), 2);
     const signed = run.value(this.signedKey, sample);
-    this.signed.textContent = fixed(signed, 2, true);
+    this.signed.textContent = withSign(signed, 2);
     this.psiBar.style.width = `${100 * (run.value("psi_o", sample) ?? 0)}%`;
     this.signedBar.style.width = `${50 * Math.abs(signed ?? 0)}%`;
     this.signedBar.style.left = `${signed < 0 ? 50 + 50 * signed : 50}%`;
@@ -193,6 +194,7 @@ export class Panel {
     this.forceKey.hidden = forceScale === null || !this.run.hasForces;
     if (!this.forceKey.hidden) {
       const hull = 2 * this.run.lengths.hull_radius_cm * this.scene.scale;
+      // The bar of a force equal to the scale. No length is too long for it.
       const { length, width } = barOf(forceScale, forceScale, Infinity);
       Object.assign(this.forceBar.style, { width: `${length * hull}px`, height: `${Math.max(width * hull, 2)}px` });
       this.forceWords.textContent = `force ${forceScale} cm/s²`;
@@ -248,13 +250,13 @@ export function boatNumbers(run, boat, sample) {
     ["y", fixed(at("position_cm", 2 * boat + 1), 1), "cm"],
     ["heading", fixed(wrapped(at("heading", boat)), 2), "rad"],
     ["speed", fixed(at("speed_cm_s", boat), 1), "cm/s"],
-    ["turning", fixed(at("turning_rate", boat), 2, true), "rad/s"],
+    ["turning", withSign(at("turning_rate", boat), 2), "rad/s"],
   ];
   if (boat < run.leaders) {
     numbers.push(
-      ["φ", fixed(wrapped(run.orientation(boat, sample)), 2, true), "rad",
+      ["φ", withSign(wrapped(run.orientation(boat, sample)), 2), "rad",
         "orientation in the local frame: 0 points outward, +π/2 clockwise"],
-      ["rudder", fixed(run.rudder(boat, sample), 2, true), "",
+      ["rudder", withSign(run.rudder(boat, sample), 2), "",
         "from −1 to 1; positive turns counter-clockwise when moving forward"],
     );
   }
@@ -272,8 +274,8 @@ export function parameterTable(runs) {
   table.setAttribute("aria-label", "Parameters");
   const rows = [["", (run) => run.name], ["seed", (run) => run.seed], ["version", (run) => run.version],
     ...Object.keys(runs[0].parameters).map((key) => [key, (run) => run.parameters[key]])];
-  for (const [name, value] of rows) {
-    const values = runs.map(value);
+  for (const [name, textOfRun] of rows) {
+    const values = runs.map(textOfRun);
     const row = element("tr", new Set(values).size > 1 ? "differs" : "");
     row.append(element("th", "", name), ...values.map((text) => element("td", "", text)));
     table.append(row);

@@ -14,7 +14,7 @@ export class Run {
     return this.columns.has("contact_count");
   }
 
-  /** The index of each sample's first contact in the columns of contacts, and the number of contacts. */
+  /** The index of each sample's first contact in the columns of contacts; the last entry is the number of all contacts. */
   #firstContacts() {
     const first = new Int32Array(this.length + 1);
     if (this.columns.has("contact_count")) {
@@ -45,8 +45,8 @@ export class Run {
   posesAt(time) {
     const sample = this.sampleAt(time);
     const next = Math.min(sample + 1, this.length - 1);
-    const gap = this.time[next] - this.time[sample];
-    const fraction = gap > 0 ? Math.min(Math.max((time - this.time[sample]) / gap, 0), 1) : 0;
+    const interval = this.time[next] - this.time[sample];
+    const fraction = interval > 0 ? Math.min(Math.max((time - this.time[sample]) / interval, 0), 1) : 0;
     const position = this.columns.get("position_cm");
     const heading = this.columns.get("heading");
     const between = (column, channel) => {
@@ -61,7 +61,7 @@ export class Run {
     ] : missing);
   }
 
-  /** Whether a boat is present at a sample; tracked ones come and go. */
+  /** Whether a boat is present at a sample. Only tracked boats come and go: other runs have no such column. */
   isPresent(boat, sample) {
     return this.columns.get("present")?.at(sample, boat) !== 0;
   }

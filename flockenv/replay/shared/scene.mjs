@@ -28,6 +28,7 @@ export function colors() {
   const names = ["ground", "wall", "water", "grid", "ink", "faint", "target", "clockwise", "counter-clockwise", "radial", "normal",
     "mark", "leader", "opponent", "leader-mark", "outline", "force", "pin", ...LAW_COLORS, ...OTHER_COLORS, "track", "circles-from"];
   const palette = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+  // Two further digits are the opacity.
   return { ...palette, window: `${palette.ink}12` };
 }
 
@@ -58,6 +59,7 @@ export class Scene {
   poses = [];
   palette = null;
   context = null;
+  /** The canvas's middle in pixels, the point in cm that is drawn there, and pixels per cm. */
   middle = [0, 0];
   center = [0, 0];
   scale = 1;
@@ -222,14 +224,14 @@ export class Scene {
     context.strokeStyle = this.palette.grid;
     context.lineWidth = 1;
     context.beginPath();
-    const first = (center, size) => Math.ceil((center - size / 2 / this.scale) / spacing) * spacing;
-    for (let x = first(this.center[0], width); ; x += spacing) {
+    const firstLine = (center, size) => Math.ceil((center - size / 2 / this.scale) / spacing) * spacing;
+    for (let x = firstLine(this.center[0], width); ; x += spacing) {
       const px = Math.round(this.pixel(x, 0)[0]) + 0.5;
       if (px > width) break;
       context.moveTo(px, 0);
       context.lineTo(px, height);
     }
-    for (let y = first(this.center[1], height); ; y += spacing) {
+    for (let y = firstLine(this.center[1], height); ; y += spacing) {
       const py = Math.round(this.pixel(0, y)[1]) + 0.5;
       if (py < 0) break;
       context.moveTo(0, py);

@@ -11,7 +11,7 @@ export function element(kind, className = "", text = "") {
 }
 
 /** A number with a real minus sign; zero has no sign, and a missing number is a dash. */
-export function fixed(value, decimals, plus = false) {
+export function fixed(value, decimals) {
   if (value === undefined || Number.isNaN(value)) {
     return "–";
   }
@@ -19,7 +19,13 @@ export function fixed(value, decimals, plus = false) {
   if (Number(text) === 0) {
     return text.replace("-", "");
   }
-  return text.startsWith("-") ? text.replace("-", "−") : (plus ? "+" : "") + text;
+  return text.replace("-", "−");
+}
+
+/** As `fixed`, and a positive number has a plus sign. */
+export function withSign(value, decimals) {
+  const text = fixed(value, decimals);
+  return Number(text) > 0 ? `+${text}` : text;
 }
 
 /** A number in its shortest form, with a real minus sign. */

@@ -2,13 +2,13 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { caption, clockText, fixed, plain, roundNumber, wrapped } from "../../../flockenv/replay/shared/words.mjs";
+import { caption, clockText, fixed, plain, roundNumber, withSign, wrapped } from "../../../flockenv/replay/shared/words.mjs";
 
 test("numbers with a fixed number of decimals", () => {
   assert.equal(fixed(1.25, 1), "1.3");
   assert.equal(fixed(-1.5, 2), "−1.50");
-  assert.equal(fixed(0.5, 2, true), "+0.50");
-  assert.equal(fixed(-0.001, 2, true), "0.00");
+  assert.equal(withSign(0.5, 2), "+0.50");
+  assert.equal(withSign(-0.001, 2), "0.00");
   assert.equal(fixed(undefined, 2), "–");
   assert.equal(fixed(Number.NaN, 2), "–");
 });
