@@ -60,6 +60,7 @@ class Packer:
     def _append(
         self, name: str, quanta: NDArray[np.int64], quantum: float, differences: int
     ) -> None:
+        """Add the planes of bytes and the header of a series that was differenced already."""
         channels = math.prod(quanta.shape[1:])
         by_channel = np.ascontiguousarray(quanta.reshape(len(quanta), channels).T).reshape(-1)
         # Zigzag encoding: small numbers of either sign become small nonnegative numbers.

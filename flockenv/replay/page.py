@@ -130,9 +130,9 @@ def write_replay(
 
 
 def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
-    """Return a page of at most `MOST_BYTES`, and the n of the n-th samples that it shows."""
+    """Return a page of at most `MOST_BYTES`, and the n for which it shows every n-th sample."""
     longest = max(len(recording) for recording in recordings.values())
-    # Fewer samples take no fewer bytes each, so thinnings that cannot fit are skipped.
+    # Thinning does not make samples smaller, so the size of a page bounds the next n from below.
     least_every = max(1.0, longest / _MOST_SAMPLES)
     for every in _THINNING:
         if every < least_every:
@@ -148,6 +148,7 @@ def _fitting_page(recordings: Mapping[str, Recording]) -> tuple[bytes, int]:
 
 
 def _page(recordings: Mapping[str, Recording], every: int) -> str:
+    """Return the page that shows every `every`-th sample."""
     time_s, description = decisive_minute(list(recordings.values()))
     quantities = shown_quantities(list(recordings.values()))
     data = {
@@ -218,7 +219,7 @@ def _run(
 
 
 def _law(recording: Recording) -> str | None:
-    """Return the name of the leaders' law, which gives the run its color; None for no law."""
+    """Return the name of the leaders' law, which gives the run its color; None if no law led."""
     pool = recording.parameters.pool
     for name in LAWS:
         with suppress(ParameterError):  # Some laws exist only in some pools.
@@ -262,6 +263,7 @@ def _series(recording: Recording, every: int, quantities: list[dict[str, Any]]) 
 
 
 def _has_phases(recording: Recording) -> bool:
+    """Return whether the phase of every sample is known."""
     return bool((recording.phase != "").all())
 
 
@@ -270,11 +272,12 @@ def _without_gaps(pose: NDArray[Any]) -> NDArray[Any]:
 
     A boat that is never present has zeros.
     """
-    last = np.where(np.isfinite(pose[..., 0]), np.arange(len(pose))[:, None], -1)
-    last = np.maximum.accumulate(last, axis=0)
-    first = np.isfinite(pose[..., 0]).argmax(axis=0)
-    known = np.where(last < 0, first, last)
-    filled_pose: NDArray[Any] = np.take_along_axis(pose, known[..., None], axis=0)
+    is_present = np.isfinite(pose[..., 0])
+    present_sample = np.where(is_present, np.arange(len(pose))[:, None], -1)
+    last_known = np.maximum.accumulate(present_sample, axis=0)
+    first_known = is_present.argmax(axis=0)
+    source_sample = np.where(last_known < 0, first_known, last_known)
+    filled_pose: NDArray[Any] = np.take_along_axis(pose, source_sample[..., None], axis=0)
     filled_pose[np.isnan(filled_pose)] = 0.0
     return filled_pose
 
@@ -282,6 +285,7 @@ def _without_gaps(pose: NDArray[Any]) -> NDArray[Any]:
 def _add_contacts(
     packer: Packer, recording: Recording, contacts: ContactSeries, every: int
 ) -> None:
+    """Add the contacts of every `every`-th sample."""
     sample = np.repeat(np.arange(len(recording)), contacts.count)
     is_shown = sample % every == 0
     normal = contacts.normal[is_shown]

@@ -22,7 +22,7 @@ def series_of(recording: Recording, key: str) -> NDArray[np.float64]:
 
 
 def shown_quantities(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
-    """Return the quantities that a page charts, as its script reads them. The first is shown first.
+    """Return the quantities that a page charts, as its script reads them. It opens with the first.
 
     Each has ``key``, its name in the recording; ``words`` and ``unit``; ``range``, the lowest and
     highest value of its chart, or None for the range of the data; and ``decimals``, the number of
@@ -76,8 +76,8 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
         np.interp(times_s, recording.time_s, values)
         for recording, values in zip(recordings, signed, strict=True)
     ]
-    minute = round(_MINUTE_S / _STEP_S)
-    half = np.full(minute // 2, 1.0)
+    steps_per_minute = round(_MINUTE_S / _STEP_S)
+    half = np.full(steps_per_minute // 2, 1.0)
     if len(series) == 1:
         # np.convolve reverses the weights.
         weights, compared = np.concatenate([half, -half]), series[0]
@@ -85,7 +85,8 @@ def decisive_minute(recordings: Sequence[Recording]) -> tuple[float, str]:
     else:
         weights, compared = np.concatenate([half, half]), series[0] - series[1]
         meaning = "in which the runs differ most"
-    # Rounded, so that of minutes that differ only by rounding the first is found.
-    index = np.abs(np.convolve(compared, weights, "valid").round(9)).argmax()
+    # Minutes whose changes differ by rounding errors alone count as equal, and the first one wins.
+    changes = np.abs(np.convolve(compared, weights, "valid").round(9))
+    index = changes.argmax()
     start = float(times_s[index])
     return start, f"The page opens at {start:g} s, the start of the minute {meaning}."

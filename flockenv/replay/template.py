@@ -25,6 +25,6 @@ def as_script_content(json_text: str) -> str:
 def filled(template: str, parts: Mapping[str, str]) -> str:
     """Return a template with its parts in place of their ``{{names}}``.
 
-    The template is scanned once, so ``{{names}}`` inside a part's own text stay.
+    Parts are not scanned, so ``{{names}}`` in their text stay.
     """
     return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], template)

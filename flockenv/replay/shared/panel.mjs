@@ -130,7 +130,7 @@ export class Panel {
       }
     }
     this.forceKey = element("div", "force-key");
-    this.forceKey.title = "A bar lies on the boat that is pushed. It grows with the force: at most half a boat long, and wider for what is more";
+    this.forceKey.title = "A bar lies on the boat that is pushed. It grows with the force: up to half a boat long, then wider";
     this.forceBar = element("span", "force-bar");
     this.forceWords = element("span");
     this.forceKey.append(this.forceBar, this.forceWords);
