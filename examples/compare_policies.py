@@ -11,6 +11,7 @@ from flockenv.comparison import NO_LEADERS, compare_leaders
 from flockenv.policies import SteeringLaw
 from flockenv.statistics import summarize
 
+# Arguments that are left out are 16 and 4.
 flocks, minutes = map(int, sys.argv[1:] + ["16", "4"][len(sys.argv) - 1 :])
 out = Path("results/compare_policies")
 out.mkdir(parents=True, exist_ok=True)

@@ -12,6 +12,7 @@ import numpy as np
 import flockenv
 from flockenv.statistics import mean_interval
 
+# Arguments that are left out are 8 and 60.
 flocks, seconds = map(int, sys.argv[1:] + ["8", "60"][len(sys.argv) - 1 :])
 
 

@@ -27,7 +27,7 @@ OPTIONS = {
     "physics": "training",
     "episode_s": 40.0,
 }
-ITERATIONS = int([*sys.argv, "40"][1])
+ITERATIONS = int([*sys.argv, "40"][1])  # the first argument, or 40
 FILE = Path("results/train_with_rllib/policy.npz")
 
 torch.set_num_threads(1)

@@ -29,7 +29,7 @@ OPTIONS = {
     "physics": "training",
     "episode_s": 40.0,
 }
-ROLLOUTS = int([*sys.argv, "40"][1])
+ROLLOUTS = int([*sys.argv, "40"][1])  # the first argument, or 40
 EPOCHS, BATCHES = 4, 4
 FILE = Path("results/train_with_torchrl/policy.npz")
 

@@ -212,7 +212,7 @@ def levels() -> list[Number]:
     learned = {"level": "order-wide", "policy": "learned"}
     return [
         *laws,
-        *interval(page, "of IPPO, gain {} of", ENTRIES, best, ends_of("score")),
+        *interval(page, "of IPPO, score {} there", ENTRIES, best, ends_of("score")),
         *interval(page, "learned leaders gain {} on it", file, learned, ends_of("gain"), ".3f"),
         *ranks_of_levels(
             page, "correlation of {}; in", "in `order-wide` it is {}, and", "`order-narrow` {}. In"
@@ -230,10 +230,10 @@ def learned_soonest() -> list[Number]:
     return [
         Number(page, words, ENTRIES, row | {"entry": entry}, column, form)
         for words, entry, column, form in (
-            ("it gains {} of what the damped law gains, and PPO", "TRPO", "score", ".2f"),
-            ("law gains, and PPO {}.", "PPO", "score", ".2f"),
-            ("they gain {} in # s, where", "paired branches", "score", ".2f"),
-            ("they gain # in {} s, where", "paired branches", "cpu_s", ".0f"),
+            ("the damped law 1, TRPO {} and PPO", "TRPO", "score", ".2f"),
+            ("law 1, TRPO # and PPO {}.", "PPO", "score", ".2f"),
+            ("they score {} in # s, where", "paired branches", "score", ".2f"),
+            ("they score # in {} s, where", "paired branches", "cpu_s", ".0f"),
             ("where TRPO takes {} s (", "TRPO", "cpu_s", ".0f"),
         )
     ]
@@ -468,7 +468,7 @@ def solving(boats: int) -> float:
     ("words", "fraction", "found"),
     [
         (
-            "1e-6 cm leaves nine tenths of the error at 0.01 s",
+            "has nine tenths of the error at 1e-6 cm that it has at 1e-4 cm",
             9 / 10,
             ratio(
                 f"{SPEED}slide.csv",
@@ -487,8 +487,8 @@ def solving(boats: int) -> float:
                 {"scene": "jam of 27"},
             ),
         ),
-        ("takes two thirds of the time of 27 boats in a jam", 2 / 3, solving(27)),
-        ("in a jam, and half of that of 1000", 1 / 2, solving(1000)),
+        ("takes two thirds of a step of 27 boats in a jam", 2 / 3, solving(27)),
+        ("in a jam, and half of a step of 1000 boats", 1 / 2, solving(1000)),
     ],
 )
 def test_a_fraction_in_words_is_that_of_the_data(words: str, fraction: float, found: float):
