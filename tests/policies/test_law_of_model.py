@@ -96,7 +96,7 @@ def test_it_leads_as_the_model():
         ({"observation": {"lean_features": True, "neighbors": 1}}, "numbers observed"),
         ({"observation": {**LEAN["observation"], "own": True}}, "numbers observed"),
         ({"action_mode": "rudder"}, "actions of action_mode 'rudder'"),
-        ({"mirror_to_target": False}, "a view that is not mirrored"),
+        ({"mirror_to_target": False}, "mirror_to_target=False"),
         ({"control_hz": 5.0}, "5 control steps per second"),
         ({"net_arch": {"pi": [4], "vf": []}}, "an actor of more than one layer"),
         ({"wrapper": VecNormalize}, "VecNormalize around its environment"),
