@@ -11,10 +11,10 @@ use crate::parameters::{FlockParameters, Kind, Setting, Target, Value, named_cho
 named_choice! {
     /// A term of the reward.
     pub enum RewardTerm ("reward") {
-        /// psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders with one target
+        /// psi_o*cos(phi_o - phi_target) of the normal boats, in [-1, 1]; the same for all leaders with the same target
         SignedOrder = "signed_order",
         /// mean tangential velocity of the normal boats towards the target over the preferred speed; the same for all
-        /// leaders with one target
+        /// leaders with the same target
         TangentialVelocity = "tangential_velocity",
         /// the leader's own tangential velocity towards the target over the preferred speed
         LeaderVelocity = "leader_velocity",
@@ -23,15 +23,15 @@ named_choice! {
         /// minus psi_o*max(cos(phi_o), 0)*max(1 - psi_v/preferred speed, 0), in [-1, 0]; the same for all leaders
         Jam = "jam",
         /// tangential momentum that the leader's contacts gave to normal boats towards the target, sum of
-        /// impulse*(normal*tangent) over the step's length, in cm/s^2; 0 if no contact_... or touched_order has a
-        /// weight
+        /// impulse*(normal*tangent) over the step's length, in cm/s^2; 0 if contact_push, contact_alignment
+        /// and touched_order all have the weight 0
         ContactPush = "contact_push",
         /// angular velocity that the leader's contacts gave to normal boats, each times the sine of the angle that the
-        /// boat has to turn to head along the target, over the step's length, in rad/s^2; 0 as contact_push
+        /// boat has to turn to head along the target, over the step's length, in rad/s^2; 0 in the same case as contact_push
         ContactAlignment = "contact_alignment",
         /// sum over normal boats of cos(d) - cos(d + a), where d is the boat's angle to the target's tangent and a the
-        /// angle that the leader's contacts turned it by: its spin by them decays as eq. (9) damps it, and the angle is
-        /// forgotten within 4 s; 0 as contact_push
+        /// angle by which the leader's contacts turned it: eq. (9) damps the spin that they gave, and the angle decays to
+        /// 1/e in 4 s; 0 in the same case as contact_push
         TouchedOrder = "touched_order",
     }
 }

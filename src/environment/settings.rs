@@ -29,35 +29,35 @@ declare_fields! {
 
     /// "cw", "ccw", "random" (drawn for each episode) or "alternate" (ccw, cw, ccw, cw, a quarter of the episode each); or a list of "cw" and "ccw", one per leader
     target: TargetChoice = TargetChoice::default(), "", Range::Any, "chosen";
-    /// length of an episode in s, rounded to whole control steps; None: 480, and 960 where targets alternate
+    /// length of an episode in s, rounded to whole control steps; None: 960 if the targets alternate, otherwise 480
     episode_s: Option<f64> = None, "s", Range::Dependent("at least one control step, at most 1e6 s"), "chosen";
     /// control steps per second
     control_hz: f64 = 10.0, "1/s", Range::Within(0.1, 1000.0, "0.1 to 1000 control steps per second"), "chosen";
-    /// what an action in [-1, 1] stands for: "rudder"; "heading", the angle outward of the target's tangent over pi, to which the damped law steers; or "lean", that angle over 1.2 rad, to which the pool's tuned law steers, so that 0 is that law
+    /// meaning of an action in [-1, 1]: "rudder", the rudder itself; "heading", the angle of a heading outward of the target's tangent, over pi, to which the damped law steers; or "lean", such an angle over 1.2 rad, to which the pool's tuned law steers: the action 0 is that law itself
     action_mode: ActionMode = ActionMode::Rudder, "", Range::Any, "chosen";
     /// time in s from one decision to the next, a whole number of control steps; the action is held meanwhile; None:
     /// one control step
     decision_period_s: Option<f64> = None, "s", Range::Dependent("a whole number of control steps"), "chosen";
-    /// bw_s of each episode, fixed or drawn uniformly from a range (low, high); None: the parameters' own
+    /// bw_s of each episode, fixed or drawn uniformly from a range (low, high); None: that of the parameters
     bw_s: Option<Drawn> = None, "s", Range::NonNegative, "chosen";
     /// blocks that differ from the default layout, such as `{'order': False, 'neighbors': 4}`
     observation: ObservationLayout = ObservationLayout::default(), "", Range::Any, "chosen";
-    /// reflect observation, state and action where the target is ccw, so that both directions are one task
+    /// reflect observation, state and action if the target is ccw, so that both directions are one task
     mirror_to_target: bool = false, "", Range::Any, "chosen";
-    /// chance that the camera loses a boat in a frame and shows where it was before
+    /// chance that the camera misses a boat in a frame and shows it as in the frame before
     dropout_rate: f64 = 0.0, "", Range::Within(0.0, ALMOST_ONE, "a chance of at least 0, below 1"), "chosen";
-    /// frames that the leaders' picture is late, 0 or 1
+    /// delay in frames of the picture that leaders see, 0 or 1
     delay_frames: usize = 0, "", Range::Within(0.0, 1.0, "0 or 1"), "chosen";
-    /// weights of the reward's terms, or a list of such weights, one per leader; terms that are not named weigh nothing
+    /// weights of the reward's terms, or a list of such weights, one per leader; terms that are not named have the weight 0
     reward: Weights = Weights::default(), "", Range::Any, "chosen";
-    /// time T in s: each control step's reward is weighted by its length over T, so that sums over T are means, of
-    /// order one; None: weight 1
+    /// time T in s: a control step's reward is multiplied by the step's length over T, so that the sum of rewards over a
+    /// time T is a mean, of order one; None: no factor
     reward_horizon_s: Option<f64> = None, "s", Range::Positive, "chosen";
     /// number of levels of the discrete action, 2 to 1001; None: continuous
     rudder_levels: Option<usize> = None, "", Range::Within(2.0, 1001.0, "2 to 1001 choices, or none for continuous rudders"), "chosen";
     /// time constant of the rudder servo in s
     rudder_lag_s: f64 = 0.0, "s", Range::Within(0.0, 1e3, "0 (no lag) to 1000 s"), "chosen";
-    /// fastest change of the rudder in 1/s (-1 to 1 is a change of 2); None: any
+    /// fastest change of the rudder in 1/s (-1 to 1 is a change of 2); None: no limit
     rudder_rate_per_s: Option<f64> = None, "1/s", Range::Positive, "chosen";
     /// what happens at an episode's end in the vector environment: "next_step", "same_step" or "disabled"
     autoreset_mode: Autoreset = Autoreset::NextStep, "", Range::Any, "chosen";

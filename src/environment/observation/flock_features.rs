@@ -22,7 +22,7 @@ const GROUP: [Entry; 24] = [
     Entry::new("outward", "", Scale::Plain, UNIT, "mean cosine of the LAP orientation"),
     Entry::new("outward_squared", "", Scale::Plain, FLAG, "its mean square"),
     Entry::new("ahead", "", Scale::Plain, UNIT, "mean cosine of the angle to the target's tangent: the signed order"),
-    Entry::new("ahead_outward", "", Scale::Plain, UNIT, "mean product of the two"),
+    Entry::new("ahead_outward", "", Scale::Plain, UNIT, "mean product of these two cosines"),
     Entry::new("outward_velocity", "", Scale::Plain, TWICE, "mean velocity away from the center over the preferred speed"),
     Entry::new("outward_velocity_squared", "", Scale::Plain, SQUARE, "its mean square"),
     Entry::new("velocity_ahead", "", Scale::Plain, TWICE, "mean tangential velocity v towards the target over the preferred speed"),
