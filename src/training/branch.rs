@@ -58,8 +58,8 @@ pub(super) struct Outcome {
 
 /// One of the two flocks after its branch.
 struct LedFlock {
-    /// For each offset, derivatives of its leader's action with the weights, averaged over the first `seen_s` of its
-    /// hold.
+    /// For each offset, the derivatives of its leader's action with respect to the weights, averaged over the first
+    /// `seen_s` of its hold.
     action_slopes: Vec<Features>,
     /// Sum of the order over all decisions.
     order_sum: f64,
@@ -76,20 +76,21 @@ fn coin(random: &mut StreamRng) -> bool {
 }
 
 impl Task {
-    /// The pair with this number before its first branch. The first episodes of pairs differ in length, so that not all
-    /// pairs start their next episode in the same round.
+    /// The pair with this number before its first branch. First episodes differ in length, so that not all pairs start
+    /// their second episode in the same round.
     pub(super) fn pair(&self, number: usize) -> Pair {
-        let branches = self.settings.branches();
+        let branches_per_episode = self.settings.branches();
+        // Of pairs 2k and 2k + 1, whose episodes are equally long, the first has a clockwise target.
         Pair {
             snapshot: None,
             is_clockwise: number.is_multiple_of(2),
-            branches_left: 1 + number / 2 % branches,
+            branches_left: 1 + number / 2 % branches_per_episode,
             episode: 0,
         }
     }
 
-    /// Runs a pair's branch in a round; returns the outcome and the pair's next state. Both depend only on the task and
-    /// the arguments.
+    /// Runs the branch of the pair `number` in the round `round`; returns the outcome and the pair's next state. Both
+    /// depend only on the task and the arguments.
     ///
     /// # Errors
     /// [`FlockError::Placement`], [`FlockError::Solver`], [`FlockError::Snapshot`] and [`FlockError::Interrupted`].
@@ -120,7 +121,8 @@ impl Task {
         let (plus, minus) = (plus?, minus?);
         let outcome = self.outcome(&offsets, &plus, &minus);
         let continued = if coin(&mut random) { plus } else { minus };
-        let next_pair = self.next_pair(pair, &continued, coin(&mut random));
+        let is_clockwise = coin(&mut random);
+        let next_pair = self.next_pair(pair, &continued, is_clockwise);
         Ok((outcome, next_pair))
     }
 
@@ -130,9 +132,10 @@ impl Task {
     /// [`FlockError::Snapshot`] for flocks of another task.
     pub(super) fn check(&self, pairs: &[Pair]) -> Result<()> {
         let env = FlockEnv::new(&self.env_settings, self.parameters.clone());
+        let keep_going = || true;
         for (number, pair) in pairs.iter().enumerate() {
             if pair.snapshot.is_some() {
-                env.prepare(&self.env_settings, &self.request(number, pair), &|| true)?;
+                env.prepare(&self.env_settings, &self.request(number, pair), &keep_going)?;
             }
         }
         Ok(())
@@ -199,7 +202,8 @@ impl Task {
         })
     }
 
-    /// Writes the leaders' actions for a decision: the law's action plus the offset, if one is held.
+    /// Writes the leaders' actions for a decision: the law's action, plus the leader's offset in the present hold. After
+    /// `trial_s` there are no offsets.
     fn decide(
         &self,
         law: &LeaningLaw,
@@ -215,7 +219,8 @@ impl Task {
         }
     }
 
-    /// Adds the slopes of the leaders' actions in this decision to the mean slopes of the offsets that are held.
+    /// Adds the slopes of the leaders' actions in this decision to the means of `action_slopes`, which cover the first
+    /// `seen_s` of each hold.
     fn add_slopes(
         &self,
         law: &LeaningLaw,
@@ -223,16 +228,25 @@ impl Task {
         observations: &[f32],
         action_slopes: &mut [Features],
     ) {
-        let Decisions { hold, seen, .. } = self.decisions;
-        if decision % hold >= seen {
+        let Decisions {
+            hold: decisions_per_hold,
+            seen: averaged_decisions,
+            ..
+        } = self.decisions;
+        let decision_in_hold = decision % decisions_per_hold;
+        if decision_in_hold >= averaged_decisions {
             return;
         }
-        let first_offset = decision / hold * self.parameters.n_leaders;
+        let first_offset = decision / decisions_per_hold * self.parameters.n_leaders;
         for (leader, row) in observations.chunks_exact(LEAN_FEATURES).enumerate() {
             if let Some(mean) = action_slopes.get_mut(first_offset + leader) {
                 // The action is the tanh of Σ weight·feature, and 1 − tanh² is the derivative of tanh.
                 let action = f64::from(law.action(row));
-                add_observation(mean, row, (1.0 - action * action) / seen as f64);
+                add_observation(
+                    mean,
+                    row,
+                    (1.0 - action * action) / averaged_decisions as f64,
+                );
             }
         }
     }

@@ -33,6 +33,7 @@ pub(super) fn add_square(matrix: &mut Matrix, factor: f64, x: &Features) {
 /// The matrix is factorized by Cholesky's method; forward and backward substitution follow.
 pub(super) fn solve_ridge(matrix: &Matrix, fraction: f64, b: &Features) -> Features {
     let trace = (0..SIZE).fold(0.0, |sum, k| sum + matrix[k][k]);
+    // The small number keeps λ above 0 if A is 0.
     let lambda = fraction * trace / SIZE as f64 + f64::MIN_POSITIVE.sqrt();
     let mut factor = [[0.0; SIZE]; SIZE];
     for row in 0..SIZE {

@@ -13,11 +13,11 @@ declare_fields! {
     /// The settings of a training.
     pub struct BranchSettings;
 
-    /// "lean": leaders lean about the tangent, and the tuned law, from which the training starts, steers them there; "rudder": nothing but rudders, which are 0 at first
+    /// "lean": an action is an angle to the target's tangent, to which the tuned law steers, and the training starts from that law itself; "rudder": an action is a rudder, and the training starts from rudders of 0
     action_mode: ActionMode = ActionMode::Lean, "", Range::Any, "chosen";
-    /// simulated time of all flocks together in hours, after which the training ends; rounded up to whole rounds
+    /// simulated time of the whole training in hours, summed over all flocks; rounded up to whole rounds
     flock_hours: f64 = 200.0, "h", Range::Within(1e-3, 1e6, "0.001 to 1e6 flock-hours"), "chosen";
-    /// pairs of flocks in a round, between two changes of the weights
+    /// number of pairs of flocks in a round; the weights change after each round
     pairs: usize = 64, "", Range::Within(1.0, 65536.0, "1 to 65536 pairs"), "chosen";
     /// time in s from one decision to the next, a whole number of tenths
     decision_period_s: f64 = 1.0, "s", Range::Positive, "chosen";
@@ -25,21 +25,21 @@ declare_fields! {
     branch_s: f64 = 64.0, "s", Range::Dependent("a whole number of decisions"), "chosen";
     /// time in s for which an offset is held
     hold_s: f64 = 16.0, "s", Range::Dependent("a whole number of decisions, at most branch_s"), "chosen";
-    /// time in s from the start of a hold over which the features are averaged: longer averages are less noisy, and do not see what changes fast
+    /// time in s from the start of a hold over which the features are averaged: a longer average is less noisy, but smooths out fast changes
     seen_s: f64 = 1.0, "s", Range::Dependent("a whole number of decisions, at most hold_s"), "chosen";
     /// time in s from the start of a branch in which leaders try offsets, one hold after another
     trial_s: f64 = 32.0, "s", Range::Dependent("a whole number of holds, at most branch_s"), "chosen";
-    /// time in s from the start of a branch in which the order does not count, as it may answer the wrong way at first
+    /// time in s from the start of a branch in which the order does not count, since an offset may at first change the order in the wrong direction
     blind_s: f64 = 8.0, "s", Range::Dependent("a whole number of decisions, less than branch_s"), "chosen";
     /// length of an episode in s, after which the pair starts at rest again
     episode_s: f64 = 480.0, "s", Range::Dependent("at least branch_s"), "chosen";
-    /// offset of an action, as a part of the largest one
+    /// size of an action's offset, as a fraction of the largest action
     offset: f64 = 0.33, "", Range::Within(1e-6, 1.0, "above 0, at most 1"), "chosen";
-    /// root mean square of the change of an action by the first round, as a part of the largest one; it falls to 0
+    /// root mean square change of the actions by the first round, as a fraction of the largest action; it falls to 0 over the training
     step: f64 = 0.0167, "", Range::Within(1e-9, 1.0, "above 0, at most 1"), "chosen";
     /// factor by which the weight of earlier rounds falls with each round
     memory: f64 = 0.93, "", Range::Within(0.0, 0.9999, "0 to 0.9999"), "chosen";
-    /// ridge of the regression, as a part of the features' mean square
+    /// ridge of the regression, as a fraction of the regressors' mean square
     ridge: f64 = 0.1, "", Range::Within(1e-6, 1e6, "1e-6 to 1e6"), "chosen";
 }
 

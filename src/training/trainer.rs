@@ -60,8 +60,8 @@ impl TrainingState {
 
     /// The weights after a step along the natural gradient.
     ///
-    /// The gradient of the order comes from the regression. `step` times the remaining fraction of the training is the
-    /// root mean square of the change of the actions.
+    /// The gradient of the order comes from the regression. The root mean square change of the actions is `step` times
+    /// the remaining fraction of the training.
     fn stepped_weights(&self, settings: &BranchSettings) -> Features {
         let products = &self.regressor_products;
         let gradient = solve_ridge(&self.regressor_squares, settings.ridge, products);
@@ -69,6 +69,7 @@ impl TrainingState {
         let mean_square_change = dot(&gradient, &change) / self.rounds;
         let finished_rounds = self.orders.len();
         let remaining = 1.0 - finished_rounds as f64 / settings.rounds() as f64;
+        // The small number avoids a division by 0.
         let rms_change = mean_square_change.max(0.0).sqrt() + 1e-12;
         let rate = settings.step * remaining.max(0.0) / rms_change;
         let weights = &self.weights[finished_rounds];
@@ -177,8 +178,8 @@ impl Trainer {
         (branches as u64, unsolved, worst_overlap_cm)
     }
 
-    /// Runs up to `branches` more branches of the current round, at least one; each is of one pair of flocks. Changes
-    /// the weights if the round is over then.
+    /// Runs up to `branches` more branches of the current round, at least one. Each is the branch of one pair of flocks.
+    /// Changes the weights if these branches complete the round.
     ///
     /// # Errors
     /// [`FlockError::Interrupted`] if `keep_going` returned false, and errors of the flocks; nothing has changed then.
@@ -246,7 +247,7 @@ impl Trainer {
         self.law_from_weights(&mean)
     }
 
-    /// The law with these weights, in units of the largest action.
+    /// The law with these weights, which are in units of the largest action.
     fn law_from_weights(&self, weights: &Features) -> Result<LeaningLaw> {
         let Task {
             settings,
@@ -254,15 +255,17 @@ impl Trainer {
             ..
         } = &self.task;
         let pool = parameters.pool.name();
-        let scaled = |largest_action| weights.map(|weight| largest_action * weight);
-        if settings.action_mode == ActionMode::Rudder {
-            let period = Some(settings.decision_period_s);
-            return LeaningLaw::new(pool, None, period, &scaled(1.0));
-        }
-        // The law decides at every control step, since it then leads better than with leans that are held as in the
-        // training.
-        let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
-        LeaningLaw::new(pool, Some(gains), None, &scaled(LARGEST_LEAN))
+        let (gains, decision_period_s, largest_action) = match settings.action_mode {
+            ActionMode::Rudder => (None, Some(settings.decision_period_s), 1.0),
+            ActionMode::Lean | ActionMode::Heading => {
+                let gains = DampedLaw::tuned("action_mode", "\"lean\"", pool)?;
+                // With leans, the law decides at every control step: it leads better than if it holds leans as in the
+                // training.
+                (Some(gains), None, LARGEST_LEAN)
+            }
+        };
+        let numbers = weights.map(|weight| largest_action * weight);
+        LeaningLaw::new(pool, gains, decision_period_s, &numbers)
     }
 
     /// The training after its last whole round as bytes. The branches of an unfinished round are not stored, so that a
@@ -296,7 +299,7 @@ impl Trainer {
         Ok(trainer)
     }
 
-    /// This training with another end: it runs until `flock_hours`.
+    /// This training, which now ends after `flock_hours`.
     ///
     /// # Errors
     /// [`FlockError::Parameter`].
