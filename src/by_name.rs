@@ -12,8 +12,8 @@ pub(crate) trait ByName: Default {
     /// The struct's name in error messages.
     const NAME: &'static str;
 
-    /// Sets the field `name` to the next of the `values`; returns whether there is a field of that name.
-    fn read<'de, A: MapAccess<'de>>(
+    /// Sets the field `name` to the next of the `values`; returns false if the struct has no field of that name.
+    fn read_field<'de, A: MapAccess<'de>>(
         &mut self,
         name: &str,
         values: &mut A,
@@ -33,8 +33,8 @@ impl<'de, T: ByName> Visitor<'de> for FieldsVisitor<T> {
     fn visit_map<A: MapAccess<'de>>(self, mut values: A) -> Result<T, A::Error> {
         let mut state = T::default();
         while let Some(name) = values.next_key::<String>()? {
-            if !state.read(&name, &mut values)? {
-                return Err(unknown(&name, T::NAME));
+            if !state.read_field(&name, &mut values)? {
+                return Err(unknown_name(&name, T::NAME));
             }
         }
         Ok(state)
@@ -81,14 +81,14 @@ pub(crate) fn read<'de, D: Deserializer<'de>, T: DeserializeOwned>(
     let entries: Vec<(String, T)> = deserializer.deserialize_map(ValuesVisitor(PhantomData))?;
     for (name, value) in entries {
         if !set(&name, value) {
-            return Err(unknown(&name, table));
+            return Err(unknown_name(&name, table));
         }
     }
     Ok(())
 }
 
-/// The error for a stored name that this build does not know.
-fn unknown<E: serde::de::Error>(name: &str, table: &str) -> E {
+/// The error for a stored name that this build does not know; `table` says what kind of name.
+fn unknown_name<E: serde::de::Error>(name: &str, table: &str) -> E {
     refused(format!(
         "this version of flockenv does not know {name:?} among {table}"
     ))

@@ -36,9 +36,9 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync 
     let mut results: Vec<_> = items.iter().map(|_| None).collect();
     let blocks = split(items, &mut results, threads);
     let work_from = |own_block: usize| {
-        for step in 0..threads {
-            let block = &blocks[(own_block + step) % threads];
-            let is_own = step == 0;
+        for distance in 0..threads {
+            let block = &blocks[(own_block + distance) % threads];
+            let is_own = distance == 0;
             while let Some((item, result)) = take(block, is_own) {
                 *result = Some(work(item));
             }
@@ -77,8 +77,8 @@ fn take<'a, T, R>(block: &Block<'a, T, R>, is_own: bool) -> Option<(T, &'a mut O
 /// How often a thread yields while it waits for another's last item, before it sleeps.
 const MOST_YIELDS: u32 = 1000;
 
-/// Calls `work(0)` on this thread, and `work(1)` to `work(threads - 1)` on other threads. `helpers` counts the other
-/// threads that are now at work.
+/// Calls `work(0)` on this thread, and `work(1)` to `work(threads - 1)` on other threads. `helpers` holds the number of
+/// other threads that are now at work.
 fn spawn<'scope>(
     scope: &Scope<'scope>,
     threads: usize,
@@ -103,7 +103,7 @@ fn spawn<'scope>(
 
 /// The thread pool of this forked process, which is made at the first call; `None` if no thread can be started.
 ///
-/// A fork copies no threads, so with its parent's pool the child would wait forever. It never drops that pool, since
+/// A fork copies no threads, so the child would wait forever for its parent's pool. It never drops that pool, since
 /// dropping would wait, too.
 fn pool_of_fork() -> Option<&'static ThreadPool> {
     let mut forked = FORKED.lock().unwrap_or_else(PoisonError::into_inner);

@@ -49,6 +49,7 @@ pub(crate) fn unseal<T: DeserializeOwned>(magic: &Magic, bytes: &[u8]) -> Result
     };
     let reason = "the snapshot is damaged or cut off (checksum differs)";
     FlockError::unless_fitting(u64::from_le_bytes(*checksum) == crc_32(body), reason)?;
+    // Clears the reason of an earlier refusal.
     REFUSAL.take();
     postcard::from_bytes(body).map_err(|error| {
         let unreadable = || format!("the snapshot's content is not readable: {error}");

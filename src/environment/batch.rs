@@ -122,7 +122,8 @@ impl EnvBatch {
     /// # Panics
     /// If the output does not have one row per leader and one flag per flock.
     pub fn step(&mut self, actions: Option<&[f64]>, out: BatchRows) -> Result<()> {
-        self.step_while(&|| true, actions, out)
+        let keep_going = || true;
+        self.step_while(&keep_going, actions, out)
     }
 
     /// As [`Self::step`], but calls `keep_going` now and then to ask whether to continue.
@@ -186,7 +187,8 @@ impl EnvBatch {
     /// # Errors
     /// The first error of a request; [`FlockError::Shape`] if the numbers of requests and flocks differ.
     pub fn reset(&mut self, requests: &[Option<ResetRequest>]) -> Result<()> {
-        self.reset_while(&|| true, requests)
+        let keep_going = || true;
+        self.reset_while(&keep_going, requests)
     }
 
     /// As [`Self::reset`], but calls `keep_going` now and then to ask whether to continue, since large flocks take
@@ -339,6 +341,7 @@ fn check_memory(settings: &EnvSettings, flocks: &[FlockParameters]) -> Result<()
         BYTES_PER_FLOCK + BYTES_PER_BOAT * boats + bytes_per_leader * leaders
     };
     let bytes: u64 = flocks.iter().map(bytes_of_flock).sum();
+    // Reserving the memory, without writing to it, tells whether the system would give it.
     let mut memory: Vec<u8> = Vec::new();
     if bytes <= MOST_BYTES && memory.try_reserve_exact(bytes as usize).is_ok() {
         return Ok(());
@@ -366,9 +369,9 @@ fn split<'a>(
     assert_eq!(observations.len(), observation_count, "one row per leader");
     assert_eq!(rewards.len(), rows, "one reward per leader");
     assert_eq!(out.truncated.len(), envs.len(), "one flag per flock");
-    let mut number = 0_usize;
+    let mut split_flocks = 0_usize;
     let part = |(env, truncated): (&'a mut FlockEnv, _)| {
-        number += 1;
+        split_flocks += 1;
         let leaders = env.parameters().n_leaders;
         let observations = observations.split_off_mut(..leaders * observation_size);
         FlockStep {
@@ -378,7 +381,7 @@ fn split<'a>(
             observations: observations.unwrap_or_default(),
             rewards: rewards.split_off_mut(..leaders).unwrap_or_default(),
             truncated,
-            checks_interrupt: number.is_multiple_of(FLOCKS_BETWEEN_CHECKS),
+            checks_interrupt: split_flocks.is_multiple_of(FLOCKS_BETWEEN_CHECKS),
             env,
         }
     };

@@ -74,6 +74,11 @@ impl EpisodeState {
             && camera.is_none_or(|camera| camera.fits(boats))
     }
 
+    /// Computes the order parameters of the normal boats as they are now.
+    fn update_order(&mut self) {
+        self.order = self.flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
+    }
+
     /// The flock as it is, not as the camera shows it.
     fn true_view(&self) -> FlockView<'_> {
         FlockView::new(&self.flock, &self.rudders, self.order.as_ref())
@@ -107,7 +112,7 @@ impl Episode {
     }
 
     fn from_state(settings: &EnvSettings, mut state: EpisodeState) -> Result<Self> {
-        state.order = state.flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
+        state.update_order();
         let parameters = state.flock.parameters();
         let law = settings.action_mode.steering_law(parameters)?;
         let law = law.map(|law| Ok((law, CourseView::new(parameters)?)));
@@ -178,7 +183,7 @@ impl Episode {
         state.statistics.summary(&state.schedule, &state.flock)
     }
 
-    /// The leaders' targets in the next control step.
+    /// The leaders' targets in the next control step; after the last step, those of the last step.
     pub fn targets(&self) -> &Targets {
         &self.state.flock.parameters().target
     }
@@ -236,21 +241,25 @@ impl Episode {
         actions: Option<&[f64]>,
         rewards: &mut [f64],
     ) -> Result<()> {
-        // A rudder chosen in the mirrored view keeps its value if the target is reversed.
+        // If the target is reversed before the next decision, a rudder chosen in the mirrored view keeps its sign.
         let mirror_to = settings.mirror_to_target.then(|| self.targets().clone());
         self.state.terms.fill([0.0; TERMS]);
         rewards.fill(0.0);
+        let follows_law = actions.is_none();
         let mut steps = 0;
-        while steps == 0 || (steps < settings.period_steps() && !self.state.ended) {
+        loop {
             if let Some(actions) = actions {
                 self.command(settings, actions, mirror_to.as_ref());
                 self.move_rudders(servo);
             }
-            let elapsed = self.advance(keep_going, settings, actions.is_none())?;
+            let elapsed = self.advance(keep_going, settings, follows_law)?;
             self.add_rewards(settings, rewards);
             self.record_order(elapsed);
             self.advance_schedule()?;
             steps += 1;
+            if steps >= settings.period_steps() || self.state.ended {
+                break;
+            }
         }
         if steps > 1 {
             let terms = self.state.terms.iter_mut().flatten();
@@ -261,8 +270,8 @@ impl Episode {
 
     /// Computes the rudder commands of a control step from the leaders' actions.
     ///
-    /// `mirror_to` holds the targets at the decision if observations are mirrored to them: leaders with a
-    /// counter-clockwise target then chose the rudder of the mirrored view, which has the opposite sign.
+    /// `mirror_to` holds the targets at the decision if observations are mirrored, otherwise `None`. Leaders with a
+    /// counter-clockwise target chose the rudder of the mirrored view, which has the opposite sign.
     fn command(&mut self, settings: &EnvSettings, actions: &[f64], mirror_to: Option<&Targets>) {
         let mut commands = std::mem::take(&mut self.commands);
         let view = self.state.leaders_view();
@@ -327,7 +336,7 @@ impl Episode {
         if let Some(credit) = &mut state.credit {
             credit.advance_turns(&state.flock.integrator, 1.0 / settings.control_hz);
         }
-        state.order = state.flock.order_parameters(Flock::WITHOUT_LEADERS).ok();
+        state.update_order();
         Ok(elapsed)
     }
 

@@ -93,11 +93,12 @@ impl FlockEnv {
     /// # Errors
     /// [`FlockError::Parameter`] for options that this flock cannot have.
     pub(crate) fn check_upcoming(&self, settings: &EnvSettings, upcoming: &Upcoming) -> Result<()> {
-        let bw_s = upcoming
+        // The settings check both ends of a range; the parameters need only one number.
+        let shortest_bw_s = upcoming
             .bw_s
             .map_or(self.parameters.bw_s, |bw_s| bw_s.at(0.0));
         let parameters = FlockParameters {
-            bw_s,
+            bw_s: shortest_bw_s,
             ..self.parameters.clone()
         };
         parameters.check()?;
@@ -291,8 +292,10 @@ impl FlockEnv {
             .map(|episode| Episode::restored(settings, &self.parameters, episode))
             .transpose()?;
         let observation_size = self.parameters.n_leaders * settings.observation.size();
-        let has_size = [0, observation_size].contains(&stored.final_observation.len());
-        let fits = has_size && (episode.is_none() || stored.seeds.is_some());
+        // Before the first end of an episode there is no final observation.
+        let is_size_right = [0, observation_size].contains(&stored.final_observation.len());
+        let is_seed_missing = episode.is_some() && stored.seeds.is_none();
+        let fits = is_size_right && !is_seed_missing;
         FlockError::unless_fitting(fits, "the state belongs to another environment")?;
         let mut restored = Self::new(settings, self.parameters.clone());
         restored.check_upcoming(settings, &stored.upcoming)?;

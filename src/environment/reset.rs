@@ -59,7 +59,7 @@ impl Upcoming {
 }
 
 impl ResetRequest {
-    /// This request, in which `upcoming` sets what the request leaves open.
+    /// This request, with a missing target or backward duration taken from `upcoming`.
     #[must_use]
     pub(super) fn completed_by(&self, upcoming: &Upcoming) -> Self {
         let mut request = self.clone();

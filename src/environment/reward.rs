@@ -202,7 +202,7 @@ pub enum Weights {
 }
 
 impl Weights {
-    /// All different weights.
+    /// The weights of each leader, or one entry for all leaders.
     fn all(&self) -> &[RewardWeights] {
         match self {
             Self::One(weights) => std::slice::from_ref(weights),
@@ -278,7 +278,8 @@ impl Setting for Weights {
     }
 }
 
-/// The reward terms of one control step. Those of the flock are computed once, those of a leader on request.
+/// The reward terms of one control step. Terms about the normal boats are computed once, those about a leader on
+/// request.
 #[derive(Debug, Clone, Copy)]
 pub struct Reward {
     /// Target of leader 0.
@@ -321,7 +322,7 @@ impl Reward {
     }
 }
 
-/// The terms about the normal boats, for a target; 0 if there are none, and for all other terms.
+/// The terms about the normal boats, for a target; 0 if the flock has no normal boats. Terms about a leader are 0, too.
 fn flock_terms(view: &FlockView, target: Target, inverse_speed: f64) -> RewardTerms {
     let mut terms = RewardTerms::default();
     if let Some(order) = view.order {

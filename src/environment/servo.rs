@@ -10,8 +10,8 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// A servo with the time constant `lag_s` and the fastest change `rate_per_s` (`None`: any), for control steps of
-    /// `step_s`.
+    /// A servo with the time constant `lag_s` and the fastest change `rate_per_s` (`None`: no limit), for control steps
+    /// of `step_s`.
     pub fn new(lag_s: f64, rate_per_s: Option<f64>, step_s: f64) -> Self {
         Self {
             fraction: if lag_s > 0.0 {
@@ -25,7 +25,9 @@ impl Servo {
 
     /// The rudder at which a step towards `command` ends, if it starts at `rudder`.
     pub fn moved(&self, rudder: f64, command: f64) -> f64 {
-        if self.fraction == 1.0 && self.largest_change >= 2.0 {
+        // From -1 to 1 is a change of 2. The early return spares an instant servo the rounding of the sum below.
+        let is_instant = self.fraction == 1.0 && self.largest_change >= 2.0;
+        if is_instant {
             return command;
         }
         let change = self.fraction * (command - rudder);

@@ -56,9 +56,9 @@ pub(super) struct EpisodeStatistics {
     reward: f64,
     /// Control steps in the analysis window.
     window_steps: u32,
-    /// Sums of the summarized quantities over these steps.
+    /// Sums of the summarized quantities over the steps in the window.
     averages: Averages,
-    /// How many of these steps have a signed order above [`TOWARDS_TARGET`].
+    /// Number of steps in the window with a signed order above [`TOWARDS_TARGET`].
     steps_towards_target: u32,
     /// For each angle of [`ORDERED_WITHIN`], when the flock was ordered.
     ordering: [OrderingWatch; 2],
@@ -74,7 +74,7 @@ impl EpisodeStatistics {
         self.reward += reward;
     }
 
-    /// Adds a leader's terms of one step times `share`, one over the number of leaders.
+    /// Adds a leader's terms of one step. `share` is 1 over the number of leaders, so that leaders are averaged.
     pub(super) fn add_terms(&mut self, share: f64, terms: &RewardTerms) {
         for (sum, term) in self.terms.iter_mut().zip(terms) {
             *sum += share * term;
@@ -91,7 +91,8 @@ impl EpisodeStatistics {
         self.steps_towards_target += u32::from(boats.order.signed_order(target) > TOWARDS_TARGET);
     }
 
-    /// Records the order at a time since the episode started, for the ordering times.
+    /// Records the order for the ordering times, `time_s` after the episode's start. `is_second_half`: the step belongs
+    /// to the second half of the episode, whose mean order decides whether the flock ordered.
     pub(super) fn record_order(
         &mut self,
         order: &OrderParameters,
@@ -141,9 +142,9 @@ impl EpisodeSummary {
         let means = self.averages.named().chain([share]);
         let means = means.filter(|(_, mean)| !mean.is_nan());
         let [narrow, wide] = self.ordering_times_s;
-        let times = [("ordering_time_s", narrow), ("ordering_time_wide_s", wide)];
+        let ordering_times = [("ordering_time_s", narrow), ("ordering_time_wide_s", wide)];
         let numbers = means
-            .chain(times)
+            .chain(ordering_times)
             .map(|(name, number)| (name, number.into()));
         fields.into_iter().chain([terms]).chain(numbers).collect()
     }
@@ -163,10 +164,10 @@ pub struct EpisodeSummary {
     /// Each reward term, mean over steps and leaders; NaN before the first step.
     #[serde(with = "stored_terms")]
     pub terms: RewardTerms,
-    /// Means over the control steps in the analysis window after the first tenth of the episode; NaN
-    /// if there are none.
+    /// Means over the control steps in the analysis window after the first tenth of the episode; NaN if there are no
+    /// such steps.
     pub averages: Averages,
-    /// Fraction of the same steps in which the signed order exceeds [`TOWARDS_TARGET`].
+    /// Fraction of the steps of `averages` in which the signed order exceeds [`TOWARDS_TARGET`].
     pub share_towards_target: f64,
     /// Ordering times (eq. 7) in s since the episode started, for each angle of [`ORDERED_WITHIN`]; infinite if the flock
     /// did not order.

@@ -160,7 +160,7 @@ macro_rules! declare_fields {
         impl $crate::by_name::ByName for $struct {
             const NAME: &'static str = stringify!($struct);
 
-            fn read<'de, A: serde::de::MapAccess<'de>>(
+            fn read_field<'de, A: serde::de::MapAccess<'de>>(
                 &mut self,
                 name: &str,
                 values: &mut A,

@@ -51,7 +51,7 @@ pub struct BrownianPaths {
     cell_length: u64,
     /// Cell j covers [j·length − shift, (j + 1)·length − shift).
     shift: u64,
-    /// Where the last increment ended: most increments start there.
+    /// The paths where the last increment ended, since most increments start there.
     last: Reading,
     /// Scratch memory: the paths at the start and the end of a bridge, one value per boat.
     path_at_start: Vec<f64>,
@@ -63,7 +63,7 @@ pub struct BrownianPaths {
 struct Reading {
     /// The cell, and half ticks since its start; `None` before the first reading.
     point: Option<(u64, u64)>,
-    /// Increments since the cell's start, one per boat.
+    /// Increments from the cell's start to the point, one per boat.
     path: Vec<f64>,
     /// Increments over the whole cell, one per boat.
     whole: Vec<f64>,
@@ -151,7 +151,7 @@ impl BrownianPaths {
         whole.for_each(|(whole, draw)| *whole = scale * draw);
     }
 
-    /// Sets `last` to the paths at `offset` half ticks into a cell, strictly inside of it.
+    /// Sets `last` to the paths at `offset` half ticks after a cell's start; the offset lies strictly inside the cell.
     fn read(&mut self, cell: u64, offset: u64) {
         let previous = self.last.point.replace((cell, offset));
         if previous == Some((cell, offset)) {
@@ -166,7 +166,8 @@ impl BrownianPaths {
         at_end.copy_from_slice(whole);
         let (mut start, mut end, mut node) = (0, self.cell_length, 1_u64);
         loop {
-            // Keys below 2^HALVINGS belong to nodes of the bisection, larger keys to times within leaves.
+            // The bisection numbers its nodes as a binary heap: 1, then 2 and 3, …, below 2^HALVINGS. Larger keys belong
+            // to times within leaves.
             let (point, key) = if node < 1 << HALVINGS {
                 (start + (end - start) / 2, node)
             } else {

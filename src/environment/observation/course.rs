@@ -94,7 +94,8 @@ impl CourseView {
         physical[..OWN.len()].copy_from_slice(&own_values(view, leader, &frame));
         physical[OWN.len()] = view.targets.of(leader).sign();
         let mut observed = [0.0; OWN.len() + TARGET.len()];
-        self.scaling.write(&physical, false, &mut observed);
+        let is_mirrored = false;
+        self.scaling.write(&physical, is_mirrored, &mut observed);
         self.reader.course(&observed, outward)
     }
 }

@@ -20,9 +20,9 @@ pub enum Scale {
 impl Scale {
     /// The scale in words.
     ///
-    /// `Radial` is -1 and +1 for the centers of boats that touch the inner or outer wall. Without an inner wall -1 is the
-    /// pool's center, and in open water +1 is 40 boat radii farther out than -1. The preferred speed is the faster of
-    /// forward and reverse.
+    /// `Radial` is -1 for the center of a boat that touches the inner wall, and +1 at the outer wall. Without an inner
+    /// wall, -1 is the pool's center; in open water, +1 is 40 boat radii farther out than -1. The preferred speed is the
+    /// faster of forward and reverse.
     pub fn description(self) -> &'static str {
         match self {
             Self::Plain => "1",
@@ -72,6 +72,7 @@ fn radial(parameters: &FlockParameters) -> (f64, f64) {
     } else {
         inner + 40.0 * radius
     };
+    // In a pool no wider than a boat, the lower limit avoids a division by 0.
     let half_width = (0.5 * (outer - inner)).max(f64::MIN_POSITIVE.sqrt());
     (1.0 / half_width, -0.5 * (outer + inner) / half_width)
 }

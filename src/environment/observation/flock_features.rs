@@ -126,7 +126,9 @@ impl FlockFeatures {
         features.extend(self.near_leaders(leaders, normal_boats));
         features.extend(phase_values(view));
         features.push(elapsed);
-        self.scaling.write(&features, false, out);
+        // The features are in the frame of the target already.
+        let is_mirrored = false;
+        self.scaling.write(&features, is_mirrored, out);
     }
 
     /// A boat in the frame of the target.
@@ -174,11 +176,12 @@ impl FlockFeatures {
 /// The values of [`GROUP`]: means over a group of boats; zeros for an empty group.
 fn group_means(group: &[ScaledBoat]) -> [f64; GROUP.len()] {
     let mut sums = [0.0; GROUP.len()];
-    // Sums of (cos mθ, sin mθ) for m = 1, 2 and 3, where θ is a boat's polar angle.
+    // Sums over boats of (cos mθ, sin mθ) for m = 1, 2 and 3, where θ is a boat's polar angle.
     let mut harmonics = [Vec2::zeros(); 3];
     for boat in group {
+        let half = usize::from(boat.radial > 0.0);
         let mut is_in_bin = [0.0; 6];
-        is_in_bin[usize::from(boat.radial > 0.0) + 2 * heading_bin(boat.ahead)] = 1.0;
+        is_in_bin[2 * heading_bin(boat.ahead) + half] = 1.0;
         let values = moments(boat).into_iter().chain(is_in_bin);
         for (sum, value) in sums.iter_mut().zip(values) {
             *sum += value;

@@ -109,7 +109,7 @@ impl ObservationLayout {
         self.repeats[block as usize]
     }
 
-    /// Sets the occurrences of a block: 0 or 1, or the number of neighbors or obstacles.
+    /// Sets the occurrences of a block: the number of neighbors or obstacles; at most 1 for any other block.
     pub fn repeat(&mut self, block: Block, repeats: usize) {
         self.repeats[block as usize] = if block.is_counted() {
             repeats
@@ -125,8 +125,8 @@ impl ObservationLayout {
         self.has(block).then(|| sizes.sum())
     }
 
-    /// Index of an entry of a block in the observation; `None` if the block is off. In a block that occurs more than
-    /// once, it is the first such entry, as that of the nearest neighbor.
+    /// Index of an entry of a block in the observation; `None` if the block is off. If the block occurs more than once,
+    /// the entry is that of its first occurrence, such as the nearest neighbor.
     pub fn index(&self, block: Block, name: &str) -> Option<usize> {
         let mut entries = block.entries().iter();
         let index = entries.position(|entry| entry.name == name)?;

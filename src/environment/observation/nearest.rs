@@ -73,6 +73,7 @@ impl Nearest {
             (x[lane], y[lane]) = (center.x, center.y);
         }
         let (x, y) = (f64x4::new(x), f64x4::new(y));
+        // `find` may write one boat after the last candidate.
         self.candidates.resize(hulls.len() + 1, 0);
         self.limits.resize(hulls.len() + AT_ONCE, f64::MAX);
         self.squares.clear();
@@ -80,12 +81,14 @@ impl Nearest {
             let (dx, dy) = (hull.center.x - x, hull.center.y - y);
             (dx * dx + dy * dy).to_array()
         }));
+        // A leader is not its own neighbor.
         for (lane, squares) in self.squares[first..].iter_mut().take(AT_ONCE).enumerate() {
             squares[lane] = f64::INFINITY;
         }
     }
 
-    /// Sets the limits of the present leaders so that each finds `wanted` boats.
+    /// Sets the limits of the [`AT_ONCE`] leaders from `first` on so that each finds `wanted` boats: exactly, up to equal
+    /// distances, if `wanted` is at most [`FEW`]; otherwise each finds all boats.
     fn set_limits(&mut self, first: usize, wanted: usize) {
         let limits = if wanted <= FEW {
             self.nth_smallest(wanted)
@@ -96,7 +99,8 @@ impl Nearest {
         self.limits[first..first + AT_ONCE].copy_from_slice(&limits);
     }
 
-    /// The `wanted`-th smallest square of each present leader; `wanted` is at most [`FEW`].
+    /// For each of the present [`AT_ONCE`] leaders, the `wanted`-th smallest squared distance; `wanted` is at most
+    /// [`FEW`].
     fn nth_smallest(&self, wanted: usize) -> f64x4 {
         let mut smallest = [f64x4::splat(f64::INFINITY); FEW];
         let smallest = &mut smallest[..wanted];
@@ -117,6 +121,7 @@ fn sort(boats: &mut [u32], square: impl Fn(u32) -> f64) {
         boats.sort_by(|&a, &b| square(a).total_cmp(&square(b)));
         return;
     }
+    // A boat's rank, its index in the sorted order, starts as its present index and changes with each comparison.
     let (mut squares, mut ranks, mut sorted) = ([0.0; FEW], [0; FEW], [0; FEW]);
     for (k, &boat) in boats.iter().enumerate() {
         (squares[k], ranks[k]) = (square(boat), k);

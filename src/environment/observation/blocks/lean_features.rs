@@ -69,6 +69,7 @@ fn means_and_deviations(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
         let mut cells = row.split(',');
         let name = cells.next();
         let index = ENTRIES.iter().position(|entry| Some(entry.name) == name);
+        // After the name come a mean and a deviation for each pool.
         let mut numbers = cells.skip(2 * pool).map(str::parse);
         if let (Some(index), Some(Ok(mean)), Some(Ok(deviation))) =
             (index, numbers.next(), numbers.next())
@@ -81,7 +82,7 @@ fn means_and_deviations(pool: usize) -> [(f64, f64); LEAN_FEATURES] {
 
 /// Number of neighbors that the features use.
 const USED_NEIGHBORS: usize = 6;
-/// Index of the first neighbor among the observed numbers: the blocks own, phase, neighbors and order.
+/// Index of the first neighbor among the observed numbers, which are the blocks own, phase, neighbors and order.
 const NEIGHBORS_START: usize = OWN.len() + PHASE.len();
 /// Index of the first order parameter.
 const ORDER_START: usize = NEIGHBORS_START + USED_NEIGHBORS * NEIGHBOR.len();
@@ -182,13 +183,13 @@ impl WriteBlock for LeanFeatures {
 /// the neighbors that exist. Normal boats have the weight exp(-d²/2), leaders exp(-d²/8), where d is their distance in
 /// units of 6 boat radii.
 fn features(observed: &[f64; OBSERVED]) -> [f64; LEAN_FEATURES] {
-    let [radial, cos, sin, outward, clockwise, forward, spin] =
-        [0, 1, 2, 3, 4, 5, 6].map(|index| observed[index]);
+    // The first entries of the block own, then three entries of the block phase.
+    let &[radial, cos, sin, outward, clockwise, forward, spin, ..] = observed;
     let [fw, bw, bw_duration] = [0, 2, 5].map(|index| observed[OWN.len() + index]);
     let mut normal_sums = [0.0; 11];
     let mut leader_sums = [0.0; 3];
     for neighbor in observed[NEIGHBORS_START..ORDER_START].chunks_exact(NEIGHBOR.len()) {
-        let &[present, x, y, cos, turned, vx, vy, is_leader] = neighbor else {
+        let &[present, x, y, cos_relative, turned, vx, vy, is_leader] = neighbor else {
             continue;
         };
         let square = x * x + y * y;
@@ -197,7 +198,7 @@ fn features(observed: &[f64; OBSERVED]) -> [f64; LEAN_FEATURES] {
             add(&mut leader_sums, weight, [1.0, x, y]);
         } else {
             let weight = present * libm::exp(-square / 2.0);
-            let opposed = (1.0 - cos) / 2.0;
+            let opposed = (1.0 - cos_relative) / 2.0;
             let (ox, oy, tx, ty) = (opposed * x, opposed * y, turned * x, turned * y);
             let terms = [1.0, x, y, opposed, turned, vx, vy, ox, oy, tx, ty];
             add(&mut normal_sums, weight, terms);

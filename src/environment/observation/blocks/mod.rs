@@ -64,7 +64,7 @@ trait WriteBlock: FromParameters {
 }
 
 /// Declares blocks in the order of an observation: name, entries, writer, default number of occurrences, and `counted` if
-/// the block may occur more than once, as that of a neighbor may.
+/// the block may occur more than once, such as once per neighbor, otherwise `once`.
 macro_rules! declare_blocks {
     ($($(#[doc = $doc:literal])+ $block:ident = $name:literal:
         $module:ident::{$entries:ident, $writer:ident}, $default:literal $counted:ident;)+) => {

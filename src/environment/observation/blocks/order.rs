@@ -13,7 +13,7 @@ pub(super) const ORDER: [Entry; 4] = [
     Entry::new("mean_clockwise_velocity", "cm/s", Scale::Speed, TWICE, "mean velocity, clockwise part: psi_v*sin(phi_v)").odd(),
 ];
 
-/// Writes [`ORDER`], which is the same for every leader.
+/// Writes [`ORDER`], which is the same for every leader: computes it for leader 0 and repeats it for the others.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Order([f64; ORDER.len()]);
 

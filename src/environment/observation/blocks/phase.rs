@@ -28,9 +28,8 @@ impl WriteBlock for Phase {
 
 /// The physical values of [`PHASE`].
 pub(crate) fn phase_values(view: &FlockView) -> [f64; PHASE.len()] {
-    let mut values = [0.0; PHASE.len()];
-    values[view.phase.phase.index()] = 1.0;
-    values[4] = seconds(view.phase.left);
-    values[5] = view.bw_s;
-    values
+    let mut is_phase = [0.0; 4];
+    is_phase[view.phase.phase.index()] = 1.0;
+    let [fw, nop1, bw, nop2] = is_phase;
+    [fw, nop1, bw, nop2, seconds(view.phase.left), view.bw_s]
 }
