@@ -51,7 +51,7 @@ def test_a_field_that_is_given_twice_is_refused(cli, tmp_path):
         done = cli("run", *named, "--set", f"{name}={named[1]}", *out)
         assert f"{named[0]} and --set {name} are both given" in done.stderr
     pytest.importorskip("stable_baselines3")
-    done = cli("train", "--n-boats", 9, "--set", "n_boats=8")
+    done = cli("train", "--n-boats", 9, "--set", "n_boats=9")
     assert "--n-boats and --set n_boats" in done.stderr
 
 
