@@ -10,8 +10,8 @@ use crate::parameters::{FlockParameters, Pool, Targets};
 pub enum Change {
     /// The direction that all leaders follow from now on, or one direction per leader.
     Target(Targets),
-    /// The parameters from now on. Boats keep their headings and velocities, and water with inertia keeps its speed. If
-    /// the pool changes, each boat keeps its angle about the center and its relative distance between the walls. It is
+    /// The parameters from now on. Boats keep their headings and velocities, water with inertia keeps its speed, and
+    /// statistics go on. If the pool changes, each boat keeps its angle about the center and its relative distance between the walls. It is
     /// an error if a boat then overlaps an obstacle.
     Parameters(Box<FlockParameters>),
 }
@@ -33,6 +33,7 @@ impl Flock {
                 let allow_overlap = true;
                 changed.set_state(&poses, self.velocities(), self.time_s(), allow_overlap)?;
                 changed.integrator.keep_water(self.integrator.water_cm_s);
+                changed.integrator.statistics = self.integrator.statistics;
                 if !self.parameters().has_same_water(parameters) {
                     changed.refuse_overlapped_obstacles()?;
                 }

@@ -9,6 +9,7 @@ from flockenv import FlockParameters, Recording, StepStatistics
 from flockenv.comparison import compare_leaders
 from flockenv.comparison.report import overlap_notes
 from flockenv.flock import STEP_STATISTICS
+from flockenv.policies import DampedLaw
 from flockenv.runs.sweep import summary
 
 PARAMETERS = FlockParameters(n_boats=27, n_leaders=2, pool="narrow", bw_s=2.0, dt_s=0.1)
@@ -30,6 +31,16 @@ def test_a_recording_has_what_its_flock_counted(run):
     assert 0.0 < run.statistics.worst_overlap_cm <= PARAMETERS.tolerance_cm
     assert run.statistics.unsolved == 0
     assert run.statistics.halved_substeps > 0
+
+
+@pytest.mark.parametrize("law", [{}, {"policy": DampedLaw(3.0, 4.0, 35.0)}])
+def test_a_change_of_parameters_keeps_what_was_counted(law):
+    """The substeps after the change are too short to be halved or to overlap as much."""
+    before = flockenv.simulate(PARAMETERS, 4, 20.0, **law).statistics
+    change = (20.0, {"bw_s": 0.5, "dt_s": 1e-3})
+    after = flockenv.simulate(PARAMETERS, 4, 20.5, schedule=[change], **law).statistics
+    assert before.halved_substeps > 0
+    assert after == before
 
 
 def test_its_file_keeps_it_and_older_files_do_not_say(run, tmp_path):
