@@ -105,8 +105,8 @@ def direction(vectors: NDArray[np.complex128]) -> Floats:
 def motion_with_bows(stamps: Floats, pose: Floats, layout: TrackLayout) -> Motion:
     """Return the motion of poses after changing their headings in place.
 
-    If the layout has no headings, they become directions of motion. Axes become headings of the
-    bows, and jumps of full turns are removed.
+    If the layout has no headings, they become directions of motion, and poses without one are
+    removed (NaN). Axes become headings of the bows, and jumps of full turns are removed.
     """
     motion = Motion.from_poses(stamps, pose, layout.max_speed_cm_s)
     if not layout.has_headings:
@@ -127,11 +127,11 @@ def _check_by_motion(heading: Floats, motion: Motion, layout: TrackLayout) -> No
     zero, unit_given = HEADING_ZERO[layout.heading_zero], layout.heading_unit
     from_zero = heading - zero
     for unit in (unit for unit in TURN if TURN[unit] < TURN[unit_given]):
-        # Headings must stay within a full turn of the smaller unit, and span more than half of one.
-        share = TURN[unit] / TURN[unit_given]
-        is_within = np.nanmax(np.abs(from_zero)) <= 1.003 * TURN["rad"] * share
-        is_wide = np.ptp(from_zero[motion.present]) > 0.5 * TURN["rad"] * share
-        fits = motion.cosine(zero + from_zero / share) > motion.cosine(heading)
+        # Read in the smaller unit, headings must stay within a turn, and span over half of one.
+        reread = from_zero * TURN[unit_given] / TURN[unit]
+        is_within = np.nanmax(np.abs(reread)) <= 1.003 * 2.0 * np.pi
+        is_wide = np.ptp(reread[motion.present]) > np.pi
+        fits = motion.cosine(zero + reread) > motion.cosine(heading)
         if is_within and is_wide and fits:
             raise ParameterError(
                 f"headings never exceed a full turn in {unit}, and fit the motion better than "

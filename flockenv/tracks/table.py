@@ -263,8 +263,8 @@ def boats_of(rows: "pd.DataFrame", layout: TrackLayout) -> list[str]:
         return ["0"]
     names, indices = [*map(str, rows)], indices_of(rows)
     fields = sum(layout.columns.values(), ())
-    pattern = re.compile(re.escape(fields[0]).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
-    boats = [match[1] for name in names if (match := pattern.fullmatch(name.strip()))]
+    pattern = re.compile(re.escape(_bare(fields[0])).replace(r"\{id\}", "(.+)"), re.IGNORECASE)
+    boats = [match[1] for name in names if (match := pattern.fullmatch(_bare(name)))]
     boats = [
         boat
         for boat in boats
@@ -297,9 +297,14 @@ def index_of(name: str, rows: "pd.DataFrame", indices: dict[str, list[int]]) -> 
     return matches[0]
 
 
+def _bare(name: object) -> str:
+    """Return a column's name without comment marks or blanks around it."""
+    return str(name).strip().lstrip("#%").strip()
+
+
 def _key(name: object) -> str:
-    """Return a column's name in lower case, without comment marks or blanks around it."""
-    return str(name).strip().lstrip("#%").strip().casefold()
+    """Return a column's name, bare and in lower case."""
+    return _bare(name).casefold()
 
 
 def listed(names: list[str]) -> str:

@@ -173,3 +173,6 @@ def test_boats_beside_each_other_have_all_columns_of_a_layout():
     table = pd.DataFrame({"frame": k, " x1 ": k, "y1": 5.0, "x2": k, "Y2": 20.0, "xtra": "good"})
     layout = TrackLayout(pool=(90.0, 0.0), fps=10.0, x="x{id}", y="y{id}", heading=None)
     assert read_tracks(table, layout).ids.tolist() == ["1", "2"]
+    # A comment mark before the first column is no part of its name.
+    marked = table[[" x1 ", "y1", "x2", "Y2", "frame"]].rename(columns={" x1 ": "# x1"})
+    assert read_tracks(marked, layout).ids.tolist() == ["1", "2"]
