@@ -127,12 +127,15 @@ class NetworkPolicy(RowPolicy):
     ) -> None:
         super().__init__(observation=observation, mirror_to_target=mirror_to_target)
         refuse_unknown((action_mode,), _core.ACTION_MODES, "action mode")
-        if decision_period_s is not None and not 0.0 < decision_period_s < math.inf:
+        period_s = (
+            None if decision_period_s is None else number(decision_period_s, "decision_period_s")
+        )
+        if period_s is not None and not 0.0 < period_s < math.inf:
             raise ParameterError(
-                f"decision_period_s = {short_repr(decision_period_s)} is not accepted: a time in s"
+                f"decision_period_s = {short_repr(period_s)} is not accepted: a time in s"
             )
         self.action_mode = action_mode
-        self.decision_period_s = None if decision_period_s is None else float(decision_period_s)
+        self.decision_period_s = None if period_s is None else float(period_s)
         self.provenance = {str(name): str(text) for name, text in dict(provenance or {}).items()}
         matrices, vectors = items(weights, "weights"), items(biases, "biases")
         self._layers = _checked_layers(matrices, vectors, norms, activation, self._observation_size)

@@ -111,7 +111,12 @@ impl DampedLaw {
     /// [`FlockError::Parameter`] for a gain that is not finite or exceeds 1e9 in magnitude.
     pub fn check(&self) -> Result<()> {
         self.gains().into_iter().try_for_each(|(name, value)| {
-            FlockError::unless(value.abs() <= 1e9, name, value, "a finite number")
+            FlockError::unless(
+                value.abs() <= 1e9,
+                name,
+                value,
+                "a finite number from -1e9 to 1e9",
+            )
         })
     }
 
