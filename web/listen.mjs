@@ -104,7 +104,12 @@ function keys(page) {
 
 function files(page) {
   byId("save").addEventListener("click", () => save(page));
-  byId("open").addEventListener("change", () => open(page, byId("open").files[0]));
+  byId("open").addEventListener("change", () => {
+    const file = byId("open").files[0];
+    // Otherwise choosing the same file again would be no change.
+    byId("open").value = "";
+    open(page, file);
+  });
   document.addEventListener("dragover", (event) => event.preventDefault());
   document.addEventListener("drop", (event) => {
     event.preventDefault();

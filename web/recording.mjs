@@ -58,7 +58,7 @@ function checkTimes({ time_s: time, duration_s: duration }) {
   const [first, last] = [times[0] ?? 0, times.at(-1) ?? 0];
   // Times are rounded to a nanosecond, so the last one may exceed the duration by that.
   if (!isRising || first < 0 || last > end + 1e-9 || !(end + 1e-9 >= 0 && end <= 1e9)) {
-    refuse("time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at least one time if that is not given");
+    refuse("time_s must increase from 0 on, not beyond duration_s, at most 1e9 s, and hold at least one time if duration_s is not given");
   }
 }
 
