@@ -3,8 +3,8 @@
     python baselines/ppo_single_file.py                 # into results/ppo_single_file
     flockenv compare --policy results/ppo_single_file/policy.npz --pool narrow --set n_boats=9
 
-With seed 0 and 102 400 samples, 8 s of one core, the order of 9 boats rises from 0.147 to 0.177: 64
-flocks are too few to show such a gain. The file is meant to be read.
+With seed 0 and 102 400 samples, 8 s of one core, the order of 9 boats rises from 0.147 to 0.177, a
+gain too small for 64 flocks to show. The file is meant to be read.
 
 All leaders share one actor, which sees what its leader observes. The critic sees features of the
 flock (`LeadersVectorEnv.flock_features`) and is needed only in training, so the actor is saved as a

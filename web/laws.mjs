@@ -34,7 +34,7 @@ export class Laws {
 
   /**
    * A law for each leader, separated by commas, from a list that may be shorter: further leaders have its last law, and a name
-   * that is no law stands for the first law. A single law if there is at most one leader.
+   * outside `leaderChoices` stands for the first of them. A single law if there is at most one leader.
    */
   policiesFor(policy, leaders) {
     const laws = policy.split(",").map((name) => (this.leaderChoices.includes(name) ? name : this.leaderChoices[0]));

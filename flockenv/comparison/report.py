@@ -52,7 +52,7 @@ class ComparisonReport:
         """Means with intervals by case, policy and number of leaders.
 
         Further columns are ``ordered``, the fraction of the episodes in which the flock ordered,
-        and the median ordering times of these episodes (infinite if there are none).
+        and the median of each ordering time where it is finite (infinite if it never is).
         """
         by, times = ["case", "policy", "leaders"], list(ORDERING_TIMES)
         means = summarize(self.runs, by, list(QUANTITIES))

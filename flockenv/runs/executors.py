@@ -25,7 +25,7 @@ Engine = Callable[[int | None], Executor]
 
 
 def cores() -> int:
-    """Return the number of cores that this process may use; a container or a queue may limit it."""
+    """Return the number of cores that this process may use, which a queue may limit."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

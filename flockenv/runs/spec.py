@@ -67,8 +67,8 @@ class RunSpec:
                 f"parameters must be FlockParameters, not {short_repr(self.parameters)}"
             )
         refuse_unknown((self.policy,), NAMES, "policy of a run")
-        steers_leaders = _named(self.policy, self.parameters.pool).control_hz is not None
-        if steers_leaders and self.parameters.n_leaders == 0:
+        acts_at_decisions = _named(self.policy, self.parameters.pool).control_hz is not None
+        if acts_at_decisions and self.parameters.n_leaders == 0:
             raise ParameterError(
                 f"policy = {self.policy!r} is not accepted for n_leaders = 0: nobody is steered"
             )

@@ -298,8 +298,6 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
         """Return an attribute of each slot's `LeaderSlot`."""
-        if not hasattr(self, "slots"):
-            raise AttributeError(attr_name)
         return [getattr(self.slots[slot], attr_name) for slot in self._chosen(indices)]
 
     def _chosen(self, indices: VecEnvIndices) -> list[int]:

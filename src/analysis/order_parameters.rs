@@ -34,7 +34,7 @@ impl OrderParameters {
         Self::from_hulls(&hulls, velocities)
     }
 
-    /// Order parameters of boats from their hulls, which hold direction vectors (two slices of equal length).
+    /// Order parameters of boats with these hulls and velocities (two slices of equal length).
     ///
     /// # Errors
     /// [`FlockError::Parameter`] if there is no boat.

@@ -94,7 +94,7 @@ impl Samples {
             .collect();
         let velocity = |row: usize| match (steps[row], steps[row + self.boats]) {
             (Some((before, before_s)), Some((after, after_s))) => {
-                weighted_mean(&before, &after, after_s / (before_s + after_s))
+                weighted_velocity(&before, &after, after_s / (before_s + after_s))
             }
             (Some((only, _)), None) | (None, Some((only, _))) => only,
             (None, None) => Pose::new(f64::NAN, f64::NAN, f64::NAN),
@@ -111,8 +111,8 @@ fn mean_velocity(from: &Pose, to: &Pose, duration_s: f64) -> Pose {
     Pose::new(velocity.x, velocity.y, angular)
 }
 
-/// The mean of two rows, of which the first has this weight.
-fn weighted_mean(first: &Pose, second: &Pose, weight: f64) -> Pose {
+/// The mean of two velocities, stored as poses are, of which the first has this weight.
+fn weighted_velocity(first: &Pose, second: &Pose, weight: f64) -> Pose {
     let mix = |x: f64, y: f64| x * weight + y * (1.0 - weight);
     Pose::new(
         mix(first.position.x, second.position.x),

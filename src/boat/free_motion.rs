@@ -139,8 +139,8 @@ impl FreeMotion {
     /// persistent contacts are expected to make in the substep. It keeps the heading drive u·ẋ centered while a boat
     /// presses against something.
     ///
-    /// The angular rate 3·c1·α̇² + c3·u·ẋ is negative for a backing boat that does not turn yet: the
-    /// weight 1 + dt/2·rate is replaced there by 1/(1 − dt/2·rate), equal to second order and positive
+    /// The slope of eq. (9), 3·c1·α̇² + c3·u·ẋ, is negative for a backing boat that does not turn yet: the
+    /// weight 1 + dt/2·slope is replaced there by 1/(1 − dt/2·slope), equal to second order and positive
     /// at any dt. Damping may stop a spin, but never reverses it.
     #[inline]
     pub fn centered(
@@ -156,16 +156,16 @@ impl FreeMotion {
         let along = axis.dot(&(mid_velocity - drive.water));
 
         let spin = velocity.angular;
-        let half_rate = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);
-        let angular_mobility = if half_rate >= 0.0 {
-            1.0 / (1.0 + half_rate)
+        let half_slope = 0.5 * dt * (3.0 * self.c1 * spin * spin + self.c3 * along);
+        let angular_mobility = if half_slope >= 0.0 {
+            1.0 / (1.0 + half_slope)
         } else {
-            1.0 - half_rate
+            1.0 - half_slope
         };
-        let rate = self.c1 * spin * spin + self.c3 * along;
+        let damping = self.c1 * spin * spin + self.c3 * along;
         let turn = self.c2 * drive.rudder * along * dt;
-        let driven =
-            spin * Self::remaining_fraction(rate, dt * angular_mobility) + turn * angular_mobility;
+        let driven = spin * Self::remaining_fraction(damping, dt * angular_mobility)
+            + turn * angular_mobility;
         let limited = self.limited(driven, spin, along, drive.rudder);
         FreeVelocity {
             velocity: Velocity {

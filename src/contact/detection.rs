@@ -160,7 +160,7 @@ impl ContactDetector {
 
     /// Adds the contacts within reach: with walls, obstacles, and the boats in the neighbor list.
     fn detect_listed(&self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
-        // Half the margin is the boat's reach; the wall does not move.
+        // A boat's reach is at most half the margin; the wall does not move.
         let open_water = self.open_water(0.5 * margin);
         let has_obstacles = !self.obstacles.obstacles.is_empty();
         // Slices of one length, so that one bounds check covers both.

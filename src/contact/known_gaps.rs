@@ -85,10 +85,13 @@ impl ContactDetector {
         if !contact.has_ends() || contact.feature.side().is_none() {
             return self.gap_at(contact, boats);
         }
-        let touches = self.touches_at(contact, boats);
+        let [stern, bow] = self.touches_at(contact, boats);
         let is_bow = match first_of_two(contacts, k) {
-            Some(first) => (k > first) != are_swapped(&touches, &contacts[first..]),
-            None => touches[1].gap < touches[0].gap,
+            Some(first) => {
+                let is_second = k > first;
+                is_second != are_swapped(&[stern, bow], &contacts[first..])
+            }
+            None => bow.gap < stern.gap,
         };
         let feature = Feature::ENDS[usize::from(is_bow)];
         self.gap_at(

@@ -1,5 +1,5 @@
 //! Neighbor list: pairs of boats that may touch soon. The list has a skin, and is rebuilt when a boat has moved by half
-//! of the skin. It follows from the centers at its last build, so a snapshot stores only those.
+//! of the skin. It follows from the centers and the cutoff of its last build, so a snapshot stores only these.
 
 use super::Vec2;
 

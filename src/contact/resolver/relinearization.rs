@@ -43,9 +43,9 @@ impl Relinearization {
 }
 
 impl ContactResolver {
-    /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance. Each pass evaluates gaps
-    /// at the poses to which the last solve moves the boats, and chooses biases with which these gaps would not end below
-    /// zero. The factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome
+    /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance, a solve fails, or
+    /// [`MOST_PASSES`] are done. Each pass evaluates gaps at the poses to which the last solve moves the boats, and chooses
+    /// biases with which these gaps would not end below zero. The factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome
     /// of the first solve.
     pub(super) fn relinearize(
         &mut self,
@@ -165,8 +165,8 @@ impl ContactResolver {
         deepest > tolerance
     }
 
-    /// Stores the gaps of an island's contacts at the substep's end, and returns the deepest overlap in cm. A shortened
-    /// substep need not undo an earlier overlap fully: it may leave the fraction `left_fraction` of it.
+    /// Sets the `end_gaps` of an island's contacts (see the field), and returns the deepest overlap in cm. A shortened
+    /// substep may leave the fraction `left_fraction` of an earlier overlap that is deeper than the tolerance.
     #[inline]
     fn deepest_end_overlap(&self, island: u32, left_fraction: f64, end_gaps: &mut [f64]) -> f64 {
         let (detector, contacts) = (&self.detector, self.contacts.as_slice());

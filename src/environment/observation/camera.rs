@@ -92,7 +92,7 @@ impl Camera {
         self
     }
 
-    /// Takes the next frame. Which boats it misses depends only on the seed and the frame's number.
+    /// Takes the next frame. Which boats it misses depends only on its rate, the seed and the frame's number.
     pub(crate) fn take_frame(&mut self, leaders: usize, flock: &Flock) {
         let (poses, velocities) = (flock.poses(), flock.velocities());
         self.frame += 1;

@@ -1,5 +1,5 @@
 //! The boats nearest to leaders. Processors mispredict branches that depend on distances, and a misprediction costs more
-//! than the arithmetic for all boats. So no branch depends on distances.
+//! than the arithmetic for all boats. So loops over boats have no such branch, as long as few boats are wanted.
 
 use crate::geometry::HullPose;
 use wide::f64x4;

@@ -26,7 +26,7 @@ pub(super) struct IslandSolver {
     pub factor: Factor,
     /// Whether the active rows are those of the substep before.
     is_guess_old: bool,
-    /// Right-hand side and solution, row by row.
+    /// Right-hand side and solution, row by row, and a scratch entry.
     solution: Vec<f64>,
     /// Number of rows with a wrong sign.
     violations: usize,
@@ -149,7 +149,7 @@ impl IslandSolver {
         })
     }
 
-    /// Computes impulses that close exactly the active gaps, and the slacks of all rows; returns the number of factored
+    /// Computes impulses that close the active gaps, and the slacks of all rows; returns the number of factored
     /// rows.
     pub(super) fn solve_active(&mut self, regularization: f64) -> u64 {
         let computed = self.factor.update(&self.rows, regularization);

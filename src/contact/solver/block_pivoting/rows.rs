@@ -3,7 +3,8 @@
 use crate::contact::{ContactProblem, InverseInertia};
 use crate::geometry::{Velocity, smaller};
 
-/// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT).
+/// Signs are judged with this tolerance in cm/s, well below [`EXACT`](crate::contact::solver::EXACT). A regularization
+/// below this number counts as none.
 pub(super) const TOLERANCE: f64 = 1e-11;
 
 /// No row.
@@ -11,7 +12,7 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Index of the walls among an island's bodies. They are at rest, and no impulse moves them.
 pub(super) const WALLS: u32 = 0;
 
-/// Natural residual of a row in cm/s. `speed` is its impulse times A_kk. A row of a regularized problem may yield.
+/// Natural residual of a row in cm/s. `speed` is its impulse times A_kk. A regularized row may yield.
 #[inline]
 pub(super) fn residual(speed: f64, slack: f64, regularization: f64) -> f64 {
     let compliance = if regularization < TOLERANCE {
