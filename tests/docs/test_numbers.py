@@ -232,9 +232,9 @@ def learned_soonest() -> list[Number]:
         for words, entry, column, form in (
             ("the damped law 1, TRPO {} and PPO", "TRPO", "score", ".2f"),
             ("law 1, TRPO # and PPO {}.", "PPO", "score", ".2f"),
-            ("they score {} in # s, where", "paired branches", "score", ".2f"),
-            ("they score # in {} s, where", "paired branches", "cpu_s", ".0f"),
-            ("where TRPO takes {} s (", "TRPO", "cpu_s", ".0f"),
+            ("take # s and score {}, while", "paired branches", "score", ".2f"),
+            ("take {} s and score #, while", "paired branches", "cpu_s", ".0f"),
+            ("while TRPO's take {} s (", "TRPO", "cpu_s", ".0f"),
         )
     ]
 
