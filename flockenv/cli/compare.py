@@ -40,12 +40,8 @@ def compare(options: CompareOptions) -> None:
 
     Example: `flockenv compare --policy mine.npz --name mine --pool narrow --n-leaders 0-3`
     """
-    for package in (
-        "matplotlib",
-        "pandas",
-        "scipy",
-    ):  # Missing ones are found before hours of runs.
-        require(package, "plot")
+    for package in ("matplotlib", "pandas", "scipy"):
+        require(package, "plot")  # A missing one is found before hours of runs.
     if options.suite == LEVELS_SUITE:
         refuse_all_but(_OPTIONS_OF_ENTRIES, options)
         files, levels = options.entry or (), options.task or ()

@@ -295,9 +295,8 @@ impl Flock {
                 }
             }
             // Contacts of boats out of range would fail only after long work, so stop here.
-            if self.integrator.statistics.unsolved > unsolved_before
-                && !self.integrator.is_in_range()
-            {
+            let is_unsolved = self.integrator.statistics.unsolved > unsolved_before;
+            if is_unsolved && !self.integrator.is_in_range() {
                 break;
             }
         }

@@ -166,8 +166,7 @@ impl BrownianPaths {
         at_end.copy_from_slice(whole);
         let (mut start, mut end, mut node) = (0, self.cell_length, 1_u64);
         loop {
-            // The bisection numbers its nodes as a binary heap: 1, then 2 and 3, …, below 2^HALVINGS. Larger keys belong
-            // to times within leaves.
+            // Nodes of the bisection have the numbers of a binary heap; larger keys belong to times within leaves.
             let (point, key) = if node < 1 << HALVINGS {
                 (start + (end - start) / 2, node)
             } else {

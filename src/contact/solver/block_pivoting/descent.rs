@@ -35,16 +35,14 @@ impl IslandSolver {
         regularization: f64,
         report: &mut SolveReport,
     ) -> bool {
-        let count = current.len();
         let is_warm = self.start_from(&current);
         if is_warm {
             self.approach(&mut current, regularization, report);
         }
-        // A contact that would have to pull as soon as it enters depends on the active ones. It is refused until the impulses
-        // move.
-        let mut is_refused = vec![false; count];
+        // A contact that would have to pull as soon as it enters is refused until the impulses move.
+        let mut is_refused = vec![false; current.len()];
         let mut enters_alone = !is_warm;
-        let most_rounds = 50 + 10 * count;
+        let most_rounds = 50 + 10 * current.len();
         for _ in 0..most_rounds {
             let largest = current.iter().copied().fold(0.0, f64::max);
             if !largest.is_finite() || largest > CONTRADICTION || self.factor.budget < 0 {
