@@ -29,7 +29,10 @@ if TYPE_CHECKING:
     from flockenv.envs.spaces import ObservationSpace
 
 _WEIGHTS_ENTRY = "policy.pth"
-_READ_ENTRIES = ("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde")
+_READ_ENTRIES = (
+    *("policy_class", "policy_kwargs", "observation_space", "action_space", "use_sde"),
+    *("_last_obs", "_last_original_obs"),
+)
 
 
 class ModelPolicy:
@@ -37,7 +40,7 @@ class ModelPolicy:
 
     A model that was trained on `LeaderVecEnv` takes one leader's observation, and steers any number
     of leaders. A model that was trained on ``gymnasium.make("flockenv/Leaders-v0")`` takes the
-    observations of k leaders one after another, and steers flocks with k leaders. If the model
+    observations of k leaders in one row, and steers flocks with k leaders. If the model
     chooses levels (`rudder_levels`), they become rudders. If its environment is a `VecNormalize`,
     observations are normalized the same way; a model's file does not hold the statistics.
 
@@ -182,9 +185,21 @@ def vec_normalize_of(model: object) -> Any:
 
 def lacks_vec_normalize(model: object) -> bool:
     """Return whether a model was trained in a ``VecNormalize`` but loaded without it."""
-    # stable-baselines3 stores this only for trainings in VecNormalize.
-    was_normalized = getattr(model, "_last_original_obs", None) is not None
-    return was_normalized and getattr(model, "get_vec_normalize_env", lambda: None)() is None
+    if getattr(model, "get_vec_normalize_env", lambda: None)() is not None:
+        return False
+    return _was_normalized(getattr(model, "__dict__", {}))
+
+
+def _was_normalized(values: Mapping[str, Any]) -> bool:
+    """Return whether a model with these attributes was trained in a ``VecNormalize``."""
+    if values.get("_last_original_obs") is None:
+        return False
+    # On-policy algorithms store that only in VecNormalize, off-policy algorithms always. Those that
+    # were given another environment have no last observations left: nothing tells of VecNormalize.
+    is_off_policy, last = "learning_starts" in values, values.get("_last_obs")
+    space = values["observation_space"]
+    has_left_space = isinstance(last, np.ndarray) and not all(map(space.contains, last))
+    return has_left_space or not is_off_policy
 
 
 def space_under_wrappers(model: object) -> "ObservationSpace | None":
@@ -276,16 +291,15 @@ def load_model(path: str | os.PathLike[str]) -> ModelPolicy:
     try:
         with zipfile.ZipFile(path) as archive:
             stored = json.loads(archive.read("data"))
-        # Only trainings in VecNormalize write this.
-        if stored.get("_last_original_obs") is not None:
+        # Other entries, such as schedules and buffers, are None, so their code is not executed.
+        skipped = dict.fromkeys(stored.keys() - set(_READ_ENTRIES))
+        data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
+        if _was_normalized(data):
             raise ParameterError(
                 "it was trained in VecNormalize, and its file does not hold how observations were "
                 "normalized: steer with the model in memory, or train without VecNormalize: "
                 "observations are scaled already"
             )
-        # Other entries, such as schedules and buffers, are None, so their code is not executed.
-        skipped = dict.fromkeys(stored.keys() - set(_READ_ENTRIES))
-        data, weights, _ = saving.load_from_zip_file(path, device="cpu", custom_objects=skipped)
         model = _new_policy(data)
         model.load_state_dict(weights["policy"])
         model.set_training_mode(False)

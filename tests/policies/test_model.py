@@ -5,6 +5,7 @@ import json
 import os
 import pickle
 import zipfile
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import gymnasium
@@ -251,6 +252,25 @@ def test_files_of_models_in_vec_normalize_are_refused(tmp_path):
     plain = PPO("MlpPolicy", rows_env(), n_steps=8, batch_size=8, device="cpu")
     plain.learn(32).save(tmp_path / "plain.zip")
     assert flockenv.policies.load(tmp_path / "plain.zip", trust=True).leaders == 1
+
+
+@pytest.mark.parametrize(("algorithm", "options"), [(SAC, {}), (DQN, {"rudder_levels": 3})])
+def test_off_policy_models_are_refused_only_if_they_were_trained_in_vec_normalize(
+    algorithm, options, tmp_path
+):
+    """Without VecNormalize, too, they store their last original observations."""
+    for wrap, is_refused in ((lambda env: env, False), (VecNormalize, True)):
+        training = wrap(rows_env(**options))
+        model = algorithm("MlpPolicy", training, learning_starts=8, device="cpu").learn(32)
+        model.save(tmp_path / "model.zip")
+        alone = algorithm.load(tmp_path / "model.zip", device="cpu")
+        expected = pytest.raises(ParameterError, match="trained in VecNormalize")
+        for load in (
+            lambda alone=alone: ModelPolicy(alone),
+            lambda: flockenv.policies.load(tmp_path / "model.zip", trust=True),
+        ):
+            with expected if is_refused else nullcontext():
+                assert load().leaders == 1
 
 
 def test_what_a_model_says_beyond_the_rudders_range_is_clipped():
