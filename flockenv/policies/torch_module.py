@@ -73,7 +73,7 @@ def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[Module
 
 
 def _as_array(tensor: "Tensor") -> NDArray[np.float32]:
-    array: NDArray[np.float32] = tensor.detach().cpu().numpy()
+    array: NDArray[np.float32] = tensor.detach().cpu().float().numpy()
     return array
 
 
@@ -124,7 +124,7 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
 
     size = len(layers[0].weight)
     rows = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIAL_ROWS, size)).astype(np.float32)
-    was_training = module.training
+    modes = [(part, part.training) for part in module.modules()]
     module.eval()
     try:
         with torch.no_grad():
@@ -137,7 +137,8 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
             f"a module is not accepted whose layers do not fit each other in their order: {error}"
         ) from error
     finally:
-        module.train(was_training)
+        for part, was_training in modes:
+            part.training = was_training
     tensors = [tensor.float().cpu() for tensor in _tensors(output)]
     # The empty tensor is for outputs without tensors, which torch.cat refuses.
     joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)

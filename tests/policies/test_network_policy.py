@@ -147,9 +147,14 @@ def test_networks_of_other_learners_become_policies(made, tmp_path):
     with torch.no_grad():
         for each in module.parameters():
             each.add_(0.2 * torch.randn_like(each))
-    NetworkPolicy.from_module(module, ObservationSpace(DEFAULTS)).save(tmp_path / "policy.npz")
+    module[0].eval()
+    of_double = NetworkPolicy.from_module(module.double(), ObservationSpace(DEFAULTS))
+    policy = NetworkPolicy.from_module(module.float(), ObservationSpace(DEFAULTS))
+    assert of_double.digest == policy.digest
+    policy.save(tmp_path / "policy.npz")
     loaded = load(tmp_path / "policy.npz")
-    assert module.training, "as it was"
+    modes = [part.training for part in module]
+    assert [module.training, *modes] == [True, False, *[True] * (len(modes) - 1)], "as they were"
     rows = np.random.default_rng(1).uniform(-2, 2, (200, SIZE)).astype(np.float32)
     with torch.no_grad():
         expected = module.eval()(torch.from_numpy(rows)).clamp(-1, 1).numpy()
