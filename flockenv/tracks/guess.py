@@ -134,7 +134,7 @@ def _guess_pool(table: "pd.DataFrame", layout: TrackLayout, form: Form, doubts: 
 
 
 def _guess_heading_unit(sizes: "pd.Series[float]", form: Form, doubts: Doubts) -> None:
-    """Guess the unit of headings from their column's name, or from their absolute values."""
+    """Guess the headings' unit from their column's name or sizes, and whether they are wrapped."""
     written_unit = plain(form["heading"])[1].replace("°", "deg")
     known_unit = next((unit for unit in ("deg", "rad") if written_unit.startswith(unit)), None)
     largest = sizes.quantile(0.99)  # The few largest may stand for missing headings.

@@ -100,9 +100,10 @@ def _times(column: "pd.Series[Any]", layout: TrackLayout) -> Floats:
         if layout.fps is not None:
             raise ParameterError(f"column {layout.frame!r} holds times: leave fps out")
         stamps = _dates_or_durations(column, first) if is_text else column
-        stamps = stamps - stamps.min() if stamps.dtype.kind == "M" else stamps
+        has_dates = stamps.dtype.kind == "M"
+        stamps = stamps - stamps.min() if has_dates else stamps
         times: Floats = stamps.dt.total_seconds().to_numpy(np.float64)
-        times = _past_midnight(times) if is_text else times
+        times = _past_midnight(times) if is_text and not has_dates else times
     else:
         times = numbers(column, layout)
         _check_clock(times, layout)

@@ -49,6 +49,20 @@ def test_times_of_any_type_are_converted(seen, times, tmp_path):
         read_tracks(timed(seen, lambda s: pd.to_timedelta(s, "s")), but(TIMED, fps=25.0))
 
 
+def test_a_morning_and_an_evening_with_dates_stay_in_order(seen):
+    """Only times of day may be of the day after."""
+
+    def in_two_sessions(s):
+        return pd.Timestamp("2026-01-31 08:00") + pd.to_timedelta(s + 45e3 * (s > s.median()), "s")
+
+    dates = timed(seen, in_two_sessions)
+    texts = timed(seen, lambda s: in_two_sessions(s).dt.strftime("%Y-%m-%d %H:%M:%S.%f"))
+    expected, found = (read_tracks(table, TIMED) for table in (dates, texts))
+    assert np.ptp(found.time_s) > 45e3
+    assert np.allclose(found.time_s, expected.time_s, atol=1e-5)
+    assert np.allclose(found.order.psi_v, expected.order.psi_v, atol=1e-4, equal_nan=True)
+
+
 @pytest.mark.parametrize("per_s", [1e3, 1e6, 1e9])
 def test_units_of_time_are_refused_until_they_are_said(seen, per_s):
     table = timed(seen, lambda s: np.rint(s * per_s).astype(np.int64))
