@@ -35,6 +35,9 @@ from flockenv.training.branching import BranchingFlocks
 
 DECAY_1, DECAY_2 = 0.9, 0.99
 
+#: Decisions per second of a flock's three leaders.
+DECISIONS_HZ = 3
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -183,7 +186,7 @@ def main(arguments: list[str] | None = None) -> None:
     provenance = provenance_of(
         shlex.join(["python", "baselines/group_relative.py", *words]),
         seed=options.seed,
-        samples=round(hours * 3600 * 3),
+        samples=round(hours * 3600 * DECISIONS_HZ),
         cpu_s=time.process_time() - start_s,
         flock_hours=hours,
     )

@@ -36,6 +36,9 @@ from flockenv.training.branching import BranchingFlocks
 
 DECAY_1, DECAY_2 = 0.9, 0.99
 
+#: Decisions per second of a flock's three leaders.
+DECISIONS_HZ = 3
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -120,7 +123,7 @@ def main(arguments: list[str] | None = None) -> None:
     provenance = provenance_of(
         shlex.join(["python", "baselines/paired_branches.py", *words]),
         seed=options.seed,
-        samples=round(len(curve) * hours * 3600 * 3),
+        samples=round(len(curve) * hours * 3600 * DECISIONS_HZ),
         cpu_s=time.process_time() - start_s,
         flock_hours=len(curve) * hours,
     )

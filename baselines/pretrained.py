@@ -211,7 +211,7 @@ def trained(settings: Settings, pool: str, out: Path, command: str) -> dict[str,
 
 
 def judged(settings: Settings, pool: str, law: LeaningLaw) -> dict[str, Any]:
-    """Return the order of three leaders with this law in unused flocks, and these flocks."""
+    """Return the order of new flocks that three leaders with this law lead, and their settings."""
     seeds = release_seeds("pretrained", settings.judging_flocks)
     flock_orders = orders(law, pool, 3, seeds, settings.episode_s)
     score = score_policies({"law": flock_orders}).loc[0, ["signed_order", "low", "high"]]

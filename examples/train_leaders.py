@@ -72,7 +72,7 @@ def environment(task: Task) -> LeaderVecEnv:
 
 
 def untrained(learner: Learner, env: LeaderVecEnv, seed: int) -> PPO:
-    """Return PPO before its first sample: an actor without hidden layers is a law of leans."""
+    """Return an untrained PPO whose actor has no hidden layers: it is a law of leans."""
     policy = {
         **shared_noise(env, hold_s=240.0),  # leaders of a flock explore alike, for 240 s at a time
         "net_arch": {"pi": [], "vf": [64, 64]},

@@ -229,7 +229,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         if self._state == "features":
             return self._batch.flock_feature_space
         space = self._batch.state_space
-        if self._state == "boats":
+        if self._state != "set":
             return space
         boats = self.parameters.n_boats
         low, high = (_boat_rows(bound[None], boats)[0] for bound in (space.low, space.high))
@@ -240,7 +240,7 @@ class LeadersEnv(OwnGenerator, OwnFlocks, EnvBase):
         if self._state == "features":
             return self._batch.core.flock_features(each_leader=False)
         states = self._batch.core.states()
-        return states if self._state == "boats" else _boat_rows(states, self.parameters.n_boats)
+        return _boat_rows(states, self.parameters.n_boats) if self._state == "set" else states
 
     def _tensor(self, array: NDArray[Any]) -> torch.Tensor:
         return torch.from_numpy(array).to(self.device)

@@ -122,7 +122,7 @@ impl FlockError {
     }
 }
 
-/// Rewrites numbers of more than 20 digits in a text with an exponent, such as 1e300.
+/// Writes a text's numbers of more than 20 digits with an exponent, such as 1e300.
 fn readable(text: &str) -> String {
     const MOST_DIGITS: usize = 20;
     let (mut output, mut remaining) = (String::new(), text);

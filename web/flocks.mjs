@@ -217,13 +217,13 @@ export class Flocks {
     return this.runDescription(answer, { name, seed, law: policy, version: this.version });
   }
 
-  /** The description of a flock as runs and panels have it, from the simulator's answer. `named`: fields that are copied to it. */
-  runDescription({ parameters, lengths }, named) {
+  /** The description of a flock as runs and panels have it, from the simulator's answer. `otherFields`: further fields of the description. */
+  runDescription({ parameters, lengths }, otherFields) {
     const { n_leaders: leaders, target } = parameters;
     const targets = [target].flat();
     const isCommon = leaders > 0 && new Set(targets).size === 1;
     return {
-      ...named, lengths, leaders, boats: parameters.n_boats, bw_s: parameters.bw_s, stored: parameters,
+      ...otherFields, lengths, leaders, boats: parameters.n_boats, bw_s: parameters.bw_s, stored: parameters,
       parameters: Object.fromEntries(Object.keys(this.kinds).map((field) => [field, textOf(parameters[field])])),
       target: isCommon ? targets[0] : null, targets: leaders > 0 && !isCommon ? targets : undefined,
       ...Object.fromEntries(Object.entries(parameters).filter(([field]) => this.kinds[field] === "rows")), phases: this.phases, ids: null, every: 1,

@@ -160,7 +160,7 @@ async function open(page, file) {
   try {
     const run = await runOfFile(file, about, {
       check: async (request) => (await simulator.ask("check", { request })).values,
-      describe: (answer, named) => flocks.runDescription(answer, named),
+      describe: (answer, otherFields) => flocks.runDescription(answer, otherFields),
       derive: async (arrays, description) => (await simulator.ask("derive", derivedOf(arrays, description, flocks.series))).series,
     });
     // Wait for a flock that is changing, or running to the time of a link.

@@ -118,7 +118,7 @@ export class LivePage {
     }
     if (!this.broken) {
       const { seed = "0" } = this.flocks.requested.flock;
-      await this.restart(this.playback.isOver ? String(BigInt(seed) + BigInt(this.flocks.firstBeside)) : undefined);
+      await this.restart(this.playback.isOver ? String(BigInt(seed) + BigInt(this.flocks.shown.copies)) : undefined);
     }
   }
 

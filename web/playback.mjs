@@ -30,7 +30,7 @@ export class Playback {
     this.transport = new Transport(byId("play"), (passed, now) => this.#tick(passed, now));
   }
 
-  /** Shows new flocks, at their latest sample. */
+  /** Goes to the latest sample of new flocks; centers your rudder and shows your score. */
   restart() {
     const { flocks, helm, view } = this.#page;
     this.time = flocks.runs[0].end;
@@ -39,7 +39,7 @@ export class Playback {
     if (flocks.areYours) {
       helm.center();
       this.game.play(flocks.shown.flock);
-      view.rounds = this.game.words;
+      view.roundWords = this.game.words;
     }
   }
 
@@ -189,7 +189,7 @@ export class Playback {
     this.#page.isHeld = true;
     this.transport.pause();
     this.#page.say(this.game.end(scoreOf(runs.slice(0, firstBeside)), scoreOf(runs.slice(firstBeside))));
-    view.rounds = this.game.words;
+    view.roundWords = this.game.words;
     return true;
   }
 

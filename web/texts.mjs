@@ -21,11 +21,11 @@ function fieldWords(flock) {
   });
 }
 
-/** The command that repeats a training with these settings; empty unless the flock has the training's preset. `values`: values of all parameters. */
+/** The command that repeats a training with these settings; empty unless the flock has the preset "simulation". `values`: values of all parameters. */
 export function trainingCommand({ preset = "simulation", ...flock }, values, { flock_hours: hours, ...settings }, seed) {
-  const withOptions = Object.fromEntries(Object.keys(OPTIONS).map((name) => [name, values[name]]));
+  const optionValues = Object.fromEntries(Object.keys(OPTIONS).map((name) => [name, values[name]]));
   const set = Object.entries({ action_mode: "rudder", ...settings }).map(([name, value]) => `--set ${name}=${value}`);
-  const words = [...fieldWords({ ...withOptions, ...flock }), `--seed ${seed}`, `--flock-hours ${hours}`, ...set];
+  const words = [...fieldWords({ ...optionValues, ...flock }), `--seed ${seed}`, `--flock-hours ${hours}`, ...set];
   return preset === "simulation" ? `flockenv train --algorithm branches ${words.join(" ")}` : "";
 }
 

@@ -33,7 +33,7 @@ export class View {
   /** The pinned leader's observation. */
   observed = null;
   /** Words about the rounds of a game. */
-  rounds = "";
+  roundWords = "";
   #flocks;
   #quantities;
   #entries;
@@ -173,7 +173,7 @@ export class View {
     if (areYours) {
       const [yours, law] = [runs.slice(0, firstBeside), runs.slice(firstBeside)].map((side) => withSign(scoreOf(side), 2));
       const isGame = byId("story").dataset.lesson === "steer";
-      const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.rounds && `. ${this.rounds}`}`;
+      const moment = `${fixed(Math.min(time, ROUND_SECONDS), 0)} of ${ROUND_SECONDS} s${this.roundWords && `. ${this.roundWords}`}`;
       return [line("you ", yours), line("the law ", law), element("small", "faint", isGame ? moment : "")];
     }
     const key = (run) => wordsOf(byId("story").dataset.lesson).headline ?? (run.target === null ? "psi_o" : "signed_order");
@@ -197,7 +197,7 @@ export class View {
     });
     const chosen = this.pinned === null ? [] : [boatWords(this.panels[0].run, time, this.pinned, this.palette)];
     // Only as much as a screen reader speaks before the next sentence.
-    const game = () => [clockwiseWords(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.rounds))];
+    const game = () => [clockwiseWords(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.roundWords))];
     const text = [...chosen, ...(areYours ? game() : sentences)].join(" ");
     const isDue = !isPlaying || performance.now() - this.#announcedAt > ANNOUNCE_EVERY;
     if (isDue && text !== byId("doing").textContent) {

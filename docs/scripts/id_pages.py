@@ -80,7 +80,7 @@ def page(env_id: str) -> str:
     """Return the page of an id, whose sentences are in id_page.template."""
     declared, name = ENVIRONMENTS[env_id], page_name(env_id)
     env = gymnasium.make(env_id)
-    alt = f"A flock in {env_id}. Its leaders have a ring, and steer by the {good_policy(env_id)}."
+    alt = f"A flock in {env_id}. Its leaders have a ring, and steer by the {film_policy(env_id)}."
     steps, step_s = env.spec.max_episode_steps, 1.0 / env.metadata["render_fps"]
     return PAGE.substitute(
         title=env_id.removeprefix("flockenv/"),
@@ -88,7 +88,7 @@ def page(env_id: str) -> str:
         purpose=declared.purpose,
         history="\n".join(f"- {change}" for change in declared.history),
         film=shown(name, alt, "../"),
-        policy=good_policy(env_id),
+        policy=film_policy(env_id),
         told=_shared_target_words(env_id),
         seed=SEED,
         step_s=f"{step_s:g}",
@@ -227,10 +227,10 @@ def draw_films() -> None:
             plot_and_words[0].save(SHOWN / f"{page_name(env_id)}.png")
 
 
-def good_policy(env_id: str) -> str:
+def film_policy(env_id: str) -> str:
     """Return the name of the policy in the film."""
     if _shared_target_words(env_id):
-        # Learned leaders read no target: they see the flock as if their own were clockwise.
+        # Learned leaders read no target, only mirrored observations: a told one has no effect.
         return REFERENCE
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
     return GOOD_POLICIES.get(pool, "damped law")
@@ -245,7 +245,7 @@ def _shared_target_words(env_id: str) -> str:
 def film(env_id: str) -> Iterator[Image.Image]:
     """Yield pictures of a flock that a good policy leads."""
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
-    leaders = policy(good_policy(env_id), pool)
+    leaders = policy(film_policy(env_id), pool)
     layout = {name: getattr(leaders, name) for name in ("observation", "mirror_to_target")}
     size = (HEIGHT, HEIGHT)
     env = gymnasium.make(env_id, render_mode="rgb_array", render_size=size, **layout)

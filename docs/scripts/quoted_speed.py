@@ -246,9 +246,12 @@ def order_by_step() -> list[Number]:
 def study_of_steps() -> list[Number]:
     """List what a step of 0.1 s changes, from the study of step sizes."""
     file, at = "studies/step_size/claims.csv", "at dt = 0.1 s minus that at 0.005 s"
-    alone = {"reading": "20 boats in wide, no leaders, physics training", "quantity": f"Ψ_o {at}"}
+    training = {
+        "reading": "20 boats in wide, no leaders, physics training",
+        "quantity": f"Ψ_o {at}",
+    }
     return [
-        *interval(PAGE, "8 minutes show a change of {} at 0.1 s", file, alone, form=".3f"),
+        *interval(PAGE, "8 minutes show a change of {} at 0.1 s", file, training, form=".3f"),
         Number(PAGE, "order is lost by at most {} s", file, {}, largest_shift),
     ]
 

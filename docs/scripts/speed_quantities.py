@@ -132,7 +132,7 @@ def substep_ratios_in_flocks(rows: pd.DataFrame) -> pd.Series:
 
 
 def time_ratios(column: str) -> Callable[[pd.DataFrame], pd.Series]:
-    """Return a function for the ratios of times, controlled over fixed at the same error."""
+    """Return a function for times of controlled over those of fixed steps at equal error."""
 
     def of_scene(rows: pd.DataFrame) -> pd.Series:
         is_controlled = rows["setting"].str.startswith("controlled")

@@ -22,9 +22,10 @@ def install(extra: str) -> str:
 
 
 def require(module: str, extra: str) -> ModuleType:
-    """Import a module of an extra; raise MissingExtraError if its package is not installed."""
+    """Import a module of an extra; raise MissingExtraError if a package is not installed."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        package = module.partition(".")[0]
+        # The missing package may be one that the imported one needs.
+        package = (error.name or module).partition(".")[0]
         raise MissingExtraError(f"{package} is not installed: {install(extra)}") from error

@@ -85,7 +85,7 @@ class Case:
         }
 
     def title(self) -> str:
-        """Return the parameters and the options in one line."""
+        """Return the main parameters and the options in one line."""
         flock = self.parameters
         options = {"bw_s": flock.bw_s, "target": flock.target, **self.environment}
         parts = [f"{flock.n_boats} boats, pool {flock.pool}"]

@@ -20,15 +20,15 @@ COLORS = {name: law["color"] for name, law in LAWS.items() if law["color"]}
 
 _OKABE_ITO = [OKABE_ITO[name] for name in ("vermilion", "purple", "sky blue", "blue")]
 # The last two are not of Okabe and Ito's palette, and no law has them.
-OWN_COLORS = (*_OKABE_ITO, "#999933", "#ddcc77")
+OTHER_COLORS = (*_OKABE_ITO, "#999933", "#ddcc77")
 """Colors of other policies, in turn."""
 
 _ORDER = r"mean signed order $\Psi_o\,\cos(\varphi_o-\varphi_\mathrm{target})$"
 
 
 def policy_colors(names: Iterable[str]) -> dict[str, str]:
-    """Return a color for each policy: its own in `COLORS`, or the next of `OWN_COLORS`."""
-    others = itertools.cycle(OWN_COLORS)
+    """Return a color for each policy: by its name in `COLORS`, or the next of `OTHER_COLORS`."""
+    others = itertools.cycle(OTHER_COLORS)
     return {name: COLORS.get(name) or next(others) for name in names}
 
 

@@ -13,8 +13,8 @@ class FixedOptions:
     """An environment whose options cannot be set as attributes from outside.
 
     Names in another case or without their unit are refused, too. A user's subclass may still have
-    attributes with such names, except those in `_read_only_attributes`: as class attributes, or set
-    by its own methods. Once such an attribute exists, it may be set from outside, too.
+    such names as class attributes, or set them in its methods, except those in
+    `_read_only_attributes`. Once such an attribute exists, it may be set from outside, too.
     """
 
     #: Attributes of this class that are named like an argument, and set once.

@@ -308,5 +308,5 @@ def _checked_mask(mask: object, num_envs: int) -> NDArray[np.bool_] | None:
             f"options['reset_mask'] has shape {mask.shape}, expected ({num_envs},)"
         )
     if not mask.any():
-        raise ParameterError("options['reset_mask'] is False everywhere: at least one flock")
+        raise ParameterError("options['reset_mask'] is False everywhere: reset at least one flock")
     return mask

@@ -15,7 +15,7 @@ from flockenv.recording.stored import ARRAYS, OPTIONAL
 
 
 def check_names(quantities: object, expected: str) -> None:
-    """Refuse a user's quantities that are not a dictionary, and names that are taken.
+    """Refuse quantities that are no dictionary, and names that are taken or no identifiers.
 
     `expected` says for the error what the dictionary must hold: "functions" or "arrays".
     """

@@ -193,7 +193,7 @@ export class Player {
     }
   }
 
-  /** Pauses at the last sample, or plays, at the end again from the start. */
+  /** Pauses at the sample just shown, or plays; at the end, from the start. */
   toggle() {
     if (this.playing) {
       this.#transport.pause();

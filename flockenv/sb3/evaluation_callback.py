@@ -175,6 +175,6 @@ class FlockEvalCallback(EvalCallback):
         self.logger.record("eval/mean_ep_length", float(evaluation.lengths.mean()))
         if self._is_success_buffer:
             self.logger.record("eval/success_rate", np.mean(self._is_success_buffer))
-        # This logs the evaluation with its own number of steps.
+        # Dumped now, so that the log shows the steps at this evaluation.
         self.logger.record("time/total_timesteps", self.num_timesteps, exclude="tensorboard")
         self.logger.dump(self.num_timesteps)

@@ -116,7 +116,7 @@ class BranchTraining:
     def overlaps(self) -> tuple[int, int, float]:
         """Numbers of branches and of those with deep overlaps, and the deepest overlap in cm.
 
-        An overlap beyond ``tolerance_cm`` is deep.
+        Branches of whole rounds count. An overlap beyond ``tolerance_cm`` is deep.
         """
         return self._core.overlaps
 

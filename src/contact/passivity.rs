@@ -13,8 +13,8 @@ use super::velocity_bias::VelocityBias;
 /// `wide` and `narrow`, free or jammed, at dt = 0.01 to 0.05 s, it exceeded 0.01 in 6 of 1.8 million islands.
 const ALLOWED: f64 = 0.01;
 
-/// A quick check whether contacts might add energy to boats. An impulse λ at a contact whose bias b makes it open, at the
-/// speed −b, adds at most the energy −b·λ. The speed at which an overlap has to open is not counted.
+/// A quick check whether contacts might add energy to boats. An impulse λ at a contact that its bias b opens at the speed −b
+/// adds at most the energy −b·λ. The part of −b that undoes an overlap is subtracted.
 pub(super) fn may_add_energy(
     problem: &ContactProblem,
     impulses: &[f64],

@@ -105,6 +105,7 @@ impl PredictedPoses {
         allowed: f64,
     ) -> bool {
         let mut pairs = contacts.chunk_by(|a, b| a.has_ends() && a.is_twin(b));
+        // The check of a contact at one end covers both ends.
         pairs.any(|pair| detector.overlaps_at(&pair[0], &self.hulls, allowed))
     }
 

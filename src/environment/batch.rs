@@ -334,7 +334,7 @@ const BYTES_PER_BOAT: u64 = 2 << 10;
 
 /// Refuses a batch that would not fit in memory.
 fn check_memory(settings: &EnvSettings, flocks: &[FlockParameters]) -> Result<()> {
-    // Observations are also held by the caller and, at the end of an episode, by the environment.
+    // Four copies at most: the caller may hold two, and at the end of an episode the environment holds another.
     let bytes_per_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
     let bytes_of_flock = |parameters: &FlockParameters| {
         let (boats, leaders) = (parameters.n_boats as u64, parameters.n_leaders as u64);

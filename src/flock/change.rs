@@ -11,8 +11,8 @@ pub enum Change {
     /// The direction that all leaders follow from now on, or one direction per leader.
     Target(Targets),
     /// The parameters from now on. Boats keep their headings and velocities, water with inertia keeps its speed, and
-    /// statistics go on. If the pool changes, each boat keeps its angle about the center and its relative distance between the walls. It is
-    /// an error if a boat then overlaps an obstacle.
+    /// statistics go on. If the pool changes, each boat keeps its angle about the center and its relative distance
+    /// between the walls. It is an error if a boat then overlaps an obstacle.
     Parameters(Box<FlockParameters>),
 }
 

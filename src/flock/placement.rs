@@ -28,7 +28,7 @@ const GROWTH: [f64; 8] = [0.5, 0.65, 0.78, 0.87, 0.93, 0.97, 0.99, 1.0];
 const PASSES_PER_SIZE: u32 = 60;
 /// Distance kept between placed hulls, as a fraction of the boat's radius.
 const CLEARANCE: f64 = 1e-3;
-/// Area of open water per boat, in hull areas: as dilute as 20 boats in the pool `wide`.
+/// Area of open water for the centers per boat, in hull areas: as dilute as 20 boats in the pool `wide`.
 const OPEN_WATER_AREAS: f64 = 25.0;
 /// Number of bisections between an outer radius of open water that suffices and one that does not.
 const HALVINGS: u32 = 10;
@@ -240,7 +240,7 @@ impl Region {
     }
 }
 
-/// Adds boats one by one at random; `None` if a boat finds no free position.
+/// Adds boats one by one at random; `None` if that stalls, would be slow, or is stopped.
 fn place_by_rejection(
     boats: usize,
     region: &Region,

@@ -56,8 +56,8 @@ impl Preset {
     /// mean Ψ_o of leaderless runs lies halfway between its ordered and its disordered level. `None` for a pool in which
     /// it has not been measured.
     ///
-    /// Source: `studies/critical_noise`, rounded to 0.01 s: results version 1 with 8 seeds of 30 minutes every 0.05 s;
-    /// for the experiment version 2, every 0.2 s.
+    /// Source: `studies/critical_noise`, rounded to 0.01 s: 8 seeds of 30 minutes at durations 0.05 s apart (results
+    /// version 1), for the experiment 0.2 s apart (version 2).
     pub fn critical_bw_s(self, pool: &Pool) -> Option<f64> {
         match (self, pool.name()?) {
             (Self::Simulation, "wide") => Some(0.31),

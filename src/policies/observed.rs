@@ -22,8 +22,8 @@ impl ObservedLaw {
     /// A law for observations of a checked layout.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] if a block that the law reads is switched off, and for the law at every substep, which does
-    /// not read observations.
+    /// [`FlockError::Parameter`] if a block that the law reads is switched off, for a law that [`Law::check`] refuses, and
+    /// for [`Law::EverySubstep`], which does not read observations.
     pub fn new(law: Law, layout: &ObservationLayout) -> Result<Self> {
         law.check_reads_observations()?;
         law.check()?;
@@ -32,8 +32,9 @@ impl ObservedLaw {
         let has_block = first_feature.is_some() || leaning.is_none();
         let accepted = "a leaning law reads this block; switch it on";
         FlockError::unless(has_block, "observation", "lean_features: off", accepted)?;
-        let reads_course =
-            leaning.is_none_or(|law| law.decision_period_s.is_none() && law.gains.is_some());
+        // A leaning law without gains chooses a rudder itself; one with a decision period, a held lean.
+        let reads_course = leaning
+            .is_none_or(|leaning| leaning.decision_period_s.is_none() && leaning.gains.is_some());
         let courses = reads_course.then(|| CourseReader::new(layout));
         Ok(Self {
             size: layout.size(),

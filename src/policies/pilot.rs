@@ -47,7 +47,7 @@ impl Pilot {
     /// A pilot for a flock with these checked parameters. `control_hz` is the number of control steps per second.
     ///
     /// # Errors
-    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, for the law at every substep, and for a law
+    /// [`crate::FlockError::Parameter`] for a law that [`Law::check`] refuses, for [`Law::EverySubstep`], and for a law
     /// whose decisions are not a whole number of control steps apart.
     pub fn new(law: Law, parameters: &FlockParameters, control_hz: f64) -> Result<Self> {
         law.check_reads_observations()?;

@@ -47,7 +47,7 @@ fn suggested_shape(object: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResu
     }
 }
 
-/// The error for an array of numbers that are not real.
+/// The error for an array of anything but real numbers.
 fn wrong_dtype(name: &str, dtype: impl std::fmt::Display) -> PyErr {
     let message = format!("{name} must be an array of real numbers, not of dtype {dtype}");
     PyTypeError::new_err(message)

@@ -355,7 +355,7 @@ fn request_from(options: &Bound<'_, PyDict>, boats: usize) -> PyResult<ResetRequ
             "snapshot" => snapshot = Some(value.extract()?),
             "noise_seed" => noise_seed = noise_seed_from(&value)?,
             other => {
-                let accepted = "target, bw_s, state, snapshot or noise_seed";
+                let accepted = "seed, target, bw_s, state, snapshot or noise_seed";
                 let option = format!("{other:?}");
                 return Err(FlockError::parameter("reset option", option, accepted).into());
             }

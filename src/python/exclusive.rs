@@ -15,7 +15,7 @@ pub(super) struct Exclusive<T> {
 }
 
 impl<T> Exclusive<T> {
-    /// An object that errors call `name`.
+    /// Wraps an object; errors call it `name`.
     pub(super) fn new(object: T, name: &'static str) -> Self {
         Self {
             object: RwLock::new(object),

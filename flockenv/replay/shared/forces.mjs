@@ -12,8 +12,8 @@ const SHORTEST = 0.025;
 const MOST_SAMPLES = 20_000;
 
 /**
- * The force, in cm/s², that is drawn half as long as a hull is wide: a round number that about nine in ten
- * contacts stay below. All runs of a page share it.
+ * The force, in cm/s², that is drawn half as long as a hull is wide: a round number. About nine in ten contacts
+ * stay below its double. All runs of a page share it.
  */
 export function forceScale(runs) {
   const forces = [];

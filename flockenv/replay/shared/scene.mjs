@@ -9,7 +9,7 @@ const TRAIL_PIECES = 6;
 const LAW_COLORS = ["paper-law", "damped-law", "tuned-law", "learned"];
 const OTHER_COLORS = ["run-1", "run-2"];
 
-/** Gives each run the color of the law that leads it, unless a run with another name has that color already. */
+/** Gives each run the color of the law that leads it, unless a run with another name has that color already; then, or without a law, one of the others. */
 export function giveColors(runs) {
   const nameByColor = new Map();
   for (const run of runs) {
@@ -17,7 +17,7 @@ export function giveColors(runs) {
     const law = (run.leaders > 0 && run.law ? run.law : "").replace(/ at every .*/, "");
     const colorName = law.replace("'s", "").replaceAll(" ", "-");
     const candidates = [...LAW_COLORS.filter((color) => color === colorName), ...OTHER_COLORS];
-    run.color = candidates.find((color) => (nameByColor.get(color) ?? run.name) === run.name);
+    run.color = candidates.find((color) => (nameByColor.get(color) ?? run.name) === run.name) ?? OTHER_COLORS.at(-1);
     nameByColor.set(run.color, run.name);
   }
 }

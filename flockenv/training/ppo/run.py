@@ -157,7 +157,7 @@ def stored_settings(folder: Path, flock_hours: float | None = None) -> TrainingS
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Lock a folder against other trainings."""
+    """Lock a folder against other trainings; clear leftovers of killed ones."""
     try:
         lock = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout as error:

@@ -38,7 +38,7 @@ impl ContactResolver {
     /// ring of moving boats has no solution: its gaps at the wall close, and those between boats open. Returns whether gaps
     /// may count as curved. If not, the biases stay as they are.
     #[cold]
-    pub(super) fn look_ahead_along_all(&mut self, motion: &Motion) -> bool {
+    pub(super) fn look_ahead_along_all_curves(&mut self, motion: &Motion) -> bool {
         let Some(before) = self.velocities_before(motion) else {
             return false;
         };

@@ -45,8 +45,8 @@ impl Relinearization {
 impl ContactResolver {
     /// Solves islands again until no gap at the substep's end overlaps by more than the tolerance, a solve fails, or
     /// [`MOST_PASSES`] are done. Each pass evaluates gaps at the poses to which the last solve moves the boats, and chooses
-    /// biases with which these gaps would not end below zero. The factor and the normals, along which forces act, stay those of the substep's start. `first` is the outcome
-    /// of the first solve.
+    /// biases with which these gaps would not end below zero. The factor and the normals, along which forces act, stay
+    /// those of the substep's start. `first` is the outcome of the first solve.
     pub(super) fn relinearize(
         &mut self,
         motion: &Motion,
@@ -83,10 +83,9 @@ impl ContactResolver {
         solution
     }
 
-    /// Whether the first solve may leave overlaps deeper than the tolerance. Checking all contacts at once takes less
-    /// time than checking island by island, which is needed only if a contact overlaps. `had_overlaps` saves this
-    /// check, but must not change results. So the check here is slightly stricter than the check by island, whatever
-    /// rounding does.
+    /// Whether the first solve may leave overlaps deeper than the tolerance; true for shortened substeps. Checking all
+    /// contacts at once takes less time than checking island by island. `had_overlaps` skips this check without changing
+    /// results, because the check is slightly stricter than that by island, whatever rounding does.
     fn may_overlap(&self, dt: f64) -> bool {
         let is_whole = dt >= self.whole_substep_s;
         let allowed = (1.0 - 1e-9) * self.relinearization.tolerance;
@@ -97,7 +96,8 @@ impl ContactResolver {
                 .closing_overlaps(&self.detector, &self.contacts, allowed)
     }
 
-    /// Computes biases with which the gaps of these islands would not end the substep below zero. The other islands keep the
+    /// Computes biases with which the gaps of these islands would not end the substep below zero, or below what a
+    /// shortened substep may leave. The other islands keep the
     /// biases with which they were solved: the check for added energy needs those.
     fn correct_biases(&mut self, islands: &[u32], dt: f64) {
         let all_islands = self.solver.islands();

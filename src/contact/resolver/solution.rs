@@ -27,11 +27,11 @@ pub(crate) struct Divisibility {
 /// Outcome of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Solution {
-    /// No gap closes beyond the tolerance.
+    /// The solve converged, and no check has failed.
     Solved,
     /// The work budget was spent before a solution was found.
     Exhausted,
-    /// Contacts overlap at the substep's end by more than the tolerance.
+    /// Contacts overlap at the substep's end by more than the tolerance, or their constraints contradict each other.
     Overlapping,
     /// Skipped contacts overlap at the substep's end by more than the tolerance.
     SkippedOverlapping,
@@ -127,7 +127,7 @@ impl ContactResolver {
         self.fill_biases(motion);
         self.solver.reset(motion.free.len(), &self.contacts);
         let mut solution = self.solve(None, motion, statistics);
-        if solution == Solution::Overlapping && self.look_ahead_along_all(motion) {
+        if solution == Solution::Overlapping && self.look_ahead_along_all_curves(motion) {
             self.warm_start();
             self.solver.reset(motion.free.len(), &self.contacts);
             solution = self.solve(None, motion, statistics);
@@ -151,8 +151,8 @@ impl ContactResolver {
         solution
     }
 
-    /// Finds the islands whose contacts would add energy to boats or reverse a boat's turn, and recomputes their velocity
-    /// biases from the present gaps alone. Returns whether there are such islands.
+    /// If contacts may add energy, finds the islands whose contacts do or reverse a boat's turn, and recomputes their
+    /// velocity biases from the present gaps alone. Returns whether there are such islands.
     fn stop_driving(&mut self, motion: &Motion) -> bool {
         let bias = self.bias(motion);
         let problem = motion.problem(&self.contacts, &self.biases);

@@ -25,7 +25,7 @@ test("a force too weak to be seen has no bar", () => {
   assert.equal(barOf(0.1, 10, BOAT).length, 0);
 });
 
-test("the scale is a round number near what nine in ten forces stay below", () => {
+test("the scale is a round number near half of what nine in ten forces stay below", () => {
   const forces = Array.from({ length: 101 }, (_, k) => k);
   assert.equal(forceScale([runOf(forces)]), 50);
   assert.equal(forceScale([runOf([1, 1, 1]), runOf(forces)]), 50);

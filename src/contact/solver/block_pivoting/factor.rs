@@ -268,7 +268,7 @@ impl Factor {
     /// Solves A_FF·y = x for the active rows and stores y in x. Other rows of x must be zero. One more entry at the end
     /// of x is scratch space.
     pub(super) fn solve(&self, x: &mut [f64]) {
-        // Slices of known lengths, so that one bounds check covers a row's node and its number.
+        // x is one longer than `nodes`, so that the bounds check of a row's node covers its entry of x.
         let nodes = self.nodes.as_slice();
         let x = &mut x[..=nodes.len()];
         x[nodes.len()] = 0.0;
