@@ -2,7 +2,7 @@
 
 use super::flock::Flock;
 use crate::error::Result;
-use crate::geometry::Pose;
+use crate::geometry::{Hull, Pose, Vec2};
 use crate::parameters::{FlockParameters, Pool, Targets};
 
 /// A change of a flock during a run.
@@ -27,7 +27,7 @@ impl Flock {
             Change::Parameters(parameters) => {
                 let poses =
                     poses_in_new_pool(self.poses(), self.parameters().pool, parameters.pool);
-                let mut changed = Self::new(FlockParameters::clone(parameters), self.seed())?;
+                let mut changed = self.with_parameters(FlockParameters::clone(parameters))?;
                 changed.branch(self.noise_seed());
                 // In a smaller pool hulls may overlap a little; the contact solver moves them apart.
                 let allow_overlap = true;
@@ -42,9 +42,23 @@ impl Flock {
         }
         Ok(())
     }
+
+    /// A flock with this seed and other parameters, whose poses are still to be set. Other hulls or another water are
+    /// refused if boats cannot be placed at random.
+    fn with_parameters(&self, parameters: FlockParameters) -> Result<Self> {
+        let fits_alike = self.parameters().has_same_water(&parameters)
+            && Hull::new(self.parameters()) == Hull::new(&parameters);
+        if !fits_alike {
+            return Self::new(parameters, self.seed());
+        }
+        // Present boats fit, though perhaps so tightly that no random placement would succeed.
+        parameters.check()?;
+        Ok(Self::unplaced(parameters, self.seed()))
+    }
 }
 
-/// Moves boats along the radius into a new pool. Each boat keeps its relative distance between the walls.
+/// Moves boats along the radius into a new pool. Each boat keeps its relative distance between the walls. A boat at the
+/// center has the polar angle 0.
 fn poses_in_new_pool(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
     let mut poses = poses.to_vec();
     if old == new {
@@ -54,7 +68,12 @@ fn poses_in_new_pool(poses: &[Pose], old: Pool, new: Pool) -> Vec<Pose> {
     for Pose { position, .. } in &mut poses {
         let radius = libm::hypot(position.x, position.y);
         let relative_distance = (radius - old.inner_radius_cm) / width(old);
-        *position *= (new.inner_radius_cm + relative_distance * width(new)) / radius;
+        let new_radius = new.inner_radius_cm + relative_distance * width(new);
+        if radius > 0.0 {
+            *position *= new_radius / radius;
+        } else {
+            *position = Vec2::new(new_radius, 0.0);
+        }
     }
     poses
 }

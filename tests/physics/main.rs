@@ -10,6 +10,7 @@ mod reference;
 mod support;
 
 mod bad_input;
+mod changes;
 mod collective_state;
 mod conservation;
 mod damping;
