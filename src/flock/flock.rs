@@ -354,7 +354,8 @@ impl Flock {
     pub fn stop_towards(&self, end: Ticks, boat_substeps: u64) -> Ticks {
         let dt = ticks(self.parameters.dt_s);
         let substeps = (boat_substeps / self.parameters.n_boats as u64).max(1);
-        end.min((self.time / dt + substeps) * dt)
+        let substeps_from_zero = (self.time / dt).saturating_add(substeps);
+        end.min(substeps_from_zero.saturating_mul(dt))
     }
 
     /// Order parameters of the normal boats, or of all boats.

@@ -48,3 +48,13 @@ fn a_boat_at_the_center_moves_into_another_pool() {
         assert_eq!(pose.heading, 1.0);
     }
 }
+
+#[test]
+fn a_stop_after_any_amount_of_work_is_no_later_than_the_end() {
+    let mut flock = flock_of(&inert(Scheme::Leapfrog), &[([0.0; 3], [0.0; 3])]);
+    flock.advance(1.0, None).expect("rest");
+    let end = 2 * flock.time();
+    for work in [1 << 40, u64::MAX / 3, u64::MAX] {
+        assert_eq!(flock.stop_towards(end, work), end);
+    }
+}
