@@ -1,6 +1,7 @@
 //! Many environments stepped in parallel. The results of an environment are the same to the bit in every batch and with
 //! every number of threads.
 
+use super::credit::ContactCredit;
 use super::flock_env::StoredEnv;
 use super::observation::ObservationLayout;
 use super::{EnvSettings, FlockEnv, ResetRequest, Upcoming};
@@ -337,8 +338,11 @@ fn check_memory(settings: &EnvSettings, flocks: &[FlockParameters]) -> Result<()
     // Four copies at most: the caller may hold two, and at the end of an episode the environment holds another.
     let bytes_per_leader = 4 * size_of::<f32>() as u64 * settings.observation.size() as u64;
     let bytes_of_flock = |parameters: &FlockParameters| {
-        let (boats, leaders) = (parameters.n_boats as u64, parameters.n_leaders as u64);
-        BYTES_PER_FLOCK + BYTES_PER_BOAT * boats + bytes_per_leader * leaders
+        let (boats, leaders) = (parameters.n_boats, parameters.n_leaders);
+        let bytes_of_boats = BYTES_PER_BOAT * boats as u64 + bytes_per_leader * leaders as u64;
+        // At the end of an episode there are two.
+        let credits = if settings.reward.need_credit() { 2 } else { 0 };
+        BYTES_PER_FLOCK + bytes_of_boats + credits * ContactCredit::bytes(leaders, boats)
     };
     let bytes: u64 = flocks.iter().map(bytes_of_flock).sum();
     // Reserving the memory, without writing to it, tells whether the system would give it.

@@ -50,6 +50,11 @@ impl ContactCredit {
         }
     }
 
+    /// Bytes of the turns of these numbers of leaders and boats.
+    pub(super) fn bytes(leaders: usize, boats: usize) -> u64 {
+        (size_of::<Turned>() * leaders * (boats - leaders)) as u64
+    }
+
     /// Whether a stored credit is for these numbers of leaders and boats.
     pub(super) fn fits(&self, leaders: usize, boats: usize) -> bool {
         self.leaders == leaders

@@ -6,9 +6,10 @@ use crate::support::{
 };
 use flockenv::FlockError;
 use flockenv::environment::{
-    Autoreset, Drawn, EnvBatch, FlockEnv, ResetRequest, Start, TargetChoice, Upcoming,
+    Autoreset, Drawn, EnvBatch, FlockEnv, ResetRequest, RewardTerm, RewardWeights, Start, TERMS,
+    TargetChoice, Upcoming, Weights,
 };
-use flockenv::parameters::{FlockParameters, Scheme, Target, Targets};
+use flockenv::parameters::{FlockParameters, Pool, Scheme, Target, Targets};
 use rayon::ThreadPoolBuilder;
 
 fn action(seed: u64, leader: usize, time: u32) -> f64 {
@@ -233,4 +234,24 @@ fn without_actions_flocks_move_by_the_steering_law() {
     let summary = batch.envs()[0].finished().unwrap();
     assert_eq!((summary.total_reward, summary.clip_rate), (0.0, 0.0));
     assert_eq!(batch.rows(), 2);
+}
+
+#[test]
+fn batches_whose_contacts_take_too_much_memory_are_refused() {
+    let crowd = FlockParameters {
+        n_boats: 100_000,
+        n_leaders: 50_000,
+        pool: Pool::WIDE,
+        ..parameters(1)
+    };
+    let of = |term: RewardTerm| {
+        let mut weights = [0.0; TERMS];
+        weights[term as usize] = 1.0;
+        let reward = Weights::One(RewardWeights(weights));
+        let settings = changed(settings(5), |settings| settings.reward = reward);
+        EnvBatch::new(settings, vec![crowd.clone()])
+    };
+    assert!(of(RewardTerm::SignedOrder).is_ok());
+    let refused = of(RewardTerm::ContactPush).expect_err("80 GB");
+    assert!(refused.to_string().contains("bytes do not fit"));
 }
