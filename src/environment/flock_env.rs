@@ -258,7 +258,10 @@ impl FlockEnv {
             return;
         };
         let targets = episode.targets();
-        let (first_row, other_rows) = out.split_at_mut(FlockFeatures::SIZE.min(out.len()));
+        // Without leaders there are no rows.
+        let Some((first_row, other_rows)) = out.split_at_mut_checked(FlockFeatures::SIZE) else {
+            return;
+        };
         episode.observe_features(&self.features, targets.reference(), first_row);
         let other_rows = other_rows.chunks_exact_mut(FlockFeatures::SIZE);
         for (leader, row) in (1..).zip(other_rows) {

@@ -255,3 +255,9 @@ fn batches_whose_contacts_take_too_much_memory_are_refused() {
     let refused = of(RewardTerm::ContactPush).expect_err("80 GB");
     assert!(refused.to_string().contains("bytes do not fit"));
 }
+
+#[test]
+fn without_leaders_there_are_no_features() {
+    let batch = batch(settings(5), &[0], 3);
+    batch.envs()[0].observe_features(&mut []);
+}
