@@ -17,8 +17,8 @@ pub struct Pilot {
     steps_per_decision: u32,
     /// Number of control steps that the present decision has steered; 0: a decision is due.
     steps_steered: u32,
-    /// Angle in rad by which each leader's heading leans outward. A law that chooses rudders stores each leader's rudder for
-    /// a clockwise target instead.
+    /// Angle in rad by which each leader's heading leans outward. A law that chooses rudders stores each leader's rudder
+    /// instead. It keeps its sign if the target changes before the next decision.
     leans: Vec<f64>,
     views: Views,
 }
@@ -84,7 +84,7 @@ impl Pilot {
         let leans = self.leans.iter().enumerate();
         let rudders = leans.map(|(leader, &lean)| {
             if chooses_rudders {
-                return view.targets.of(leader).sign() * lean;
+                return lean;
             }
             let course = self.views.courses.course(&view, leader, lean);
             self.law.rudder(&course)
@@ -95,9 +95,13 @@ impl Pilot {
     /// Replaces the leans (or rudders), if the law is a leaning law.
     fn decide(&mut self, view: &FlockView) {
         if let (Some(law), Some(features)) = (self.law.leaning(), &mut self.views.features) {
-            let scale = law.gains.map_or(1.0, |_| LARGEST_LEAN);
             for (leader, lean) in self.leans.iter_mut().enumerate() {
-                *lean = scale * f64::from(law.action(&features.observed(view, leader)));
+                let action = f64::from(law.action(&features.observed(view, leader)));
+                *lean = match law.gains {
+                    Some(_) => LARGEST_LEAN * action,
+                    // The law chooses rudders for a clockwise target.
+                    None => view.targets.of(leader).sign() * action,
+                };
             }
         }
     }

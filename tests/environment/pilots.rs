@@ -104,3 +104,40 @@ fn laws_whose_gains_are_no_numbers_lead_nobody() {
         }
     }
 }
+
+#[test]
+fn a_rudder_chosen_before_the_target_is_reversed_is_held() {
+    let mut law = learned();
+    (law.gains, law.decision_period_s) = (None, Some(0.4));
+    let law = Law::Leaning(Box::new(law));
+    let settings = EnvSettings {
+        observation: ObservationLayout::from_blocks(&[Block::LeanFeatures]),
+        mirror_to_target: true,
+        target: TargetChoice::Alternate,
+        episode_s: Some(4.0),
+        decision_period_s: Some(0.4),
+        ..EnvSettings::default()
+    };
+    let observed = ObservedLaw::new(law.clone(), &settings.layout()).unwrap();
+    let size = settings.observation.size();
+    let mut batch = EnvBatch::new(settings, vec![parameters(3)]).unwrap();
+    batch.reset(&[seeded(5)]).unwrap();
+    let mut piloted = flock(&batch, 0).clone();
+    let mut pilot = Pilot::new(law, piloted.parameters(), 10.0).unwrap();
+    let mut rows = vec![0.0; 3 * size];
+    batch.observe(&mut rows);
+    // The first quarter of the episode ends after 10 steps, in the middle of a hold.
+    for control_step in 0..12 {
+        if control_step == 10 {
+            piloted.set_target(Target::Clockwise).unwrap();
+        }
+        if control_step % 4 == 0 {
+            let rows_of = rows.chunks_exact(size);
+            let actions: Vec<_> = rows_of.map(|row| observed.action(row)).collect();
+            rows = step(&mut batch, &actions).unwrap().observations;
+        }
+        let rudders = pilot.rudders(&piloted).unwrap();
+        piloted.advance(0.1, Some(&rudders)).unwrap();
+    }
+    assert_eq!(piloted.poses(), flock(&batch, 0).poses());
+}
