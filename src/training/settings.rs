@@ -174,6 +174,7 @@ impl BranchSettings {
 
     /// Number of branches in an episode.
     pub(super) fn branches(&self) -> usize {
-        (self.episode_s / self.branch_s) as usize
+        // Without the small number, rounding errors could lose a branch.
+        (self.episode_s / self.branch_s + 1e-9) as usize
     }
 }

@@ -186,3 +186,27 @@ fn from_nothing_leaders_learn_to_raise_the_order() {
         .collect();
     assert!(mean(&raised) > 0.1, "{raised:?}");
 }
+
+#[test]
+fn an_episode_of_whole_branches_has_all_of_them() {
+    // In floating point 4.8 / 1.6 is less than 3. After three branches, 5 s leave no time for a fourth.
+    let orders = |episode_s: f64| {
+        let (settings, parameters) = task(ActionMode::Rudder);
+        let settings = BranchSettings {
+            pairs: 2,
+            flock_hours: 6.0 * 4.0 * 1.6 / 3600.0,
+            branch_s: 1.6,
+            hold_s: 0.8,
+            seen_s: 0.4,
+            trial_s: 1.6,
+            blind_s: 0.4,
+            episode_s,
+            ..settings
+        };
+        let start = Trainer::new(settings, parameters, 5, 0).expect("a task that is accepted");
+        let orders: Vec<_> = trained(start, usize::MAX).curve().collect();
+        orders
+    };
+    assert_eq!(orders(4.8), orders(5.0));
+    assert_ne!(orders(4.8), orders(4.0));
+}
