@@ -16,6 +16,8 @@ pub struct ObservedLaw {
     courses: Option<CourseReader>,
     /// Index of the first lean feature in an observation, if the law reads lean features.
     first_feature: Option<usize>,
+    /// Index of the target, if the law chooses a rudder itself, for a clockwise target, and observations are not mirrored.
+    target: Option<usize>,
 }
 
 impl ObservedLaw {
@@ -36,7 +38,14 @@ impl ObservedLaw {
         let reads_course = leaning
             .is_none_or(|leaning| leaning.decision_period_s.is_none() && leaning.gains.is_some());
         let courses = reads_course.then(|| CourseReader::new(layout));
+        let chooses_rudder = leaning.is_some_and(|leaning| leaning.gains.is_none());
+        let target = layout.index(Block::Target, "target");
+        let target = target.filter(|_| chooses_rudder && !layout.is_mirrored);
+        let has_target = !chooses_rudder || layout.is_mirrored || target.is_some();
+        let accepted = "without mirroring, the law reads this block; switch it on";
+        FlockError::unless(has_target, "observation", "target: off", accepted)?;
         Ok(Self {
+            target,
             size: layout.size(),
             courses: courses.transpose()?,
             first_feature: first_feature.filter(|_| leaning.is_some()),
@@ -62,7 +71,10 @@ impl ObservedLaw {
                 let course = courses.course(observation, LARGEST_LEAN * leaning_action);
                 self.law.rudder(&course)
             }
-            None => leaning_action,
+            None => {
+                let sign = self.target.map_or(1.0, |index| observation[index].into());
+                sign * leaning_action
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Leaders that follow a law by themselves do what the environment's do, given the law's actions: bit for bit.
 
-use crate::support::{flock, parameters, seeded, step};
-use flockenv::environment::observation::{Block, ObservationLayout};
+use crate::support::{changed, flock, parameters, seeded, step};
+use flockenv::Flock;
+use flockenv::environment::observation::{Block, ObservationLayout, observe_flock};
 use flockenv::environment::{ActionMode, EnvBatch, EnvSettings, TargetChoice};
 use flockenv::parameters::{Target, Targets};
 use flockenv::policies::{Law, LeaningLaw, ObservedLaw, Pilot};
@@ -140,4 +141,27 @@ fn a_rudder_chosen_before_the_target_is_reversed_is_held() {
         piloted.advance(0.1, Some(&rudders)).unwrap();
     }
     assert_eq!(piloted.poses(), flock(&batch, 0).poses());
+}
+
+#[test]
+fn a_law_of_rudders_turns_them_over_where_its_observation_is_not_mirrored() {
+    let mut law = learned();
+    (law.gains, law.decision_period_s) = (None, Some(0.4));
+    let law = Law::Leaning(Box::new(law));
+    let plain = ObservationLayout::from_blocks(&[Block::Target, Block::LeanFeatures]);
+    for target in [Target::Clockwise, Target::CounterClockwise] {
+        let of_target = changed(parameters(3), |p| p.target = target.into());
+        let flock = Flock::new(of_target, 5).unwrap();
+        let action = |layout: ObservationLayout| {
+            let observed = ObservedLaw::new(law.clone(), &layout).unwrap();
+            let rows = observe_flock(&flock, layout, &[0.0; 3]).unwrap();
+            observed.action(&rows[..layout.size()])
+        };
+        let mirrored = action(plain.mirrored(true));
+        assert!(mirrored != 0.0);
+        assert_eq!(action(plain), target.sign() * mirrored);
+    }
+    let without_target = ObservationLayout::from_blocks(&[Block::LeanFeatures]);
+    let refused = ObservedLaw::new(law, &without_target).unwrap_err();
+    assert!(refused.to_string().contains("target: off"), "{refused}");
 }
