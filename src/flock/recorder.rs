@@ -256,8 +256,17 @@ impl<T: Real> Recorder<T> {
     /// time. Changes later than the last sample have no effect; they are accepted because a ramp may end with the run.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for a change after the end of the run, and if all changes come too late for any sample.
+    /// [`FlockError::Parameter`] for a change after the end of the run, or of the number of boats or leaders, and if all
+    /// changes come too late for any sample.
     pub fn with_changes(mut self, mut changes: Vec<(Ticks, Change)>) -> Result<Self> {
+        let numbers = |parameters: &FlockParameters| (parameters.n_boats, parameters.n_leaders);
+        let keeps_numbers = |change: &Change| match change {
+            Change::Target(_) => true,
+            Change::Parameters(new) => numbers(new) == numbers(self.flock.parameters()),
+        };
+        let all_keep_numbers = changes.iter().all(|(_, change)| keeps_numbers(change));
+        let (refused, accepted) = ("other n_boats or n_leaders", "those of the run's start");
+        FlockError::unless(all_keep_numbers, "schedule", refused, accepted)?;
         changes.sort_by_key(|&(time, _)| time);
         if let (Some(&(first, _)), Some(&(last, _))) = (changes.first(), changes.last()) {
             let last_sample = self.sampling.time(self.sampling.count() - 1);

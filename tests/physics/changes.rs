@@ -3,7 +3,7 @@
 //! On paper: a boat at a relative distance s between walls at R_in and R_out lies at R_in + s (R_out − R_in).
 
 use crate::support::{annulus, changed, crowded, disc, flock_of, inert};
-use flockenv::flock::Change;
+use flockenv::flock::{Change, Recorder, Sampling};
 use flockenv::parameters::Scheme;
 use flockenv::{Flock, FlockError, FlockParameters};
 
@@ -56,5 +56,24 @@ fn a_stop_after_any_amount_of_work_is_no_later_than_the_end() {
     let end = 2 * flock.time();
     for work in [1 << 40, u64::MAX / 3, u64::MAX] {
         assert_eq!(flock.stop_towards(end, work), end);
+    }
+}
+
+#[test]
+fn a_run_keeps_its_numbers_of_boats_and_leaders() {
+    let p = inert(Scheme::Leapfrog);
+    let flock = flock_of(&p, &[([0.0; 3], [0.0; 3]), ([30.0, 0.0, 0.0], [0.0; 3])]);
+    let run = |n_boats, n_leaders| {
+        let other = changed(flock.parameters().clone(), |p| {
+            (p.n_boats, p.n_leaders, p.c4) = (n_boats, n_leaders, 1.0);
+        });
+        let sampling = Sampling::new(1.0, 10.0).expect("a second");
+        let recorder = Recorder::<f64>::new(flock.clone(), sampling).expect("memory");
+        recorder.with_changes(vec![(0, to(&other))])
+    };
+    assert!(run(2, flock.parameters().n_leaders).is_ok());
+    for (n_boats, n_leaders) in [(3, 0), (2, 2)] {
+        let refused = run(n_boats, n_leaders).expect_err("other numbers");
+        assert!(refused.to_string().contains("n_boats or n_leaders"));
     }
 }
