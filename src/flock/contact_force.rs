@@ -16,7 +16,8 @@ pub struct ContactForce {
 }
 
 impl Flock {
-    /// Contacts and near-contacts of the last substep, with their gaps at the present poses and their mean forces.
+    /// Contacts and near-contacts of the last substep, with their gaps at the present poses and their mean forces. There
+    /// are none after a state was set or restored, or an advance failed.
     pub fn contacts(&self) -> Vec<ContactForce> {
         let resolver = &self.integrator.contacts;
         let detector = &resolver.detector;
