@@ -8,12 +8,14 @@ const WORK = 20_000;
 const TURN = 4;
 
 let core = null;
+/** A second instance of the simulator, which tries requests. */
+let trial = null;
 let shown = [];
 
 /** Answers of the thread, by the kind of question. */
 export const ANSWERS = {
   async start({ bytes }) {
-    core = await Core.load(bytes);
+    [core, trial] = await Promise.all([Core.load(bytes), Core.load(bytes)]);
     return { described: core.describe() };
   },
 
@@ -36,24 +38,21 @@ export const ANSWERS = {
     return { series: Float64Array.from(rows.flat()) };
   },
 
-  /** Starts all flocks again. */
+  /** Starts all flocks again. After a refusal those before continue as they were. */
   open({ requests }) {
+    tryLater(requests);
     const values = openAll(requests);
     return { continues: false, values, taken: takeAll(requests.length) };
   },
 
-  /** Changes all flocks; if one of them has to start again, all do. */
+  /** Changes all flocks; if one of them has to start again, all do. After a refusal all continue as they were. */
   change({ requests }) {
-    try {
-      const answers = requests.map((request, flock) => core.change(flock, request));
-      shown = requests;
-      const continues = answers.every(({ continued }) => continued);
-      const values = continues ? answers : openAll(requests);
-      return { continues, values, taken: takeAll(requests.length) };
-    } catch (refusal) {
-      openAll(shown);
-      throw refusal;
-    }
+    tryLater(requests);
+    const answers = requests.map((request, flock) => core.change(flock, request));
+    shown = requests;
+    const continues = answers.every(({ continued }) => continued);
+    const values = continues ? answers : openAll(requests);
+    return { continues, values, taken: takeAll(requests.length) };
   },
 
   /** Advances all flocks by up to `samples` samples, for about `milliseconds`. Leaders that the visitor steers get this `heading`. */
@@ -115,6 +114,14 @@ export const ANSWERS = {
 function advanceBy(flock, samples) {
   for (let missing = samples; missing > 0;) {
     missing -= core.advance(flock, missing, WORK);
+  }
+}
+
+/** Throws the refusal of a request after the first. The simulator leaves a flock as it is when it refuses; the flocks before it would have changed. */
+function tryLater(requests) {
+  for (const request of requests.slice(1)) {
+    trial.open(0, request);
+    trial.close(0);
   }
 }
 
