@@ -109,7 +109,7 @@ export class Flocks {
     const flocks = isComplete ? { ...first, changes } : this.shown;
     const latest = isComplete ? changes.at(-1)?.time ?? 0 : 0;
     const other = {
-      ...(start > latest && { start: String(start) }),
+      ...(start > latest && start <= LATEST && { start: String(start) }),
       ...(time > Math.max(start, latest) && time <= LATEST && { now: String(time) }),
       ...(first.copies > 1 && { flocks: String(first.copies) }),
     };
@@ -151,10 +151,10 @@ export class Flocks {
     return isSame;
   }
 
-  /** Lets the simulator advance the flocks, and appends its samples; returns its answer. */
+  /** Lets the simulator advance the flocks, by at most half of what their runs keep, and appends its samples; returns its answer. */
   async advance(question, onCycle) {
     const { runs } = this;
-    const answer = await this.simulator.ask("advance", question);
+    const answer = await this.simulator.ask("advance", { ...question, samples: Math.min(question.samples, ...runs.map(({ capacity }) => capacity >> 1)) });
     // In the meantime, other flocks may have replaced these, or a recording may be shown.
     if (runs === this.runs || runs === this.#waiting?.runs) {
       this.append(answer.taken, onCycle, runs);

@@ -86,8 +86,8 @@ const first = { flock: { n_boats: "2", seed: "7" }, beside: null, copies: 1 };
 const later = (times, inWindow = 1) => ({ ...taken, time_s: times, in_analysis_window: [inWindow, inWindow] });
 
 /** Flocks that run two samples with each answer, and continue with each change. */
-async function run() {
-  let time = -1;
+async function run(start = -1) {
+  let time = start;
   const flocks = flocksOf(async (kind) => {
     time += 2;
     return { continues: kind === "change", values: [answer()], taken: [later([time - 1, time])] };
@@ -106,6 +106,20 @@ test("the score leaves out what was simulated before anybody looked, and a link 
   assert.ok(Number.isNaN(flocks.runs[0].mean("psi_o")));
   assert.deepEqual(flocks.linkFields(), { ...first, changes: [], other: { start: "5" }, isComplete: true });
   assert.deepEqual(flocks.linkFields(5.5).other, { start: "5", now: "5.5" });
+});
+
+test("small flocks run far at once, and get no more samples than their runs keep", async () => {
+  let time = 0;
+  const ask = async (_, { samples = 1 }) => {
+    const times = Array.from({ length: samples }, () => { time += 0.1; return time; });
+    const zeros = (width) => new Float64Array(width * samples);
+    const many = { ...taken, time_s: times, phase: zeros(1), in_analysis_window: zeros(1), pose: zeros(6), velocity: zeros(6), rudder: zeros(1), series: zeros(2) };
+    return { continues: false, values: [answer()], taken: [many] };
+  };
+  const flocks = flocksOf(ask);
+  await flocks.update(first, "open");
+  await flocks.runTo(1500, () => true);
+  assert.equal(Math.round(flocks.runs[0].end), 1500);
 });
 
 test("a flock that is not wanted any more runs no further", async () => {
@@ -133,6 +147,12 @@ test("more changes than a link holds are left out, and it says so", async () => 
   }
   const { flock, changes, isComplete } = flocks.linkFields();
   assert.deepEqual([flock.bw_s, changes, isComplete], ["201", undefined, false]);
+});
+
+test("a link has no time later than links may have", async () => {
+  const flocks = await run(7300);
+  await flocks.update({ ...first, flock: { ...first.flock, bw_s: "0.5" } }, "change");
+  assert.deepEqual(flocks.linkFields(7400), { ...first, flock: { ...first.flock, bw_s: "0.5" }, other: {}, isComplete: false });
 });
 
 test("an answer about flocks that are no longer shown is dropped", async () => {
