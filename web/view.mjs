@@ -129,7 +129,7 @@ export class View {
     const options = { trailSeconds, coloring, forceScale: byId("forces").checked ? FORCE : null, boat: this.hovered ?? this.pinned, palette: this.palette };
     for (const panel of this.panels) {
       panel.show(time, options);
-      if (this.pinned !== null && !areYours && panel.canvas.clientWidth > 0) {
+      if (this.pinned !== null && this.pinned < panel.run.boats && !areYours && panel.canvas.clientWidth > 0) {
         drawLapFrame(panel.scene, this.pinned);
       }
     }
@@ -195,12 +195,12 @@ export class View {
       canvas.setAttribute("aria-label", words);
       return this.panels.length > 1 ? `${run.name}: ${words}` : words;
     });
-    const chosen = this.pinned === null ? [] : [boatWords(this.panels[0].run, time, this.pinned, this.palette)];
+    const hasChosen = this.pinned !== null && this.pinned < this.panels[0].run.boats;
+    const chosen = hasChosen ? [boatWords(this.panels[0].run, time, this.pinned, this.palette)] : [];
     // Only as much as a screen reader speaks before the next sentence.
     const game = () => [clockwiseWords(this.panels.map(({ run }) => run), time, this.palette), ...this.#scores.map((score) => scoreWords(score, this.roundWords))];
     const text = [...chosen, ...(areYours ? game() : sentences)].join(" ");
-    const isDue = !isPlaying || performance.now() - this.#announcedAt > ANNOUNCE_EVERY;
-    if (isDue && text !== byId("doing").textContent) {
+    if ((!isPlaying || performance.now() - this.#announcedAt > ANNOUNCE_EVERY) && text !== byId("doing").textContent) {
       this.#announcedAt = performance.now();
       byId("doing").textContent = text;
     }

@@ -99,7 +99,7 @@ export class Scene {
     if (forceScale !== null && this.run.hasForces) {
       drawForces(this, this.run.sampleAt(time), forceScale);
     }
-    if (boat !== null && isPresent(boat)) {
+    if (boat !== null && boat < this.run.boats && isPresent(boat)) {
       this.#markChosen(boat);
     }
   }

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { giveColors, tintOf } from "../../../flockenv/replay/shared/scene.mjs";
+import { giveColors, Scene, tintOf } from "../../../flockenv/replay/shared/scene.mjs";
 
 /** The tint of a boat east of the middle, by its heading in degrees: south is clockwise, east outward. */
 const tints = (...degrees) => degrees.map((each) => tintOf([70, 0, (each * Math.PI) / 180], 0.5));
@@ -37,4 +37,21 @@ test("others have colors of no law, and no two runs the same", () => {
 
 test("copies of a flock have its color", () => {
   assert.deepEqual(given(["you", "you"], ["you", "you"], ["the law", "paper's law"]), ["run-1", "run-1", "paper-law"]);
+});
+
+test("a boat that another run has is marked in that run alone", () => {
+  globalThis.window = {};
+  const radii = [];
+  const context = new Proxy({ arc: (...numbers) => radii.push(numbers[2]) }, { get: (drawn, name) => drawn[name] ?? (() => undefined), set: () => true });
+  const canvas = { clientWidth: 200, clientHeight: 200, getContext: () => context };
+  const lengths = { outer_radius_cm: 90, inner_radius_cm: 0, hull_radius_cm: 4, hull_half_length_cm: 6 };
+  const run = { lengths, boats: 1, leaders: 0, walls: [], discs: [], hasForces: false, posesAt: () => [[70, 0, 0]], roleOf: () => "normal" };
+  const scene = new Scene(canvas, run);
+  const drawn = (boat) => {
+    radii.length = 0;
+    scene.draw(0, { trailSeconds: 0, forceScale: null, boat, coloring: "role", palette: {} });
+    return radii.length;
+  };
+  assert.equal(drawn(1), drawn(null));
+  assert.equal(drawn(0), drawn(null) + 1);
 });
