@@ -12,6 +12,7 @@ export class Unanswered extends Error {
 }
 
 export class Simulator {
+  /** The thread; null before the start and after a stop. */
   worker = null;
   lastId = 0;
   /** Questions without an answer, by their number. */
@@ -32,6 +33,7 @@ export class Simulator {
   /** Ends the thread at once; its open questions fail with this sentence. */
   stop(words) {
     this.worker?.terminate();
+    this.worker = null;
     for (const { reject, timeout } of this.open.values()) {
       clearTimeout(timeout);
       reject(new Unanswered({ words }));
@@ -54,6 +56,9 @@ export class Simulator {
   /** Asks a question; returns the answer, or throws an `Unanswered`. */
   ask(kind, message) {
     return new Promise((resolve, reject) => {
+      if (!this.worker) {
+        throw new Unanswered({ words: "it is not running" });
+      }
       this.lastId += 1;
       const id = this.lastId;
       const timeout = setTimeout(() => this.stop("it took too long"), PATIENCE);

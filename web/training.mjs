@@ -54,6 +54,8 @@ export class Training {
       await this.#run();
       this.#say(this.progress.has_ended ? `The training is over. ${this.#words} These are the last leaders, not the best.` : `Stopped. ${this.#words}`);
     } catch (error) {
+      // What was learned until now can still be saved.
+      this.before = this.progress?.policy ?? this.before;
       this.progress = null;
       this.#say(`No training: ${error.message}.`);
     }
