@@ -10,7 +10,8 @@ export function readLink(fragment, { start, end, speeds }) {
   const requested = { time: null, speed: null, ignored: [] };
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ""))) {
     const value = text.trim() === "" ? NaN : Number(text);
-    if (key === "t" && value >= start && value <= end) {
+    // A time in a link is rounded up to a millisecond.
+    if (key === "t" && value >= start && value <= end + 1e-3) {
       requested.time = value;
     } else if (key === "speed" && speeds.includes(value)) {
       requested.speed = value;
@@ -29,7 +30,7 @@ function refusal(key, text, { start, end, speeds }) {
   return ignoredPart(key, text, accepted[key] ?? "a link may hold t and speed");
 }
 
-/** The fragment for a time in s and a speed. */
+/** The fragment for a time in s and a speed. The time is rounded up: just before a sample, another one would be shown. */
 export function linkTo(time, speed) {
-  return `#t=${Number(time.toFixed(1))}&speed=${speed}`;
+  return `#t=${Math.ceil(1000 * time - 1e-3) / 1000}&speed=${speed}`;
 }

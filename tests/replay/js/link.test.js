@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { linkTo, readLink } from "../../../flockenv/replay/link.mjs";
+import { Run } from "../../../flockenv/replay/shared/run.mjs";
 
 const PAGE = { start: 0, end: 480, speeds: [0.5, 1, 8] };
 
@@ -42,4 +43,13 @@ test("what is written is read back", () => {
   assert.equal(linkTo(240, 8), "#t=240&speed=8");
   assert.equal(linkTo(12.3000001, 0.5), "#t=12.3&speed=0.5");
   assert.deepEqual(readLink(linkTo(479.9, 8), PAGE), { time: 479.9, speed: 8, ignored: [] });
+});
+
+test("a link to a sample of tracks, at 30 frames per second, shows that sample, the last one too", () => {
+  const times = Float64Array.from({ length: 1001 }, (_, k) => k / 30);
+  const run = new Run({}, new Map(), times);
+  for (const k of [0, 1, 299, 300, 1000]) {
+    const { time, ignored } = readLink(linkTo(times[k], 8), { ...PAGE, end: times.at(-1) });
+    assert.deepEqual([run.sampleAt(time), ignored], [k, []]);
+  }
 });
