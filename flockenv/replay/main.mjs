@@ -10,7 +10,7 @@ async function start() {
   window.player = new Player(runs, quantities, moment.time_s);
   const thinned = Math.max(...runs.map((run) => run.every));
   document.getElementById("note").textContent =
-    `${moment.words} ${thinned > 1 ? `Every ${thinned}th sample is shown. ` : ""}` +
+    `${moment.words} ${thinned > 1 ? `Of ${thinned} samples one is shown. ` : ""}` +
     "Between samples boats are drawn on straight lines. Click a boat to keep its numbers.";
   document.body.dataset.ready = "true";
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
