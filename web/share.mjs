@@ -120,7 +120,9 @@ export function showTexts(flocks, time) {
   const isTrained = shownFlocks.some(({ leaders }) => leaders === TRAINED);
   const trainedPolicy = flocks.trained ? "policy.json" : "straight ahead";
   const runnable = shownFlocks.map((fields) => (fields.leaders === TRAINED ? { ...fields, leaders: trainedPolicy } : fields));
-  const seconds = Math.max(LEAST_SECONDS, 60 * Math.ceil((time + 1) / 60));
+  // The latest change may be later than the time that is drawn.
+  const latest = Math.max(time, schedule.at(-1)?.time ?? 0);
+  const seconds = Math.max(LEAST_SECONDS, 60 * Math.ceil((latest + 1) / 60));
   const commands = runnable.map((fields) => commandLine(fields, seconds, schedule));
   const byId = (id) => document.getElementById(id);
   byId("command").value = commands.join("\n").trim();

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { GrowingRun } from "../../web/growing_run.mjs";
 import { readNpz } from "../../web/npz.mjs";
-import { derivedOf, recordingOf } from "../../web/share.mjs";
+import { derivedOf, recordingOf, showTexts } from "../../web/share.mjs";
 
 const samples = (times) => ({
   time_s: Float64Array.from(times), phase: new Float64Array(times.length), in_analysis_window: new Float64Array(times.length),
@@ -41,4 +41,14 @@ test("what is asked of a recording has the sign of its target, and states where 
   assert.deepEqual(asked[0].states.map(({ pose }) => pose), [[[0, 1, 2]], [[3, 4, 5]]]);
   const ordered = { ...arrays, order_psi_o: { values: [1, 1] }, order_phi_o: { values: [0, 0] } };
   assert.equal(derivedOf(ordered, { target: "cw", boats: 1 }, ["psi_o", "phi_o"]).states, null);
+});
+
+test("commands and Python last beyond the latest change, though an earlier time is drawn", () => {
+  const elements = {};
+  globalThis.document = { getElementById: (id) => { elements[id] ??= {}; return elements[id]; } };
+  const first = { flock: { bw_s: "0.3" }, beside: null, copies: 1 };
+  const past = { first, changes: [{ time: 541.5, fields: { bw_s: "0.5" } }] };
+  showTexts({ past, shown: first, kinds: { bw_s: "real" }, linkFields: () => ({ isComplete: true }) }, 538.9);
+  assert.match(elements.command.value, /--minutes 10 --at 541.5:bw_s=0.5$/);
+  assert.match(elements.python.value, /duration_s=600/);
 });
