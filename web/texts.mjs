@@ -5,6 +5,8 @@ import { isParameter } from "./request.mjs";
 /** Fields that the command has options for. */
 const OPTIONS = { n_boats: "--n-boats", n_leaders: "--n-leaders", pool: "--pool", bw_s: "--bw-s" };
 const shellWord = (text) => (/^[\w.:=+-]+$/.test(text) ? text : `'${text}'`);
+/** A number as TOML and Python write it: in links it may be .5 or 007. Other text stays. */
+const spelled = (text) => (text.trim() !== "" && Number.isFinite(Number(text)) ? String(Number(text)) : text.trim());
 
 /** Whether commands and Python can express these changes. */
 export function isSchedule(changes) {
@@ -15,9 +17,8 @@ export function isSchedule(changes) {
 /** Options of a command for a flock's parameters. */
 function fieldWords(flock) {
   return Object.entries(flock).filter(([name]) => isParameter(name)).map(([name, value]) => {
-    const isList = /[,;]/.test(value);
-    return Object.hasOwn(OPTIONS, name) ? `${OPTIONS[name]} ${shellWord(isList ? `(${value.split(",").join(", ")})` : value)}` :
-      `--set ${shellWord(`${name}=${isList ? tomlList(value) : value}`)}`;
+    const option = OPTIONS[name];
+    return option ? `${option} ${shellWord(tomlValue(value).replace("[", "(").replace("]", ")"))}` : `--set ${shellWord(`${name}=${tomlValue(value)}`)}`;
   });
 }
 
@@ -36,17 +37,17 @@ export function commandLine(flock, seconds, changes = []) {
   words.push(...(leaders ? [`--policy "${leaders}"`] : []), `--seed ${flock.seed ?? 0}`, `--minutes ${seconds / 60}`);
   for (const { time, fields } of changes) {
     words.push(...Object.entries(fields).map(([name, value]) =>
-      `--at ${shellWord(`${time}:${name}=${/[,;]/.test(value) ? tomlList(value) : value}`)}`));
+      `--at ${shellWord(`${time}:${name}=${tomlValue(value)}`)}`));
   }
   return leaders.includes(",") ? "" : words.join(" ");
 }
 
-/** A list in TOML, from its text in links. */
-function tomlList(value) {
+/** A number, word or list in TOML, from its text in links; words have no quotes. */
+function tomlValue(value) {
   if (value.includes(";")) {
-    return `[${value.split(";").filter(Boolean).map(tomlList).join(", ")}]`;
+    return `[${value.split(";").filter(Boolean).map(tomlValue).join(", ")}]`;
   }
-  return `[${value.split(",").join(", ")}]`;
+  return value.includes(",") ? `[${value.split(",").map(spelled).join(", ")}]` : spelled(value);
 }
 
 /** Python that simulates flocks for a number of seconds, with their changes. `kinds`: the kind of each field's value. */
@@ -73,12 +74,12 @@ function simulation(flock, seconds, kinds, changes, name) {
 }
 
 function pythonValue(text, kind) {
-  const number = (item) => (/inf/i.test(item) ? 'float("inf")' : item.trim());
+  const number = (item) => (/inf/i.test(item) ? 'float("inf")' : spelled(item));
   if (kind === "flag") {
     return text === "true" ? "True" : "False";
   }
   if (kind === "count" || kind === "real") {
-    return text;
+    return spelled(text);
   }
   if (kind === "rows") {
     return `(${text.split(";").filter(Boolean).map((row) => `(${row.split(",").map(number).join(", ")}), `).join("").trim()})`;
@@ -86,5 +87,5 @@ function pythonValue(text, kind) {
   if (kind === "pool" && text.includes(",")) {
     return `(${text.split(",").map(number).join(", ")})`;
   }
-  return text.includes(",") ? `[${text.split(",").map((item) => `"${item}"`).join(", ")}]` : `"${text}"`;
+  return text.includes(",") ? `[${text.split(",").map((item) => `"${item.trim()}"`).join(", ")}]` : `"${text}"`;
 }

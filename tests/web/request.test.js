@@ -119,6 +119,15 @@ test("the same flock in Python", () => {
   ].join("\n"));
 });
 
+test("numbers are spelled as TOML and Python have them", () => {
+  const flock = { n_boats: "027", c4: ".3", pool: "180,0.", target: "cw, ccw", discs: "100,.5,6;" };
+  const spelled = { n_boats: "27", c4: "0.3", pool: "180,0", target: "cw,ccw", discs: "100,0.5,6;" };
+  const kinds = { n_boats: "count", c4: "real", pool: "pool", target: "choices", discs: "rows" };
+  const changes = (c4) => [{ time: 5, fields: { c4 } }];
+  assert.equal(commandLine(flock, 60, changes(".4")), commandLine(spelled, 60, changes("0.4")));
+  assert.equal(pythonText([flock], 60, kinds, changes(".4")), pythonText([spelled], 60, kinds, changes("0.4")));
+});
+
 test("what changes on the way is an option of the command, and a schedule in Python", () => {
   const changes = [{ time: 183.5, fields: { bw_s: "2.85", target: "cw,ccw" } }];
   assert.equal(commandLine({ n_boats: "27", c4: "0.1" }, 480, changes),
