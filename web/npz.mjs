@@ -179,9 +179,6 @@ function readNpy(bytes) {
   const count = shape.reduce((product, size) => product * size, 1);
   const content = bytes.slice(start + length).buffer;
   const width = /^<U(\d+)$/.exec(descr)?.[1];
-  if (/'fortran_order':\s*True/.test(header) && shape.length > 1) {
-    throw new Error("an array is stored column by column");
-  }
   if (width === undefined && !Object.hasOwn(READERS, descr)) {
     throw new Error(`an array of ${descr.slice(0, 20) || "an unknown kind"} is not accepted`);
   }
@@ -189,7 +186,21 @@ function readNpy(bytes) {
   if (values.length !== count) {
     throw new Error("an array has a shape that does not match its size");
   }
-  return { shape, descr, values };
+  const isByColumns = /'fortran_order':\s*True/.test(header) && shape.length > 1;
+  return { shape, descr, values: isByColumns ? rowByRow(values, shape) : values };
+}
+
+/** Numbers of an array that was stored with its first index as the fastest one. */
+function rowByRow(values, shape) {
+  const strides = shape.map((_, axis) => shape.slice(0, axis).reduce((product, size) => product * size, 1));
+  return values.map((_, k) => {
+    let [place, rest] = [0, k];
+    for (let axis = shape.length - 1; axis >= 0; axis -= 1) {
+      place += strides[axis] * (rest % shape[axis]);
+      rest = Math.floor(rest / shape[axis]);
+    }
+    return values[place];
+  });
 }
 
 function textsOf(content, width) {

@@ -148,6 +148,25 @@ function checkStored(arrays, format) {
   return hasContacts;
 }
 
+/** Checks what only some recordings have: the seed of other noise, the rate of an environment's steps, and digests. */
+function checkOrigin({ noise_seed: noise, control_hz: rate, start_sha256: start, schedule_sha256: schedule }) {
+  const parts = [["noise_seed", noise, /^<u|^[|]u1/, "uint64"], ["control_hz", rate, /^<f/, "float64"],
+    ["start_sha256", start, /^<U/, "str"], ["schedule_sha256", schedule, /^<U/, "str"]].filter(([, array]) => array);
+  const ofOtherKind = parts.find(([, { shape, descr }, kind]) => shape.length > 0 || !kind.test(descr));
+  if (ofOtherKind) {
+    refuse(`${ofOtherKind[0]} must be one ${ofOtherKind[3]}`);
+  }
+  const hertz = rate?.values[0] ?? 1;
+  if (!(hertz > 0 && hertz < Infinity)) {
+    refuse(`control_hz = ${Number.isInteger(hertz) ? hertz.toFixed(1) : String(hertz).toLowerCase().replace("inity", "")} is not accepted: a positive rate`);
+  }
+  for (const [name, { values: [text] }] of parts.filter(([, { descr }]) => descr.startsWith("<U"))) {
+    if (!/^[0-9a-f]{64}$/.test(text)) {
+      refuse(`${name} = ${quoted(text)} is not accepted: a SHA-256 of 64 hexadecimal digits`);
+    }
+  }
+}
+
 function checkRudder(rudder, shape) {
   checkArray("rudder", rudder, shape, DOUBLES);
   if (rudder.values.some((command) => Math.abs(command) > 1)) {
@@ -163,6 +182,7 @@ export async function checkRecording(arrays, { format, phases, quantities, stati
   const hasContacts = checkStored(arrays, format);
   const answer = await read(arrays.parameters.values[0]);
   checkStatistics(arrays, statistics.map(({ name }) => `statistics_${name}`));
+  checkOrigin(arrays);
   const { parameters } = answer;
   const { n_boats: boats, n_leaders: leaders } = parameters;
   const [samples] = arrays.time_s.shape;

@@ -89,6 +89,13 @@ def changed_origins(recording: flockenv.Recording) -> dict[str, dict]:
         "a duration in single precision": {"duration_s": np.array(6.0, np.float32)},
         "a duration without end": {"duration_s": np.array(1e300)},
         "two durations": {"duration_s": np.array([6.0, 6.0])},
+        "a signed seed of noise": {"noise_seed": np.array(3, np.int64)},
+        "a rate in whole numbers": {"control_hz": np.array(10)},
+        "a rate of 0": {"control_hz": np.array(0.0)},
+        "a rate without end": {"control_hz": np.array(np.inf)},
+        "a rate that is not a number": {"control_hz": np.array(np.nan)},
+        "a short digest": {"start_sha256": np.array("ab12")},
+        "two digests": {"schedule_sha256": np.array(["a" * 64, "b" * 64])},
         "parameters out of range": {
             "parameters": np.array(toml.replace("n_boats = 5", "n_boats = 0"))
         },
@@ -195,6 +202,20 @@ def test_many_discs_and_walls_are_no_fault(said_of, tmp_path):
     path = tmp_path / "many.npz"
     flockenv.simulate(parameters, 1, 1.0).save(path)
     assert said_of([path])[0]["refusal"] is None
+
+
+def test_arrays_by_columns_and_all_origins_are_no_fault(recording, said_of, tmp_path):
+    path, whole = tmp_path / "columns.npz", tmp_path / "whole.npz"
+    recording.save(whole)
+    origin = {"noise_seed": np.array(2**64 - 1, np.uint64), "control_hz": np.array(2.5)}
+    origin |= {"start_sha256": np.array("a" * 64), "schedule_sha256": np.array("0" * 64)}
+    with np.load(whole) as file:
+        arrays = {name: np.array(file[name], order="F") for name in file if "order" not in name}
+    np.savez(path, **arrays, **origin)
+    assert refusal_of(path) is None
+    full, same = said_of([whole, path])
+    assert same["refusal"] is None
+    assert np.allclose(same["signed"], full["signed"], atol=1e-12)
 
 
 def test_a_quantity_that_is_not_stored_is_computed(recording, said_of, tmp_path):
