@@ -41,7 +41,7 @@ const { Simulator } = await import("../../web/simulator.mjs");
 function pageOf() {
   const shown = { flock: { leaders: "trained" }, beside: null, copies: 1 };
   const past = { first: shown, changes: [] };
-  const flocks = { shown, past, kinds: {}, values: {}, series: ["signed_order"], laws: {}, areTrained: true, teach: async () => undefined, linkFields: () => ({ isComplete: true }) };
+  const flocks = { shown, past, kinds: {}, values: { n_boats: "9", n_leaders: "3", pool: "wide", bw_s: "0.3" }, series: ["signed_order"], laws: {}, areTrained: true, teach: async () => undefined, linkFields: () => ({ isComplete: true }) };
   return { simulator: {}, flocks, shown, about: {}, time: 0, view: {} };
 }
 
