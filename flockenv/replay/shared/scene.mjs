@@ -148,6 +148,9 @@ export class Scene {
       return;
     }
     const present = this.poses.filter((pose) => !Number.isNaN(pose[0]));
+    if (present.length === 0) {
+      return; // Without a boat in view, the view stays.
+    }
     const xs = present.map((pose) => pose[0]);
     const ys = present.map((pose) => pose[1]);
     const [left, right] = [Math.min(...xs), Math.max(...xs)];

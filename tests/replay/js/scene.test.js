@@ -39,14 +39,18 @@ test("copies of a flock have its color", () => {
   assert.deepEqual(given(["you", "you"], ["you", "you"], ["the law", "paper's law"]), ["run-1", "run-1", "paper-law"]);
 });
 
-test("a boat that another run has is marked in that run alone", () => {
+/** A picture of a run of one boat at a pose; what is drawn calls the functions in `drawing`. */
+function sceneOf(drawing, pose, outer) {
   globalThis.window = {};
-  const radii = [];
-  const context = new Proxy({ arc: (...numbers) => radii.push(numbers[2]) }, { get: (drawn, name) => drawn[name] ?? (() => undefined), set: () => true });
+  const context = new Proxy(drawing, { get: (_, name) => drawing[name] ?? (() => undefined), set: () => true });
   const canvas = { clientWidth: 200, clientHeight: 200, getContext: () => context };
-  const lengths = { outer_radius_cm: 90, inner_radius_cm: 0, hull_radius_cm: 4, hull_half_length_cm: 6 };
-  const run = { lengths, boats: 1, leaders: 0, walls: [], discs: [], hasForces: false, posesAt: () => [[70, 0, 0]], roleOf: () => "normal" };
-  const scene = new Scene(canvas, run);
+  const lengths = { outer_radius_cm: outer, inner_radius_cm: 0, hull_radius_cm: 4, hull_half_length_cm: 6 };
+  return new Scene(canvas, { lengths, boats: 1, leaders: 0, walls: [], discs: [], hasForces: false, posesAt: () => [pose], roleOf: () => "normal" });
+}
+
+test("a boat that another run has is marked in that run alone", () => {
+  const radii = [];
+  const scene = sceneOf({ arc: (...numbers) => radii.push(numbers[2]) }, [70, 0, 0], 90);
   const drawn = (boat) => {
     radii.length = 0;
     scene.draw(0, { trailSeconds: 0, forceScale: null, boat, coloring: "role", palette: {} });
@@ -54,4 +58,14 @@ test("a boat that another run has is marked in that run alone", () => {
   };
   assert.equal(drawn(1), drawn(null));
   assert.equal(drawn(0), drawn(null) + 1);
+});
+
+test("open water has few lines, though no boat is there", () => {
+  let lines = 0;
+  const moveTo = () => {
+    lines += 1;
+    assert.ok(lines < 100);
+  };
+  sceneOf({ moveTo }, [NaN, NaN, NaN], null).draw(0, { trailSeconds: 0, forceScale: null, boat: null, coloring: "role", palette: {} });
+  assert.ok(lines > 0);
 });
