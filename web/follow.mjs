@@ -50,6 +50,9 @@ async function openFlocks(flocks, wanted, linked) {
         delete fields[error.field];
         refused.add(error.field);
       }
+      if (Object.keys(wanted.beside ?? {}).length === 0) {
+        wanted.beside = null; // It would be the same flock again.
+      }
     }
   }
 }
