@@ -217,9 +217,8 @@ export class Player {
   /** Pauses, and goes to the next sample of any run (`by` is 1) or to the previous one (−1). */
   step(by) {
     this.#transport.pause();
-    const nextTime = (run) => run.time[Math.min(run.sampleAt(this.time) + 1, run.length - 1)];
-    const later = this.runs.map(nextTime).filter((time) => time > this.time + 1e-9);
-    this.seek(by < 0 ? this.time - 1e-6 : Math.min(this.end, ...later));
+    const nextTime = Math.min(this.end, ...this.runs.map((run) => run.timeAfter(this.time)));
+    this.seek(by < 0 ? this.time - 1e-6 : nextTime);
   }
 
   /** Goes to the last sample up to a time, so that the numbers belong to the poses that are drawn. */

@@ -41,6 +41,11 @@ export class Run {
     return low;
   }
 
+  /** The time of the first sample after a time; Infinity without one. */
+  timeAfter(time) {
+    return this.time.find((sampled) => sampled > time + 1e-9) ?? Infinity;
+  }
+
   /** Poses at a time, [x, y, heading] for each boat, interpolated linearly between samples; NaN for a missing boat. */
   posesAt(time) {
     const sample = this.sampleAt(time);

@@ -15,6 +15,10 @@ test("a time that is a rounding before a sample is that sample", () => {
   assert.equal(runOf().sampleAt(0.5 - 1e-12), 1);
 });
 
+test("the next sample may be the first one, and after the last one there is none", () => {
+  assert.deepEqual([-1, 0, 0.4, 0.5 - 1e-12, 0.5, 1].map((time) => runOf().timeAfter(time)), [0, 0.5, 0.5, 1, 1, Infinity]);
+});
+
 test("before the first sample poses are those of the first", () => {
   assert.deepEqual(runOf().posesAt(-1), runOf().posesAt(0));
 });
