@@ -67,7 +67,7 @@ export class GrowingRun extends Run {
     raw.rudder = new GrowingColumn(Math.max(MOST_LEADERS, description.leaders), capacity);
     raw.series = new GrowingColumn(series.length, capacity);
     super(description, columnsOf(raw, series), raw.time_s.values.subarray(0, 0));
-    Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0 });
+    Object.assign(this, { raw, capacity, statistics: [], latestContacts: [], changedAt: 0, hasOtherLeaders: false });
     this.restartMeans();
   }
 
@@ -86,8 +86,15 @@ export class GrowingRun extends Run {
 
   /** Replaces the description after a change. */
   describe(description) {
-    Object.assign(this, description, { changedAt: this.end });
+    const hasOtherLeaders = description.leaders !== this.leaders || (this.hasOtherLeaders && this.changedAt === this.end);
+    Object.assign(this, description, { changedAt: this.end, hasOtherLeaders });
     this.restartMeans();
+  }
+
+  /** The first sample since the last change: the state that changed. With other leaders it is the one after: order leaves out leaders. */
+  get firstSinceChange() {
+    const sample = this.sampleAt(this.changedAt);
+    return this.hasOtherLeaders && this.time[sample] <= this.changedAt ? sample + 1 : sample;
   }
 
   /** Restarts the means. */

@@ -146,7 +146,7 @@ function save(page) {
   const { policy, statistics } = page.flocks;
   const bytes = recordingOf(run, { ...page.about, recorded, statistics, policy });
   download(bytes, "flock.npz");
-  page.say(`The recording holds ${fixed(run.time[run.sampleAt(run.changedAt)], 1)} to ${fixed(run.end, 1)} s; flockenv.Recording.load reads it.`);
+  page.say(`The recording holds ${fixed(run.time[run.firstSinceChange], 1)} to ${fixed(run.end, 1)} s; flockenv.Recording.load reads it.`);
 }
 
 /** Plays a recording's file. */

@@ -16,8 +16,7 @@ const LEAST_SECONDS = 480;
  * the statistics of substeps.
  */
 export function recordingOf(run, { format, version, policy, recorded, statistics }) {
-  const first = run.sampleAt(run.changedAt);
-  const { raw, length } = run;
+  const { firstSinceChange: first, raw, length } = run;
   const [samples, boats, leaders] = [length - first, run.boats, run.leaders];
   const phases = Array.from(raw.phase.from(first), (index) => run.phases[index]);
   const series = Object.fromEntries(recorded.map((name) => {

@@ -17,7 +17,7 @@ const statistics = [{ name: "unsolved", kind: "count" }, { name: "worst_overlap_
 test("samples before the change are left out", async () => {
   const run = new GrowingRun({ boats: 2, leaders: 1, phases: ["fw", "nop1"], seed: "7", stored: { n_boats: 2 } }, ["psi_o"], 10);
   run.append(samples([0, 1, 2]));
-  run.describe({});
+  run.describe({ leaders: 1 });
   run.append(samples([3, 4]));
   const about = { format: "a format", version: "1", policy: "learned", recorded: ["psi_o"], statistics };
   const arrays = await readNpz(recordingOf(run, about).buffer);
@@ -32,6 +32,17 @@ test("samples before the change are left out", async () => {
   run.statistics = [NaN, NaN];
   const unknown = await readNpz(recordingOf(run, about).buffer);
   assert.deepEqual(Object.keys(arrays).filter((name) => !Object.hasOwn(unknown, name)), ["statistics_unsolved", "statistics_worst_overlap_cm"]);
+});
+
+test("the order of other leaders is left out with the sample of the change", async () => {
+  const run = new GrowingRun({ boats: 2, leaders: 2, phases: ["fw"], seed: "7", stored: { n_boats: 2 } }, ["psi_o"], 10);
+  const two = (times) => ({ ...samples(times), rudder: new Float64Array(2 * times.length) });
+  run.append({ ...two([0, 1]), series: Float64Array.of(NaN, NaN) });
+  run.describe({ leaders: 1 });
+  run.describe({ leaders: 1 });
+  run.append(samples([2, 3]));
+  const arrays = await readNpz(recordingOf(run, { format: "", version: "", policy: "", recorded: ["psi_o"], statistics }).buffer);
+  assert.deepEqual([[...arrays.time_s.values], [...arrays.order_psi_o.values]], [[2, 3], [0.2, 0.3]]);
 });
 
 test("what is asked of a recording has the sign of its target, and states where it holds no order", () => {
