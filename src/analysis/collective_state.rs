@@ -17,7 +17,7 @@ named_choice! {
         OrderedCounterClockwise = "ordered ccw",
         /// Boats have no common direction.
         Disordered = "disordered",
-        /// Any other: between two of the states above.
+        /// Any other: between two of the states above, or without boats.
         Between = "between",
     }
 }
@@ -46,7 +46,8 @@ impl CollectiveState {
                 _ => Self::Between,
             };
         }
-        if order.psi_o >= LOW_ORDER {
+        // Ψ_o is NaN at a time without boats.
+        if order.psi_o >= LOW_ORDER || order.psi_o.is_nan() {
             return Self::Between;
         }
         if largest_cluster >= CLUSTERED {
@@ -102,11 +103,13 @@ impl OrderingWatch {
 }
 
 /// Ordering time τ (eq. 7) of a run in s, infinite if the run does not order. The slices have equal length. Times increase
-/// from the start of the run to its end.
+/// from the start of the run, at any time, to its end. Samples without boats, whose Ψ_o is NaN, are left out.
 pub fn ordering_time(time_s: &[f64], order: &[OrderParameters], within: f64) -> f64 {
-    let half = time_s.last().map_or(0.0, |last| last / 2.0);
+    let ends = time_s.first().zip(time_s.last());
+    let half = ends.map_or(0.0, |(first, last)| (first + last) / 2.0);
     let mut watch = OrderingWatch::default();
-    for (&time, order) in time_s.iter().zip(order) {
+    let samples = time_s.iter().zip(order);
+    for (&time, order) in samples.filter(|(_, order)| !order.psi_o.is_nan()) {
         watch.note(time, order, within, time >= half);
     }
     watch.ordering_time_s()

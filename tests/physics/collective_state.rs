@@ -44,6 +44,15 @@ fn states_are_those_of_table_2() {
 }
 
 #[test]
+fn a_time_without_boats_is_in_no_state_of_the_table() {
+    let absent = order(f64::NAN, f64::NAN, f64::NAN);
+    for cluster in [0.0, f64::NAN] {
+        let found = CollectiveState::from_order(&absent, SPEED, cluster);
+        assert_eq!(found, CollectiveState::Between);
+    }
+}
+
+#[test]
 fn mirrored_flocks_are_in_mirrored_states() {
     for psi_o in [0.1, 0.6, 0.9] {
         for phi_o in [0.1, 0.8, 1.5, 2.5] {
@@ -104,6 +113,23 @@ fn a_run_without_order_in_its_second_half_has_an_infinite_ordering_time() {
     let (times, series) = run(60.0, 0.0);
     assert_eq!(ordering_time(&times, &series, PI / 20.0), f64::INFINITY);
     assert_eq!(ordering_time(&[], &[], PI / 20.0), f64::INFINITY);
+}
+
+#[test]
+fn the_second_half_is_that_of_the_run_whenever_it_starts() {
+    // Ordered from 40 of 100 s on: mean Ψ_o of the whole run is 0.66, of its second half 0.9.
+    let (mut times, series) = run(40.0, 0.0);
+    times.iter_mut().for_each(|time| *time += 500.0);
+    let found = ordering_time(&times, &series, PI / 20.0);
+    assert!((found - 540.0).abs() < 1e-9, "{found}");
+}
+
+#[test]
+fn times_without_boats_are_left_out_of_the_ordering_time() {
+    let (times, mut series) = run(20.0, 0.0);
+    series[900] = order(f64::NAN, f64::NAN, f64::NAN);
+    let found = ordering_time(&times, &series, PI / 20.0);
+    assert!((found - 20.0).abs() < 1e-9, "{found}");
 }
 
 #[test]
