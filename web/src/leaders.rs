@@ -142,9 +142,12 @@ fn refused(name: &str, accepted: &str) -> FlockError {
 
 /// The law with this name, which acts at every decision.
 fn law(name: &str, parameters: &FlockParameters) -> Result<Law> {
-    let names: Vec<_> = Law::NAMED.iter().map(|law| law.name).collect();
-    if name == EVERY_SUBSTEP || !names.contains(&name) {
-        return Err(refused(name, &format!("{}, you", names.join(", "))));
+    let mut names: Vec<_> = Law::NAMED.iter().map(|law| law.name).collect();
+    names.retain(|name| *name != EVERY_SUBSTEP);
+    if !names.contains(&name) {
+        let names = names.join(", ");
+        let accepted = format!("{names}, or for all leaders {EVERY_SUBSTEP} or you");
+        return Err(refused(name, &accepted));
     }
     Law::named(name, parameters.pool.name()).map_err(|error| match error {
         FlockError::Parameter { accepted, .. } => refused(name, &accepted),

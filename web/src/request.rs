@@ -34,10 +34,10 @@ pub(crate) struct Request {
     trained: Option<String>,
 }
 
-/// Sets the fields that have a value in `requested`, by name.
+/// Sets the fields that have a value in `requested`, by name. Other names are ignored.
 ///
 /// # Errors
-/// [`FlockError::Parameter`] for values that are unreadable or out of range.
+/// [`FlockError::Parameter`] for values that are unreadable. Ranges are not checked.
 pub(crate) fn set_fields<T>(
     settings: &mut T,
     fields: &[Field<T>],
@@ -61,10 +61,10 @@ pub(crate) fn set_fields<T>(
 }
 
 impl Request {
-    /// A request from JSON: `preset`, `seed`, `leaders`, and fields of the parameters.
+    /// A request from the JSON of [`RequestFields`]. Unknown parameters, as of a later version's recording, are ignored.
     ///
     /// # Errors
-    /// [`FlockError::Parameter`] for fields that are unknown, unreadable or out of range.
+    /// [`FlockError::Parameter`] for other unknown fields, and for values that are unreadable or out of range.
     pub fn read(text: &str) -> Result<Self> {
         let requested: RequestFields = serde_json::from_str(text)
             .map_err(|error| FlockError::parameter("request", error, "JSON"))?;
