@@ -21,8 +21,10 @@ from benchmarl.environments.common import Task, TaskClass
 from benchmarl.experiment import Experiment
 from benchmarl.models import Mlp
 from benchmarl.utils import _read_yaml_config
+from tensordict.nn import ProbabilisticTensorDictModule
 from torchrl.data import Composite
 from torchrl.envs import EnvBase
+from torchrl.modules import TanhDelta, TanhNormal
 
 from flockenv.envs.options import EnvOptions
 from flockenv.errors import ParameterError, refuse_unknown
@@ -187,8 +189,7 @@ def network_policy(
             f"rudder_levels = {env.rudder_levels} is not accepted here: a policy's file holds a "
             "network whose output is a rudder or an angle"
         )
-    algorithm = experiment.algorithm
-    actor = algorithm.get_policy_for_loss(GROUP)
+    actor = experiment.algorithm.get_policy_for_loss(GROUP)
     networks = [module for module in actor.modules() if isinstance(module, Mlp)]
     is_shared = experiment.config.share_policy_params or env.num_leaders == 1
     if len(networks) != 1 or not is_shared:
@@ -196,13 +197,18 @@ def network_policy(
             "this policy is not accepted: one MLP that all leaders share (model_config = "
             "MlpConfig, share_policy_params)"
         )
-    network = networks[0].mlp.get_stateful_net()
+    network = copy.deepcopy(networks[0].mlp.get_stateful_net())
+    if not experiment.config.share_policy_params:
+        # The parameters have a first dimension of agents, of which there is one.
+        for parameter in network.parameters():
+            parameter.data = parameter.data[0]
+    drawn = [part for part in actor.modules() if isinstance(part, ProbabilisticTensorDictModule)]
     # The last parameters are the outputs' biases: of the mean, or of the mean and the spread.
     n_outputs = [*network.parameters()][-1].shape[-1]
     return NetworkPolicy.from_module(
         network,
         env.observation_space,
-        squashed=getattr(algorithm, "use_tanh_normal", False),
+        squashed=any(module.distribution_class in (TanhDelta, TanhNormal) for module in drawn),
         has_spread=n_outputs == 2,
         provenance=provenance,
     )

@@ -24,7 +24,7 @@ pytestmark = [
 torch = pytest.importorskip("torch")
 pytest.importorskip("benchmarl")
 
-from benchmarl.algorithms import IppoConfig, MappoConfig  # noqa: E402 - after the check above
+from benchmarl.algorithms import IddpgConfig, IppoConfig, MaddpgConfig, MappoConfig  # noqa: E402 - after the check above
 from benchmarl.environments import task_config_registry  # noqa: E402
 from benchmarl.experiment import Experiment, ExperimentConfig  # noqa: E402
 from benchmarl.models import DeepsetsConfig, GnnConfig, MlpConfig  # noqa: E402
@@ -43,6 +43,7 @@ SMALL = {"n_boats": 6, "n_leaders": 2, "pool": "narrow", "episode_s": 2.0}
 def short(tmp_path, **changes):
     config = ExperimentConfig.get_from_yaml()
     config.max_n_frames = config.on_policy_collected_frames_per_batch = 40
+    config.off_policy_collected_frames_per_batch = 40
     config.evaluation_interval = 40
     config.evaluation_episodes = 2
     config.on_policy_n_envs_per_worker = 2
@@ -56,12 +57,14 @@ def short(tmp_path, **changes):
     return config
 
 
-def experiment(tmp_path, *, critic, state, actor=MlpConfig, algorithm=MappoConfig, **changes):
+def experiment(tmp_path, *, critic, state, actor=MlpConfig, algorithm=None, n_leaders=2, **changes):
     discrete = changes.get("prefer_continuous_actions") is False
     levels = {"rudder_levels": 5} if discrete else {}
     return Experiment(
-        task=LeadersTask.LEADERS.get_task({**SMALL, **levels, "state": state}),
-        algorithm_config=algorithm.get_from_yaml(),
+        task=LeadersTask.LEADERS.get_task(
+            {**SMALL, **levels, "n_leaders": n_leaders, "state": state}
+        ),
+        algorithm_config=MappoConfig.get_from_yaml() if algorithm is None else algorithm,
         model_config=actor.get_from_yaml(),
         critic_model_config=critic.get_from_yaml(),
         seed=0,
@@ -105,13 +108,36 @@ def test_mappo_learns_a_policy_that_steers_here(tmp_path, critic, state):
     policy.save(tmp_path / "policy.npz")
     loaded = flockenv.policies.load(tmp_path / "policy.npz")
     assert loaded.provenance == {"learner": "MAPPO"}
+    steers_as_in(run, loaded)
+
+
+def steers_as_in(run, policy):
     with torch.no_grad(), set_exploration_type(ExplorationType.DETERMINISTIC):
         rollout = run.test_env.rollout(20, run.policy)
     rows = rollout["leaders", "observation"]
     expected = rollout["leaders", "action"][..., 0].numpy()
     assert expected.std() > 1e-4
-    rudders = loaded.predict(rows.flatten(-2).numpy())[0]
+    rudders = policy.predict(rows.flatten(-2).numpy())[0]
     np.testing.assert_allclose(rudders, expected, atol=1e-5)
+
+
+@pytest.mark.parametrize("algorithm", [IddpgConfig, MaddpgConfig])
+@pytest.mark.parametrize("is_squashed", [True, False])
+def test_deterministic_learners_squash_what_their_policies_squash(tmp_path, algorithm, is_squashed):
+    config = algorithm.get_from_yaml()
+    config.use_tanh_mapping = is_squashed
+    run = experiment(tmp_path, critic=MlpConfig, state="none", algorithm=config)
+    policy = network_policy(run)
+    assert (policy.activations[-1] == "tanh") == is_squashed
+    steers_as_in(run, policy)
+
+
+def test_a_leader_alone_needs_no_shared_network(tmp_path):
+    run = experiment(
+        tmp_path, critic=MlpConfig, state="none", n_leaders=1, share_policy_params=False
+    )
+    steers_as_in(run, network_policy(run))
+    steers_as_in(run, network_policy(run))
 
 
 def test_a_graph_network_learns_and_is_no_policy_of_one_leader(tmp_path):
@@ -123,7 +149,11 @@ def test_a_graph_network_learns_and_is_no_policy_of_one_leader(tmp_path):
 
 def test_policies_of_leaders_that_share_nothing_are_refused(tmp_path):
     run = experiment(
-        tmp_path, critic=MlpConfig, state="none", algorithm=IppoConfig, share_policy_params=False
+        tmp_path,
+        critic=MlpConfig,
+        state="none",
+        algorithm=IppoConfig.get_from_yaml(),
+        share_policy_params=False,
     )
     with pytest.raises(ParameterError, match="one MLP that all leaders share"):
         network_policy(run)
