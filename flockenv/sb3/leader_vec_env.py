@@ -252,8 +252,11 @@ class LeaderVecEnv(OwnGenerator, ManyFlocks, VecEnv):
         try:
             observations, rewards, truncated = self._batch.step(self, actions, np.float32)
         except Exception:
-            # Even after an error in the motion or in the reward, ended episodes start again.
-            self._start_next(np.array([not running for running in self._batch.running()]))
+            # Even after an error in the motion or in the reward, ended episodes start again. Flocks
+            # that were never reset have had no episode, and no seed.
+            running = enumerate(self._batch.running())
+            seeded = self._batch.core.is_seeded
+            self._start_next(np.array([not runs and seeded(flock) for flock, runs in running]))
             raise
         infos: list[dict[str, Any]] = [{} for _ in self.slots]
         if truncated.any():

@@ -176,8 +176,10 @@ def test_pickle_and_clone():
 
 def test_bad_input():
     venv = make()
-    with pytest.raises(flockenv.EpisodeError):
-        venv.step(np.zeros((6, 1)))
+    for _ in range(2):
+        # The refused step starts no episode, so that a second one is refused, too.
+        with pytest.raises(flockenv.EpisodeError):
+            venv.step(np.zeros((6, 1)))
     venv.reset()
     before = venv.get_state()
     for actions in (np.full((6, 1), np.nan), np.zeros((5, 1)), np.zeros(6)):
