@@ -15,6 +15,7 @@ from stable_baselines3.common.type_aliases import Schedule
 from stable_baselines3.common.vec_env import VecEnv
 
 from flockenv import _core
+from flockenv._io.arguments import as_int
 from flockenv.errors import ParameterError, short_repr
 from flockenv.sb3.leader_vec_env import LeaderVecEnv
 
@@ -170,8 +171,8 @@ class SharedNoisePolicy(ActorCriticPolicy):
     Raises
     ------
     ParameterError
-        For discrete actions, for `hold_steps` below 1, and, in a training, for flocks with another
-        number of leaders than the policy was made for.
+        For discrete actions, for `hold_steps` that is not a whole number of at least 1, and, in a
+        training, for flocks with another number of leaders than the policy was made for.
     """
 
     def __init__(
@@ -184,7 +185,7 @@ class SharedNoisePolicy(ActorCriticPolicy):
         hold_steps: int,
         **options: Any,
     ) -> None:
-        flock_of_slot = list(flock_of_slot)
+        flock_of_slot, hold_steps = list(flock_of_slot), as_int(hold_steps, "hold_steps")
         if hold_steps < 1 or not flock_of_slot:
             raise ParameterError(
                 f"hold_steps = {short_repr(hold_steps)} and {len(flock_of_slot)} slots are not "

@@ -131,6 +131,14 @@ def test_bad_times_are_refused(hold_s, message):
         shared_noise(LeaderVecEnv(2, **OPTIONS), hold_s)
 
 
+def test_a_noise_is_held_for_whole_decisions():
+    # After 2.5 decisions none would be drawn ever again.
+    venv = LeaderVecEnv(2, n_leaders=2, **OPTIONS)
+    noise = {**shared_noise(venv, 1.0), "hold_steps": 2.5}
+    with pytest.raises(ParameterError, match="hold_steps"):
+        PPO(SharedNoisePolicy, venv, policy_kwargs=noise)
+
+
 def test_only_continuous_actions_of_leaders_are_accepted():
     levels = LeaderVecEnv(2, rudder_levels=5, **OPTIONS)
     with pytest.raises(ParameterError, match="continuous"):
