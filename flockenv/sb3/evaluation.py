@@ -29,7 +29,7 @@ class FlockEvaluation:
     returns : float64 array, shape (episodes,)
         Sum of the rewards of each episode, the mean over a flock's leaders.
     lengths : int64 array, shape (episodes,)
-        Control steps of each episode.
+        Decisions of each episode.
     """
 
     signed_order: NDArray[np.float64]
