@@ -102,6 +102,8 @@ class FlockEvalCallback(EvalCallback):
         self.evaluations_timesteps = columns["timesteps"].tolist()
         self.evaluations_results = columns["results"].tolist()
         self.evaluations_length = columns["ep_lengths"].tolist()
+        if "successes" in columns:
+            self.evaluations_successes = columns["successes"].tolist()
         unknown = np.full(columns["results"].shape, np.nan)
         self._evaluations_order = columns.get("signed_order", unknown).tolist()
         for orders, returns in zip(self._evaluations_order, self.evaluations_results, strict=True):

@@ -11,7 +11,7 @@ pytest.importorskip("stable_baselines3")
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import StopTrainingOnNoModelImprovement
 from stable_baselines3.common.monitor import load_results
-from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize
+from stable_baselines3.common.vec_env import VecEnvWrapper, VecFrameStack, VecNormalize
 
 from flockenv import ParameterError
 from flockenv.policies import DampedLaw, ModelPolicy, SteeringLaw, WrappedPolicy
@@ -267,6 +267,26 @@ def test_the_best_model_is_the_one_of_the_highest_order(tmp_path):
     assert best.mean == pytest.approx(orders.max(), abs=1e-6)
     assert orders.argmax() != stored["results"].mean(axis=1).argmax()
     assert callback.best_mean_reward == stored["results"].mean(axis=1)[orders.argmax()]
+
+
+class Successes(VecEnvWrapper):
+    def reset(self):
+        return self.venv.reset()
+
+    def step_wait(self):
+        step = self.venv.step_wait()
+        for info in step[3]:
+            info["is_success"] = True
+        return step
+
+
+def test_a_training_that_goes_on_keeps_its_successes(tmp_path):
+    model = ppo(make())
+    for _ in range(2):
+        successes = evaluation(Successes(make()), str(tmp_path))
+        model.learn(96, successes, reset_num_timesteps=False)
+    stored = np.load(tmp_path / "evaluations.npz")
+    assert stored["successes"].shape == stored["results"].shape == (2, 4)
 
 
 def test_a_training_that_goes_on_goes_on_with_its_evaluations_and_its_best(tmp_path):
