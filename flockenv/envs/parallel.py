@@ -121,7 +121,7 @@ class LeadersParallelEnv(
     def step(
         self, actions: Mapping[str, ArrayLike]
     ) -> tuple[Observations, dict[str, float], dict[str, bool], dict[str, bool], Infos]:
-        """Take one control step.
+        """Take one decision, for one control step or `decision_period_s`.
 
         Parameters
         ----------

@@ -179,7 +179,7 @@ class LeadersEnv(
     def step(
         self, action: ArrayLike
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Take one control step.
+        """Take one decision, for one control step or `decision_period_s`.
 
         Parameters
         ----------

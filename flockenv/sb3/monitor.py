@@ -75,7 +75,7 @@ class FlockMonitor(VecEnvWrapper):
         return self.venv.reset()
 
     def step_wait(self) -> VecEnvStepReturn:
-        """Take the control step, and write the episodes that end with it."""
+        """Take one decision, and write the episodes that end with it."""
         step = self.venv.step_wait()
         _, _, dones, infos = step
         for slot in np.flatnonzero(dones).tolist():
