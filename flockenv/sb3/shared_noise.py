@@ -42,7 +42,7 @@ def shared_noise(venv: VecEnv, hold_s: float) -> dict[str, Any]:
     ParameterError
         For a time that is not a whole number of decisions.
     """
-    leaders = venv.unwrapped
+    leaders = getattr(venv, "unwrapped", venv)
     if not isinstance(leaders, LeaderVecEnv):
         raise TypeError(f"a LeaderVecEnv is needed, not {type(leaders).__name__}")
     return {

@@ -145,3 +145,5 @@ def test_only_continuous_actions_of_leaders_are_accepted():
         model_of(levels)
     with pytest.raises(TypeError, match="LeaderVecEnv"):
         shared_noise(type("Other", (), {"unwrapped": 1})(), 1.0)
+    with pytest.raises(TypeError, match="LeaderVecEnv"):
+        shared_noise(None, 1.0)
