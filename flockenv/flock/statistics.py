@@ -30,11 +30,12 @@ class Statistics:
         Substeps that left overlaps deeper than the tolerance.
     halved_substeps : int
         Halvings of substeps. The reasons are overlaps deeper than the tolerance at the end of a
-        substep, contacts that would have driven boats, and boats that moved too far.
+        substep, contacts that would have driven boats or took too much work, and boats that
+        moved too far.
     depenetration_passes : int
         Passes that moved deeply overlapping hulls apart.
     neighbor_builds : int
-        Substeps that had to rebuild the neighbor list.
+        Rebuilds of the neighbor list in substeps; a substep may need several.
     worst_residual_cm_s : float
         Largest natural residual of a solve in cm/s.
     worst_overlap_cm : float

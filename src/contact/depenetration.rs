@@ -58,7 +58,7 @@ impl Depenetration {
     }
 
     /// Displaces poses until no overlap exceeds `allowed` (cm, positive), or for [`MOST_PASSES`]. At least one overlap
-    /// exceeds `allowed` at first. Then fills `contacts` with the contacts whose gaps are below `margin` (cm).
+    /// exceeds `allowed` at first. Then fills `contacts` as [`ContactDetector::detect`] does with `margin` (cm).
     pub(super) fn open_overlaps(
         &mut self,
         detector: &mut ContactDetector,
@@ -119,7 +119,8 @@ impl Depenetration {
     }
 }
 
-/// Contacts with gaps below this, in cm, take part in a pass, so that it pushes no hull into another.
+/// The margin of [`ContactDetector::detect`] in cm for a pass. Contacts within it take part, so that the pass pushes no
+/// hull into another.
 fn wide_margin(detector: &ContactDetector) -> f64 {
     0.5 * detector.hull().radius
 }

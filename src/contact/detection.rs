@@ -139,7 +139,8 @@ impl ContactDetector {
         pairs > MOST_PAIRS_A_BOAT * boats.len()
     }
 
-    /// Fills `contacts` with everything nearer than `margin`, ordered along the pool's polar angle.
+    /// Fills `contacts` with all pairs of boats nearer than `margin`, and with walls and obstacles nearer than half of
+    /// it, since these do not move. The contacts are ordered along the pool's polar angle.
     pub fn detect(&mut self, boats: &[HullPose], margin: f64, contacts: &mut Vec<Contact>) {
         self.reaches.clear();
         self.reaches.resize(boats.len(), 0.5 * margin);
@@ -189,7 +190,7 @@ impl ContactDetector {
         }
     }
 
-    /// Updates the neighbor list so that it holds everything nearer than `margin`.
+    /// Updates the neighbor list so that it holds all pairs of boats nearer than `margin`, and the lists of obstacles.
     pub(super) fn update(&mut self, boats: &[HullPose], margin: f64) {
         let distance = 2.0 * self.hull.reach() + margin;
         self.neighbors

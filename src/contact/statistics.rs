@@ -25,12 +25,12 @@ pub struct Statistics {
     /// converge, or a boat was pushed into a body beyond its reach. Velocities are then those of the nearest problem that
     /// can be solved.
     pub unsolved: u64,
-    /// Halvings of substeps that left overlaps deeper than the tolerance, whose contacts would have added energy to boats,
-    /// or in which a boat moved too far.
+    /// Halvings of substeps that left overlaps deeper than the tolerance, whose contacts would have added energy to
+    /// boats or took too much work, or in which a boat moved too far.
     pub halved_substeps: u64,
     /// Passes that moved deeply overlapping hulls apart.
     pub depenetration_passes: u64,
-    /// Substeps that had to rebuild the neighbor list.
+    /// Rebuilds of the neighbor list in substeps; a substep may need several.
     pub neighbor_builds: u64,
     /// Largest natural residual of a solve in cm/s.
     pub worst_residual_cm_s: f64,

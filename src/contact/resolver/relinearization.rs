@@ -97,8 +97,8 @@ impl ContactResolver {
     }
 
     /// Computes biases with which the gaps of these islands would not end the substep below zero, or below what a
-    /// shortened substep may leave. The other islands keep the
-    /// biases with which they were solved: the check for added energy needs those.
+    /// shortened substep may leave. The other islands keep the biases with which they were solved: the check for added
+    /// energy needs those.
     fn correct_biases(&mut self, islands: &[u32], dt: f64) {
         let all_islands = self.solver.islands();
         let contacts = islands

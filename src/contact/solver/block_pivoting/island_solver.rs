@@ -223,7 +223,7 @@ impl IslandSolver {
         }
     }
 
-    /// The larger of the natural residual and the worst so far; NaN if any number is NaN.
+    /// The larger of the natural residual and the worst so far; NaN if an impulse is NaN.
     fn worst_residual(&self, regularization: f64, worst: f64) -> f64 {
         self.rows.rows.iter().fold(worst, |worst, row| {
             let residual = residual(row.diagonal * row.impulse, row.slack, regularization);
