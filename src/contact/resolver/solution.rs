@@ -8,8 +8,8 @@ use crate::parameters::Solver;
 /// Reason why a substep was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotTaken {
-    /// The substep leaves overlaps, its contacts would add energy to boats or are too much work, or a boat moves too far.
-    /// A shorter substep has to be tried. Poses may have been moved to undo deep overlaps, but no time has passed.
+    /// The substep leaves overlaps, its contacts would add energy to boats or are too much work, or a boat moves too
+    /// far. A shorter substep has to be tried. Poses may have been moved to undo deep overlaps, but no time has passed.
     TooLong,
     /// The contacts are too much work, and a shorter substep must not be tried or has no work left. The motion must be
     /// discarded.
