@@ -56,6 +56,8 @@ class Episodes:
     leaders: Leaders
     n_leaders: int
     seeds: Sequence[int]
+    #: Decisions per second of all policies; None: each has its own rate.
+    control_hz: float | None = None
 
     @classmethod
     def parse(
@@ -79,7 +81,8 @@ class Episodes:
             "episode_s": duration_s,
             **_decision_options(leaders, options),
         }
-        episodes = cls(EnvOptions.parse(settings), leaders, k, seeds_of_episodes(seeds))
+        seeds, control_hz = seeds_of_episodes(seeds), options.get("control_hz")
+        episodes = cls(EnvOptions.parse(settings), leaders, k, seeds, control_hz)
         episodes._batch(1)  # Only for its errors, before anything runs.
         return episodes
 
@@ -108,7 +111,7 @@ class Episodes:
     def _decision_function(self, batch: LeaderBatch) -> DecisionFunction:
         """Return the function that decides in all flocks of a batch."""
         if self.leaders.is_per_leader:
-            return _decision_function_per_leader(self.leaders, batch)
+            return self._decision_function_per_leader(batch)
         # The only assignment: one policy for all leaders.
         policy, state = self.leaders.assignments[0].policy.started(), None
         if policy.control_hz is None:
@@ -123,16 +126,15 @@ class Episodes:
 
         return decide
 
+    def _decision_function_per_leader(self, batch: LeaderBatch) -> DecisionFunction:
+        """Return the decision function of leaders that differ in policies and observations."""
+        core, decisions = batch.core, self.leaders.decisions(self.control_hz)
 
-def _decision_function_per_leader(leaders: Leaders, batch: LeaderBatch) -> DecisionFunction:
-    """Return the decision function of leaders that differ in their policies and observations."""
-    core, decisions = batch.core, leaders.decisions(batch.settings["control_hz"])
+        def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
+            observations = (core.observe_in(*layout) for layout in decisions.layouts)
+            return decisions.rudders(core.target_signs().ravel(), *observations)
 
-    def decide(_: NDArray[np.float32]) -> NDArray[np.float64]:
-        observations = (core.observe_in(*layout) for layout in decisions.layouts)
-        return decisions.rudders(core.target_signs().ravel(), *observations)
-
-    return decide
+        return decide
 
 
 def _decision_options(leaders: Leaders, options: Mapping[str, object]) -> dict[str, object]:

@@ -80,6 +80,24 @@ def test_a_camera_that_misses_boats_is_that_of_each_leader(parameters) -> None:
         assert (one["signed_order"] != clear).all()
 
 
+def test_each_of_several_policies_decides_at_its_own_rate(parameters) -> None:
+    """Without control_hz a slow leader's rudder is held, as in a simulation."""
+
+    class Counted:
+        def __init__(self, control_hz: float) -> None:
+            self.control_hz, self.decisions = control_hz, 0
+
+        def predict(self, observation, state=None):
+            self.decisions += 1
+            return np.zeros(len(observation)), state
+
+    led = parameters.replace(n_leaders=2)
+    for options, expected in (({}, [5, 50]), ({"control_hz": 2.0}, [10, 10])):
+        policies = {"leader_0": Counted(1.0), "leader_1": Counted(10.0)}
+        run_episodes(led, policies, [1, 2], 5.0, options=options)
+        assert [policy.decisions for policy in policies.values()] == expected
+
+
 def test_targets_are_dealt_out_to_the_seeds(parameters: flockenv.FlockParameters) -> None:
     """A flock that goes around clockwise has the opposite order towards the other target."""
     led = parameters.replace(n_leaders=2)
