@@ -1,5 +1,6 @@
 """Laws of leaders. Their formulas are in the Rust core, which can steer by them without Python."""
 
+import copy
 import json
 import math
 import os
@@ -60,6 +61,12 @@ class LawPolicy(RowPolicy):
         """The gains by name; empty for the paper's law."""
         return dict(self.law.gains)
 
+    @property
+    def is_law_itself(self) -> bool:
+        """Whether the core's law acts as this policy does: no subclass changes its rudders."""
+        methods = ("predict", "_rudders", "_steer")
+        return all(getattr(type(self), name) is getattr(LawPolicy, name) for name in methods)
+
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; raise AttributeError for those that the core's law depends on."""
         if hasattr(self, "_observed") and name in {*_FIXED_ATTRIBUTES, *self.gains}:
@@ -68,6 +75,14 @@ class LawPolicy(RowPolicy):
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         return self._observed.actions(rows)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        # Not by `__reduce__`: a subclass may have another constructor, and attributes of its own.
+        copied, fixed = type(self).__new__(type(self)), ("law", "_observed")
+        own = {name: value for name, value in vars(self).items() if name not in fixed}
+        shared = {name: vars(self)[name] for name in fixed}
+        vars(copied).update(copy.deepcopy(own, memo) | shared)
+        return copied
 
     def __reduce__(self) -> tuple[object, ...]:
         constructor: Callable[..., object] = type(self)

@@ -101,7 +101,7 @@ def policy(given: PolicyLike, pool: Pool | None = None, *, trust: bool = False) 
 
 def _checked(source: LeaderPolicy) -> Policy:
     """Return the checked policy that acts by an object's ``predict``."""
-    law = source.law if isinstance(source, LawPolicy) else None
+    law = source.law if isinstance(source, LawPolicy) and source.is_law_itself else None
     leaders = source.leaders if isinstance(source, ModelPolicy) else 1
     return Policy.from_source(source, leaders=leaders, law=law)
 

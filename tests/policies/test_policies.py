@@ -112,6 +112,26 @@ def test_laws_survive_pickles():
     assert "damping=2" in repr(law)
 
 
+@pytest.mark.parametrize("name", ["predict", "_steer"])
+def test_a_subclass_of_a_law_steers_as_it_says(name):
+    class Scaled(SteeringLaw):
+        def __init__(self, scale):
+            super().__init__()
+            self.scale = scale
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        return self.scale * SteeringLaw.predict(self, observation)[0], state
+
+    def steer(self, rows):
+        return self.scale * SteeringLaw._steer(self, rows)
+
+    setattr(Scaled, name, {"predict": predict, "_steer": steer}[name])
+    parameters = flockenv.FlockParameters(n_boats=6, n_leaders=2)
+    run = flockenv.simulate(parameters, seed=3, duration_s=5.0, policy=Scaled(0.0))
+    ahead = flockenv.simulate(parameters, seed=3, duration_s=5.0, policy="straight ahead")
+    assert (run.pose == ahead.pose).all()
+
+
 def test_a_law_of_the_core_needs_no_class():
     law = NamedLaw("paper's law", observation={"order": False}, mirror_to_target=True)
     for again in (law, pickle.loads(pickle.dumps(law))):
