@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import as_bool, by_name, number, real_numbers
+from flockenv._io.arguments import as_bool, by_name, listed, number, real_numbers
 from flockenv.envs.observation import observation_entries
 from flockenv.envs.options import OPTIONS
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
@@ -270,7 +270,8 @@ class RowPolicy(ABC):
             raise ParameterError(
                 f"mirror_to_target = {short_repr(mirror_to_target)} is not accepted: True or False"
             )
-        self.observation = dict(observation or {})
+        # Plain numbers instead of NumPy's, which no file of a policy could hold.
+        self.observation = {name: listed(block) for name, block in (observation or {}).items()}
         self.mirror_to_target = bool(mirror_to_target)
         self._observation_size = len(observation_entries(self.observation))
 

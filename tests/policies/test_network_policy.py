@@ -268,6 +268,15 @@ def test_a_file_keeps_every_bit(tmp_path):
     assert again.activations == ["relu", "relu", "identity"]
 
 
+def test_a_file_holds_an_observation_of_numbers_of_numpy(tmp_path):
+    observation = {"neighbors": np.int64(2), "order": np.bool_(False)}
+    size = len(observation_entries(observation))
+    policy = NetworkPolicy([np.zeros((size, 1))], [[0.5]], observation=observation)
+    policy.save(tmp_path / "policy.npz")
+    assert load(tmp_path / "policy.npz").observation == {"neighbors": 2, "order": False}
+    assert flockenv.policies.policy(policy).name.endswith(policy.digest)
+
+
 def changed(policy, tmp_path, **entries):
     """The policy's file with other entries in its header, or other arrays."""
     policy.save(tmp_path / "policy.npz")
