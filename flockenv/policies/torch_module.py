@@ -47,7 +47,7 @@ def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[Module
     With `has_spread`, or if a ``NormalParamExtractor`` ends it, the second of two outputs is
     dropped: the spread of a distribution.
     """
-    leaf_modules = [child for child in module.modules() if next(child.children(), None) is None]
+    leaf_modules = _leaf_modules(module)
     layers: list[ModuleLayer] = []
     for leaf in leaf_modules:
         if type(leaf).__name__ not in _SKIPPED:
@@ -70,6 +70,21 @@ def read_module(module: "nn.Module", *, has_spread: bool = False) -> list[Module
             "the mean and the spread of a distribution, say so with has_spread=True"
         )
     return layers
+
+
+def _leaf_modules(module: "nn.Module") -> list[Any]:
+    """Return the modules that hold no others, in their order.
+
+    One without weights may stand at several places, such as a single activation for all layers. One
+    with weights counts at its first place: at others it may have a second name.
+    """
+    leaf_modules: list[Any] = []
+    for _, child in module.named_modules(remove_duplicate=False):
+        is_seen = any(child is leaf for leaf in leaf_modules)
+        is_repeat = is_seen and next(child.parameters(), None) is not None
+        if next(child.children(), None) is None and not is_repeat:
+            leaf_modules.append(child)
+    return leaf_modules
 
 
 def _as_array(tensor: "Tensor") -> NDArray[np.float32]:
@@ -136,10 +151,17 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
         raise ParameterError(
             f"a module is not accepted whose layers do not fit each other in their order: {error}"
         ) from error
+    except Exception as error:  # The module's own forward may raise anything.
+        raise ParameterError(
+            "a module is not accepted that cannot be run on observations: "
+            f"{type(error).__name__}: {error}"
+        ) from error
     finally:
         for part, was_training in modes:
             part.training = was_training
     tensors = [tensor.float().cpu() for tensor in _tensors(output)]
+    if any(tensor.shape[:-1] != (_TRIAL_ROWS,) for tensor in tensors):
+        tensors = []  # Other shapes than (rows, outputs) cannot be joined; they are refused below.
     # The empty tensor is for outputs without tensors, which torch.cat refuses.
     joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)
     # The mean alone is compared: a distribution's spread is made positive after the last layer.

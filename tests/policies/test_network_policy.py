@@ -202,11 +202,43 @@ def own_modules():
         def forward(self, rows):
             return self.last(rows)
 
+    class Squeezed(Doubles):
+        def forward(self, rows):
+            return self.last(rows).squeeze(-1)
+
+    class OwnSpread(Doubles):
+        def forward(self, rows):
+            return self.last(rows), self.last.bias.exp()
+
+    class TakesByName(Doubles):
+        def forward(self, rows):
+            return self.last(rows.leaders)
+
+    class TakesTwo(Doubles):
+        def forward(self, rows, state):
+            return self.last(rows)
+
+    class SharesTanh(nn.Module):
+        def __init__(self):
+            super().__init__()
+            tanh = nn.Tanh()
+            layers = nn.Linear(SIZE, 4), tanh, nn.Linear(4, 4), tanh, nn.Linear(4, 1)
+            self.layers = nn.Sequential(*layers)
+            self.last = self.layers[-1]
+
+        def forward(self, rows):
+            return self.layers(rows)
+
     return [
         (Functions, "activations that forward calls as functions are not seen"),
         (Doubles, "computes something else than its 1 linear layers"),
         (TwoHeads, "computes something else than its 1 linear layers"),
         (Registered, "nothing stands between them"),
+        (Squeezed, "computes something else than its 1 linear layers"),
+        (OwnSpread, "computes something else than its 1 linear layers"),
+        (TakesByName, "cannot be run on observations: AttributeError"),
+        (TakesTwo, "cannot be run on observations: TypeError"),
+        (SharesTanh, None),
         (Plain, None),
     ]
 
