@@ -124,9 +124,11 @@ class ModelPolicy:
         multiple of k.
         """
         if isinstance(observation, Mapping):
-            stacked = np.stack([observation_array(rows) for rows in observation.values()])
+            arrays = [np.atleast_1d(observation_array(rows)) for rows in observation.values()]
+            # Beside each other, so that the leaders of a flock are consecutive.
+            stacked = np.stack(arrays, axis=-2)
             rudders, state = self._predict(stacked, state, episode_start, deterministic)
-            return dict(zip(observation, rudders, strict=True)), state
+            return dict(zip(observation, np.moveaxis(rudders, -2, 0), strict=True)), state
         return self._predict(observation_array(observation), state, episode_start, deterministic)
 
     def _predict(

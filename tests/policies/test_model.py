@@ -108,6 +108,20 @@ def test_every_interface_gets_the_same_rudders(model):
     slots.step(of_slots)
 
 
+def test_leaders_by_name_of_many_flocks_are_those_of_each_flock(model):
+    policy = ModelPolicy(model)
+    options = {**OPTIONS, **model.given, "rudder_levels": None}
+    observations, _ = flockenv.LeadersVectorEnv(3, **options).reset(seed=5)
+    rudders, _ = policy.predict(observations)
+    first, last = np.split(observations, 2, axis=1)
+    by_agent, _ = policy.predict({"leader_0": first, "leader_1": last})
+    assert {name: each.shape for name, each in by_agent.items()} == {
+        "leader_0": (3, 1),
+        "leader_1": (3, 1),
+    }
+    np.testing.assert_array_equal(np.concatenate([*by_agent.values()], axis=1), rudders)
+
+
 def test_simulations_and_episodes_take_the_model_itself(model):
     # As by the policy, and in an episode the same as in the environment, step by step.
     run = flockenv.simulate(PARAMETERS, 7, 2.0, policy=model)
