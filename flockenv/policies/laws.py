@@ -69,7 +69,9 @@ class LawPolicy(RowPolicy):
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; raise AttributeError for those that the core's law depends on."""
-        if hasattr(self, "_observed") and name in {*_FIXED_ATTRIBUTES, *self.gains}:
+        of_leans = ("bias", "weights") if isinstance(self, LeaningLaw) else ()
+        fixed = {*_FIXED_ATTRIBUTES, *of_leans, *self.gains} if hasattr(self, "_observed") else ()
+        if name in fixed:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)
 

@@ -23,6 +23,8 @@ LAWS = (SteeringLaw, DampedLaw)
         (DampedLaw(), "mirror_to_target"),
         (SteeringLaw(), "observation"),
         (flockenv.policies.load("learned", pool="wide"), "backward_gain"),
+        (flockenv.policies.load("learned", pool="wide"), "bias"),
+        (flockenv.policies.load("learned", pool="wide"), "weights"),
     ],
 )
 def test_what_a_law_is_made_of_is_fixed(law, name):
