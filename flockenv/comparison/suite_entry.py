@@ -319,7 +319,7 @@ def _trainings(policies: object, level: Level, folder: Path, trust: bool) -> tup
 
 
 def _training(name: str, level: Level, folder: Path, trust: bool) -> Training:
-    """Read a policy; check its weights and, if its provenance names them, its training seeds."""
+    """Read a policy; check its weights, and the training seeds and cpu_s in its provenance."""
     try:
         is_file = name.endswith(FILES)
         trained = policy(folder / name if is_file else name, level.parameters.pool, trust=trust)
@@ -334,6 +334,11 @@ def _training(name: str, level: Level, folder: Path, trust: bool) -> Training:
         if not separator or not (first.isdecimal() and last.isdecimal()):
             raise ParameterError(f"{name} says training_seeds = {seeds!r}, not FIRST-LAST")
         _check_seeds(int(first), int(last), f"training_seeds of {name}")
+    try:
+        float(provenance.get("cpu_s", "nan"))
+    except (TypeError, ValueError) as error:
+        cpu_s = short_repr(provenance["cpu_s"])
+        raise ParameterError(f"{name} says cpu_s = {cpu_s}, not a number of seconds") from error
     return Training(name, trained, provenance)
 
 

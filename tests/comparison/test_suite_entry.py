@@ -101,6 +101,7 @@ def test_what_a_policy_says_of_its_training_counts(entered, tmp_path: Path) -> N
     for made, words in (
         ({"training_seeds": "77-4294967300"}, "training_seeds of b.npz"),
         ({"training_seeds": "all"}, "not FIRST-LAST"),
+        ({"cpu_s": "2 minutes"}, "b.npz says cpu_s = '2 minutes', not a number of seconds"),
     ):
         network(tmp_path / "b.npz", **made)
         with pytest.raises(ParameterError) as error:
