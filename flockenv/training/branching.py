@@ -115,7 +115,8 @@ class BranchingFlocks:
             # The list of the groups' snapshots, repeated for each member.
             snapshots = self.size * self._snapshots
             options = {"snapshot": snapshots, "target": self._target_of_flocks()}
-            self.env.reset(options={**options, "reset_mask": np.tile(continues, self.size)})
+            if continues.any():
+                self.env.reset(options={**options, "reset_mask": np.tile(continues, self.size)})
             if not continues.all():
                 self._start_episodes(~continues)
                 self._branches_done[~continues] = 0

@@ -37,6 +37,14 @@ def test_groups_start_at_rest_in_turn():
     assert had == [[1, 2, 1, 2], [2, 1, 2, 1]]
 
 
+@pytest.mark.parametrize(("groups", "episode_s"), [(1, 16), (2, 8)])
+def test_all_groups_may_start_at_rest_at_once(groups, episode_s):
+    flocks = BranchingFlocks("wide", groups=groups, size=2, **{**SMALL, "episode_s": episode_s})
+    orders = [flocks.branch(held(*[0.0] * 2 * groups)) for _ in range(3)]
+    assert np.isfinite(orders).all()
+    assert (flocks._branches_done == 1).all()
+
+
 def test_seeds_of_trainings_are_refused_beyond_their_range():
     with pytest.raises(ParameterError, match="seed = 4294967296"):
         BranchingFlocks("wide", groups=1, size=2, **{**SMALL, "seed": 1 << 32})
