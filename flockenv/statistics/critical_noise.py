@@ -37,8 +37,8 @@ def critical_noise(
     -------
     tuple of float
         The noise and both ends of its interval. All are NaN if a level has fewer than three runs,
-        or if mean ``|m|`` is below `LEAST_ROTATION` at every noise: such a flock is jammed or
-        disordered, and has no order to lose.
+        if a mean is NaN, or if mean ``|m|`` is below `LEAST_ROTATION` at every noise: such a flock
+        is jammed or disordered, and has no order to lose.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def critical_noise(
             f"runs: expected {len(levels)} arrays, one per level, of shape (runs, 2): Ψ_o and |m|"
         )
     unknown = math.nan, math.nan, math.nan
-    if min(map(len, groups)) < _FEWEST_RUNS:
+    if min(map(len, groups)) < _FEWEST_RUNS or np.isnan(np.concatenate(groups)).any():
         return unknown
     if max(group[:, 1].mean() for group in groups) < LEAST_ROTATION:
         return unknown
@@ -97,7 +97,7 @@ def loss_of_order(noise: ArrayLike, psi_o: ArrayLike, rotation: ArrayLike) -> ND
     Returns
     -------
     numpy.ndarray
-        Shape (...).
+        Shape (...); NaN for curves that hold NaN.
     """
     levels = np.asarray(noise, float)
     orders, rotations = np.asarray(psi_o, float), np.asarray(rotation, float)
@@ -114,6 +114,8 @@ def _noise_at_middle(
     levels: NDArray[np.float64], psi_o: NDArray[np.float64], rotation: NDArray[np.float64]
 ) -> float:
     """Return the noise at which one curve of Ψ_o last falls through its middle."""
+    if np.isnan(psi_o).any() or np.isnan(rotation).any():
+        return math.nan
     strongest = int(rotation.argmax())
     middle = (psi_o[strongest] + psi_o[-1]) / 2
     last_above = strongest + int(np.flatnonzero(psi_o[strongest:] >= middle)[-1])

@@ -51,6 +51,17 @@ def test_a_flock_without_order_loses_none():
     assert np.isnan(critical_noise(BW_S, runs(count=2))).all()
 
 
+def test_means_that_are_unknown_leave_the_noise_unknown():
+    for index in range(2):
+        groups = runs()
+        groups[-1][0, index] = np.nan
+        assert np.isnan(critical_noise(BW_S, groups)).all()
+    curves = np.stack([PSI_O, [*PSI_O[:-1], np.nan]], axis=1)
+    found = loss_of_order(BW_S, curves, np.stack([ROTATION, ROTATION], axis=1))
+    assert found[0] == pytest.approx(0.3375)
+    assert np.isnan(found[1])
+
+
 @pytest.mark.parametrize(
     ("noise", "groups"),
     [
