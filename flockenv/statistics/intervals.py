@@ -240,7 +240,7 @@ def summarize(runs: "pd.DataFrame", by: Sequence[str], quantities: Sequence[str]
     by, quantities = list(items(by, "by")), items(quantities, "quantities")
     refuse_unknown([*by, *quantities], runs.columns, "column of the runs")
     rows = []
-    for key, group in runs.groupby(by, sort=False):
+    for key, group in runs.groupby(by, sort=False, dropna=False):
         row = dict(zip(by, key, strict=True)) | {"runs": len(group)}
         for quantity in quantities:
             mean, low, high = mean_interval(group[quantity])

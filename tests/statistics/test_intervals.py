@@ -83,6 +83,9 @@ def test_groups_keep_their_order_and_their_own_means() -> None:
     assert means["psi_o"].tolist() == [2.0, 7.0]
     assert means["runs"].tolist() == [2, 2]
     assert list(means) == ["policy", "k", "runs", "psi_o", "psi_o_low", "psi_o_high"]
+    # Runs without a value in a column form a group, too.
+    unnamed = summarize(runs.assign(policy=[None, None, "a", "a"]), ["policy", "k"], ["psi_o"])
+    assert unnamed["runs"].tolist() == [2, 2]
 
 
 def test_pairs_are_compared_seed_by_seed() -> None:
