@@ -85,7 +85,8 @@ class BranchTraining:
 
     def __init__(self, parameters: FlockParameters, *, seed: int = 0, **options: object) -> None:
         refuse_unknown(options, OPTIONS, "option of the training")
-        first_flock_seed = branch_seed(as_int(seed, "seed"))
+        seed = as_int(seed, "seed")
+        first_flock_seed = branch_seed(seed)
         self._core = _core.Trainer(parameters, options, seed, first_flock_seed)
         self.parameters = parameters
 

@@ -154,6 +154,10 @@ def test_a_harmed_checkpoint_is_refused(tmp_path: Path, harm, words):
         stored_training(tmp_path)
 
 
+def test_a_whole_number_may_be_a_float():
+    assert tiny(seed=2.0).policy().to_json() == tiny(seed=2).policy().to_json()
+
+
 def test_what_is_no_training_is_refused_by_its_name():
     for options, words in (
         ({"flock_hours": 0.0}, "flock_hours = 0"),
