@@ -108,12 +108,12 @@ def colors_in() -> Callable[[Path], set[str]]:
         from matplotlib.colors import to_rgb
         from matplotlib.image import imread
 
-        from flockenv.comparison.figure import COLORS, OWN_COLORS
+        from flockenv.comparison.figure import COLORS, OTHER_COLORS
         from flockenv.policies.names import EVERY_SUBSTEP
 
         pixels = imread(path)[..., :3]
         named = {name: color for name, color in COLORS.items() if name != EVERY_SUBSTEP}
-        named |= {color: color for color in OWN_COLORS}
+        named |= {color: color for color in OTHER_COLORS}
         near = {n: abs(pixels - to_rgb(c)).max(axis=-1) < 0.02 for n, c in named.items()}
         return {name for name, pixels in near.items() if pixels.sum() > 500}
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from flockenv.comparison.episodes import QUANTITIES
-from flockenv.comparison.figure import OWN_COLORS, leader_curve
+from flockenv.comparison.figure import OTHER_COLORS, leader_curve
 
 
 def test_the_curve_has_the_colors_of_the_policies(tmp_path: Path, colors_in) -> None:
@@ -18,4 +18,4 @@ def test_the_curve_has_the_colors_of_the_policies(tmp_path: Path, colors_in) -> 
     means["signed_order_low"] = means["signed_order"] - 0.2
     means["signed_order_high"] = means["signed_order"] + 0.2
     leader_curve(means, tmp_path / "curve.png", titles={"a": "a $title"})
-    assert colors_in(tmp_path / "curve.png") == {"learned", OWN_COLORS[0]}
+    assert colors_in(tmp_path / "curve.png") == {"learned", OTHER_COLORS[0]}
