@@ -384,6 +384,10 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
     policy = getattr(model, "policy", model)
     entries = [entry.name for entry in observation_entries(model_policy.observation)]
     hidden_layers = len(getattr(getattr(policy, "mlp_extractor", None), "policy_net", ()))
+    # Usually the extractor has no weights, and only flattens observations.
+    extractor = getattr(policy, "features_extractor", None)
+    has_weights = extractor is not None and any(True for _ in extractor.parameters())
+    has_layers = hidden_layers or has_weights or hasattr(policy, "lstm_actor")
     mode, control_hz = model_policy.action_mode, model_policy.control_hz
     for differs, property_words in (
         (mode != "lean", f"actions of action_mode {mode!r}"),
@@ -392,7 +396,7 @@ def _check_is_leaning_law(model: Any, model_policy: ModelPolicy) -> None:
         (control_hz != CONTROL_HZ, f"{control_hz:g} control steps per second"),
         (model_policy.leaders != 1, f"{model_policy.leaders} leaders at once"),
         (vec_normalize_of(model) is not None, "VecNormalize around its environment"),
-        (hidden_layers or not hasattr(policy, "action_net"), "an actor of more than one layer"),
+        (has_layers or not hasattr(policy, "action_net"), "an actor of more than one layer"),
     ):
         if differs:
             raise ParameterError(

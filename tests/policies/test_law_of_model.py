@@ -18,6 +18,7 @@ pytest.importorskip("stable_baselines3")
 
 import torch
 from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecNormalize
 
 from flockenv.sb3 import LeaderVecEnv, SharedNoisePolicy, shared_noise
@@ -111,6 +112,22 @@ def test_other_models_are_named(change, words):
 
 def test_a_model_without_such_an_actor_is_named():
     model = SAC("MlpPolicy", LeaderVecEnv(1, **LEAN), buffer_size=8, device="cpu")
+    with pytest.raises(ParameterError, match="an actor of more than one layer"):
+        LeaningLaw.from_model(model, "wide")
+
+
+@pytest.mark.parametrize("features", [29, 12])
+def test_a_model_with_features_of_its_own_is_named(features):
+    class Own(BaseFeaturesExtractor):
+        def __init__(self, space):
+            super().__init__(space, features)
+            self.layers = torch.nn.Sequential(torch.nn.Linear(29, features), torch.nn.Tanh())
+
+        def forward(self, rows):
+            return self.layers(rows)
+
+    options = {"net_arch": {"pi": [], "vf": [8]}, "features_extractor_class": Own}
+    model = PPO("MlpPolicy", LeaderVecEnv(2, **LEAN), policy_kwargs=options, device="cpu")
     with pytest.raises(ParameterError, match="an actor of more than one layer"):
         LeaningLaw.from_model(model, "wide")
 
