@@ -137,6 +137,30 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
     """Refuse a module whose output for random rows is not that of its layers in their order."""
     import torch
 
+    output, expected = _outputs_on_trial(module, layers)
+    tensors = [tensor.float().cpu() for tensor in _tensors(output)]
+    if any(tensor.shape[:-1] != (_TRIAL_ROWS,) for tensor in tensors):
+        tensors = []  # Other shapes than (rows, outputs) cannot be joined; they are refused below.
+    # The empty tensor is for outputs without tensors, which torch.cat refuses.
+    joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)
+    # The mean alone is compared: a distribution's spread is made positive after the last layer.
+    columns = 1 if len(tensors) == 2 else expected.shape[1]
+    # NaN is equal here: a policy refuses weights that are not finite, with a better message.
+    is_same = joined.shape == expected.shape and torch.allclose(
+        joined[:, :columns], expected[:, :columns], atol=_OUTPUT_TOLERANCE, equal_nan=True
+    )
+    if not is_same:
+        raise ParameterError(
+            f"a module is not accepted that computes something else than its {len(layers)} linear "
+            f"layers one after another, {_ACCEPTED}: write it as torch.nn.Sequential, or take an "
+            "object with predict"
+        )
+
+
+def _outputs_on_trial(module: "nn.Module", layers: list[ModuleLayer]) -> tuple[object, "Tensor"]:
+    """Return a module's output for random rows, and that of its layers in their order."""
+    import torch
+
     size = len(layers[0].weight)
     rows = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIAL_ROWS, size)).astype(np.float32)
     modes = [(part, part.training) for part in module.modules()]
@@ -159,23 +183,7 @@ def _check_output(module: "nn.Module", layers: list[ModuleLayer]) -> None:
     finally:
         for part, was_training in modes:
             part.training = was_training
-    tensors = [tensor.float().cpu() for tensor in _tensors(output)]
-    if any(tensor.shape[:-1] != (_TRIAL_ROWS,) for tensor in tensors):
-        tensors = []  # Other shapes than (rows, outputs) cannot be joined; they are refused below.
-    # The empty tensor is for outputs without tensors, which torch.cat refuses.
-    joined = torch.cat([torch.empty(_TRIAL_ROWS, 0), *tensors], dim=-1)
-    # The mean alone is compared: a distribution's spread is made positive after the last layer.
-    columns = 1 if len(tensors) == 2 else expected.shape[1]
-    # NaN is equal here: a policy refuses weights that are not finite, with a better message.
-    is_same = joined.shape == expected.shape and torch.allclose(
-        joined[:, :columns], expected[:, :columns], atol=_OUTPUT_TOLERANCE, equal_nan=True
-    )
-    if not is_same:
-        raise ParameterError(
-            f"a module is not accepted that computes something else than its {len(layers)} linear "
-            f"layers one after another, {_ACCEPTED}: write it as torch.nn.Sequential, or take an "
-            "object with predict"
-        )
+    return output, expected
 
 
 def _tensors(output: object) -> Iterator[Any]:
