@@ -97,9 +97,11 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     count = len(seeds) * sum(math.prod(map(len, grid.values())) for grid in grids)
     if count > MOST_RUNS:
         raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
-    base = FlockParameters.from_dict({"preset": values.get("preset", "simulation"), **fixed})
+    # All fields are set at once: `replace` would scale a fixed radius of gyration with the hull, and
+    # fixed fields need not fit the preset's values of those that vary.
+    base = {"preset": values.get("preset", "simulation"), **fixed}
     flocks = dict.fromkeys(
-        base.replace(**dict(zip(axes, point, strict=True)))
+        FlockParameters.from_dict(base | dict(zip(axes, point, strict=True)))
         for grid in grids
         for point in itertools.product(*(grid[axis] for axis in axes))
     )

@@ -44,6 +44,25 @@ def read(tmp_path: Path, text: str) -> SweepSpec:
     return read_sweep(path)
 
 
+def test_fixed_fields_and_those_of_the_grid_are_set_together(tmp_path: Path) -> None:
+    """A fixed radius of gyration stays as the hull varies; 20 boats of the preset refuse nothing."""
+    sweep = read(
+        tmp_path,
+        """
+        minutes = 0.5
+        seeds = 1
+        [fixed]
+        gyration_radius_cm = 4.0
+        n_leaders = 25
+        [[grid]]
+        n_boats = [27]
+        boat_radius_cm = [3.0, 4.0]
+        """,
+    )
+    assert [spec.parameters.gyration_radius_cm for spec in sweep.runs] == [4.0, 4.0]
+    assert [spec.parameters.n_leaders for spec in sweep.runs] == [25, 25]
+
+
 def test_every_combination_once(tmp_path: Path) -> None:
     sweep = read(tmp_path, SPEC)
     assert sweep.axes == ("n_boats", "pool", "bw_s")
