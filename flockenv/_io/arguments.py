@@ -1,5 +1,6 @@
 """Checks and conversions of arguments: sequences, iterators, arrays, numbers, bools and bytes."""
 
+import math
 import operator
 from collections.abc import Iterable, Iterator, Mapping, MappingView, Sequence, Set
 from itertools import islice
@@ -138,6 +139,14 @@ def number(value: object, name: str) -> Any:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a number, not {short_repr(value)}")
     return value
+
+
+def as_float(value: Any) -> float:
+    """Return a real number as a float, infinite if it is too large for one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def as_bool(value: object, name: str) -> bool:

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from flockenv._io.arguments import as_int, number
+from flockenv._io.arguments import as_float, as_int, number
 from flockenv.errors import ParameterError, refuse_unknown, short_repr
 from flockenv.order import ORDER, OrderSeries
 from flockenv.parameters import FlockParameters
@@ -76,7 +76,7 @@ class RunSpec:
         object.__setattr__(self, "seed", as_int(self.seed, "seed"))
         check_seed(self.seed)
         for name, most in (("duration_s", 1e9), ("sample_hz", 1e6)):
-            value = float(number(getattr(self, name), name))
+            value = as_float(number(getattr(self, name), name))
             if not 0.0 < value <= most:
                 raise ParameterError(
                     f"{name} = {value!r} is not accepted: a positive number, at most {most:g}"

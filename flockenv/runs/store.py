@@ -96,7 +96,11 @@ class RunStore:
             raise
         except ParameterError as error:
             damaged = path.with_suffix(".damaged")
-            path.replace(damaged)
+            try:
+                path.replace(damaged)
+            except OSError as failure:
+                reason = failure.strerror or failure
+                raise StorageError(f"{error}; it cannot be renamed: {reason}") from failure
             self._notify(f"{error}; it is done again, and the old file is now {damaged}")
             return None
         except OSError as error:
@@ -163,7 +167,8 @@ def run_missing(
         If a finished run cannot be written.
     """
     check_function(progress, "progress")
-    if workers is not None and as_int(workers, "workers") < 1:
+    workers = None if workers is None else as_int(workers, "workers")
+    if workers is not None and workers < 1:
         raise ParameterError(f"workers = {workers} is not accepted: at least 1")
     missing = []
     specs = items(specs, "specs")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flockenv._io.arguments import as_float
 from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_csv
 from flockenv._io.extras import require
 from flockenv._io.toml import read_toml_file
@@ -97,8 +98,8 @@ def _parse(values: Mapping[str, object]) -> SweepSpec:
     count = len(seeds) * sum(math.prod(map(len, grid.values())) for grid in grids)
     if count > MOST_RUNS:
         raise ParameterError(f"the sweep has {count} runs; at most {MOST_RUNS} are accepted")
-    # All fields are set at once: `replace` would scale a fixed radius of gyration with the hull, and
-    # fixed fields need not fit the preset's values of those that vary.
+    # All fields are set at once: `replace` would scale a fixed radius of gyration with the hull,
+    # and fixed fields need not fit the preset's values of those that vary.
     base = {"preset": values.get("preset", "simulation"), **fixed}
     flocks = dict.fromkeys(
         FlockParameters.from_dict(base | dict(zip(axes, point, strict=True)))
@@ -173,7 +174,7 @@ def _seeds(seeds: object) -> tuple[int, ...]:
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ParameterError(f"{name} = {short_repr(value)} is not accepted: a number")
-    return float(value)
+    return as_float(value)
 
 
 def summary(run: Recording) -> dict[str, float]:
@@ -249,6 +250,7 @@ def run_sweep(
         rows.append({**fields, "seed": spec.seed, **means, "failure": failure})
     table: pd.DataFrame = pandas.DataFrame(rows, columns=[*sweep.axes, "seed", *_COLUMNS])
     try:
+        folder.mkdir(parents=True, exist_ok=True)  # No run made it if all failed.
         write_csv(folder / "sweep.csv", table)
         with atomic_write(folder / "sweep.parquet") as file:
             table.to_parquet(file, index=False)

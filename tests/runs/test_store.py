@@ -222,6 +222,19 @@ def test_missing_runs_are_made_and_failures_cost_no_others(spec: RunSpec, store:
     assert store.path(spec).stat().st_mtime_ns == before
 
 
+def test_the_number_of_workers_may_be_a_whole_float(spec: RunSpec, store: RunStore) -> None:
+    assert run_missing([spec], store, workers=2.0) == {}  # type: ignore[arg-type]
+
+
+def test_a_damaged_file_that_cannot_be_renamed_is_named(spec: RunSpec, store: RunStore) -> None:
+    path = store.path(spec)
+    path.with_suffix(".damaged").mkdir(parents=True)
+    path.write_bytes(b"no run")
+    with pytest.raises(StorageError, match=f"{spec.key}.*cannot be renamed"):
+        store.load(spec)
+    assert path.read_bytes() == b"no run"
+
+
 def test_an_unwritable_folder_is_named(spec: RunSpec, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(StorageError, match="file"):
@@ -245,6 +258,7 @@ def test_a_run_that_cannot_be_read_is_named_and_stays(spec: RunSpec, store: RunS
         ({"duration_s": float("nan")}, "duration_s"),
         ({"sample_hz": 0}, "sample_hz"),
         ({"duration_s": 1e300}, "at most 1e"),
+        ({"duration_s": 10**400}, "at most 1e"),
         ({"duration_s": "30"}, "duration_s must be a number"),
         ({"sample_hz": True}, "sample_hz must be a number"),
         ({"parameters": {}}, "parameters must be FlockParameters"),

@@ -45,7 +45,7 @@ def read(tmp_path: Path, text: str) -> SweepSpec:
 
 
 def test_fixed_fields_and_those_of_the_grid_are_set_together(tmp_path: Path) -> None:
-    """A fixed radius of gyration stays as the hull varies; 20 boats of the preset refuse nothing."""
+    """A fixed radius of gyration stays as the hull varies, and 25 leaders fit 27 boats."""
     sweep = read(
         tmp_path,
         """
@@ -99,6 +99,13 @@ def test_the_table_holds_what_the_runs_have(tmp_path: Path) -> None:
     assert load_sweep(tmp_path / "out").equals(table)
 
 
+def test_a_table_of_failures_alone_is_written(tmp_path: Path) -> None:
+    sweep = read(tmp_path, "minutes = 0.5\nseeds = 1\n[[grid]]\nn_boats = [900]")
+    table = run_sweep(sweep, tmp_path / "new" / "folder")
+    assert "fit" in table["failure"].iloc[0]
+    assert len(load_sweep(tmp_path / "new" / "folder")) == 1
+
+
 def test_as_xarray(tmp_path: Path) -> None:
     table = run_sweep(read(tmp_path, SPEC), tmp_path / "out")
     dataset = to_xarray(table)
@@ -128,6 +135,7 @@ GRID = "[[grid]]\nbw_s = [0.1]\n"
         ("minutes = 1\nseeds = 1\n" + GRID + "[[grid]]\nc4 = [0.1]", "same fields.*bw_s, c4"),
         ("minutes = 1\nseeds = 1000000\n[[grid]]\nbw_s = [0.1, 0.2]", "2000000 runs"),
         ("minutes = \n", "not TOML"),
+        (f"minutes = 1{'0' * 400}\nseeds = 1\n" + GRID, "duration_s = inf"),
         (
             "minutes = 1\nseeds = 1\n[[grid]]\npool = [130, 70]",
             r'pool = 130 is not accepted: .* as in pool = \[\[130, 70\], "wide"\]$',
