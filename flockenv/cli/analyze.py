@@ -87,7 +87,7 @@ def analyze(options: AnalyzeOptions) -> None:
         return
     boats = recording.parameters.n_boats
     echo(f"{boats} boats, {printable(options.file)}: {in_words(recording)}")
-    if not options.quiet and (recording.phase == "").all():
+    if not options.quiet and len(recording) > 0 and (recording.phase == "").all():
         echo("The motors' phases are unknown: all samples after the first tenth count.")
     if outputs:
         echo(f"Written to {' and '.join(map(printable, outputs))}")
@@ -99,7 +99,7 @@ def _figure(recording: Recording) -> "Figure":
     figure: Figure
     figure, axes = pyplot.subplots(1, 2, figsize=(13, 6), layout="constrained")
     recording.order.plot(target=recording.parameters.target, ax=axes[1])
-    if recording.has_poses:
+    if recording.has_poses and len(recording) > 0:
         _draw_frame(recording, axes[0])
     return figure
 

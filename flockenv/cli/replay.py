@@ -66,10 +66,10 @@ class ReplayOptions(Printing):
 
     def named(self) -> dict[str, Path]:
         """Return the recordings' files by the names that pages and pictures show."""
-        names = self.name or [path.stem for path in self.paths]
+        names = [printable(name) for name in self.name or [path.stem for path in self.paths]]
         if len(set(names)) < len(names):
             names = [f"{name} ({index})" for index, name in enumerate(names, 1)]
-        return {printable(name): path for name, path in zip(names, self.paths, strict=True)}
+        return dict(zip(names, self.paths, strict=True))
 
 
 @takes(ReplayOptions)
@@ -117,11 +117,14 @@ def _write_pictures(options: ReplayOptions, paths: list[Path]) -> None:
     named = options.named()
     prepare(*paths)
     runs = [load_recording(path, quiet=options.hides_progress) for path in named.values()]
+    for name, run in zip(named, runs, strict=True):
+        if len(run) == 0:
+            raise ParameterError(f"recording {name!r} is not accepted: samples with their poses")
     # A lone recording gets no caption, unless the user names it.
     captions = list(named) if options.name or len(runs) > 1 else [""]
     for path in paths:
         fps = _FPS[path.suffix.lower()]
-        recorded_s = max(run.duration_s for run in runs) - options.start
+        recorded_s = max(float(run.time_s[-1] - run.time_s[0]) for run in runs) - options.start
         picture_s = min(options.seconds, recorded_s / options.speed)
         count = max(1, round(picture_s * fps))
         offsets_s = options.start + np.arange(count) * options.speed / fps

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image, ImageSequence
 
 import flockenv
+from flockenv.cli.replay import ReplayOptions
 from flockenv.rendering import frame
 
 SMALL = ["--set", "n_boats=8", "--set", "n_leaders=2", "--set", "pool=narrow", "--minutes", "0.2"]
@@ -145,6 +146,32 @@ def test_a_moving_picture_starts_later(cli, run, tmp_path, start, frames, first_
         found = np.array(picture.convert("RGB")).astype(int)
     expected = frame(flockenv.Recording.load(run), first_s)
     assert np.abs(found - expected).mean() < 2.0
+
+
+def test_a_moving_picture_lasts_as_long_as_the_samples(cli, run, tmp_path):
+    """A run that starts at 12 s and lasts 8 s takes 1 s at 8 times real time."""
+    start = flockenv.Recording.load(run)
+    flockenv.simulate(PARAMETERS, 7, 8.0, start=start).save(tmp_path / "later.npz")
+    cli.succeeds("replay", tmp_path / "later.npz", "--gif", tmp_path / "later.gif")
+    with Image.open(tmp_path / "later.gif") as picture:
+        lasting = sum(each.info["duration"] for each in ImageSequence.Iterator(picture))
+    assert lasting == pytest.approx(1000, abs=50)
+
+
+def test_a_recording_without_samples_has_no_picture(cli, tmp_path):
+    empty = tmp_path / "empty.npz"
+    flockenv.simulate(PARAMETERS, 7, 0.5).analyzed().save(empty)
+    refused = cli("replay", empty, "--gif", tmp_path / "empty.gif")
+    assert refused.returncode == 2
+    assert "recording 'empty' is not accepted: samples with their poses" in refused.stderr
+    done = cli.succeeds("analyze", empty, "--plot", tmp_path / "empty.png")
+    assert "phases are unknown" not in done.stdout
+
+
+def test_names_that_print_alike_are_numbered():
+    paths = [Path("a\udcfe.npz"), Path("a\udcff.npz")]
+    named = ReplayOptions(first=paths[0], second=paths[1]).named()
+    assert named == {"a\ufffd (1)": paths[0], "a\ufffd (2)": paths[1]}
 
 
 def test_models_of_stable_baselines3_steer_and_are_compared_with_trust(cli, tmp_path):
