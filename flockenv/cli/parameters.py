@@ -101,7 +101,7 @@ def _value(text: str) -> object:
 
     For a text that is not TOML: a list of its words if it has brackets or commas, or else the text.
     """
-    if text[0] in "([" and text[-1] in ")]":
+    if text[:1] in ("(", "[") and text[-1:] in (")", "]"):
         text = text.replace("(", "[").replace(")", "]")
     try:
         table = read_toml(f"value = {text}", text)

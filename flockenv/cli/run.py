@@ -15,6 +15,7 @@ from flockenv.cli.output import in_words, prepare, printable, summary_of
 from flockenv.cli.parameters import OneFlock, changed_fields
 from flockenv.cli.progress import progress
 from flockenv.errors import ParameterError, short_repr
+from flockenv.parameters import FlockParameters
 from flockenv.policies.names import EVERY_SUBSTEP
 from flockenv.policies.registry import NAMES, policy, quoted
 from flockenv.simulation import simulate
@@ -66,6 +67,7 @@ def run(options: RunOptions) -> None:
         raise ParameterError("--minutes 0 is not accepted: more than 0, as in --minutes 0.1")
     parameters = options.parameters()
     leaders = policy(options.policy, parameters.pool, trust=options.trust)
+    schedule = _schedule(options.at or (), parameters)
     out = options.out or _free_path(_OUT)
     parameter_file = out.with_suffix(".toml")
     _check_no_other_file(parameter_file)
@@ -80,7 +82,7 @@ def run(options: RunOptions) -> None:
             leaders,
             contacts=options.contacts,
             progress=advance,
-            schedule=_schedule(options.at or ()),
+            schedule=schedule,
         )
     recording.save(out)
     policy_name = printable(options.policy)
@@ -105,8 +107,13 @@ def _check_no_other_file(parameter_file: Path) -> None:
         )
 
 
-def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
-    """Return the times and changes that texts ``TIME:FIELD=VALUE`` name."""
+def _schedule(
+    texts: Sequence[str], parameters: FlockParameters
+) -> list[tuple[float, dict[str, Any]]]:
+    """Return the times and changes that texts ``TIME:FIELD=VALUE`` name.
+
+    Refuses values of the wrong type; `simulate` checks whether the others are in their range.
+    """
     changes = []
     for text in texts:
         time_s, colon, change = text.partition(":")
@@ -117,6 +124,12 @@ def _schedule(texts: Sequence[str]) -> list[tuple[float, dict[str, Any]]]:
         except ValueError as error:
             accepted = "TIME:FIELD=VALUE, as in 60:bw_s=0.6"
             raise ParameterError(f"--at {short_repr(text)} is not accepted: {accepted}") from error
+        try:
+            parameters.replace(**changes[-1][1])
+        except TypeError as error:
+            raise ParameterError(f"--at {short_repr(text)} is not accepted: {error}") from error
+        except ParameterError:  # An earlier change may make it acceptable.
+            pass
     return changes
 
 

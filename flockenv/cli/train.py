@@ -123,7 +123,11 @@ def _train(
             echo(f"Resuming from {out / ppo.CHECKPOINT}", errors)
             settings = ppo.stored_settings(out, options.flock_hours)
             return ppo.resume(out, flock_hours=options.flock_hours, report=report), settings
-        settings = ppo.TrainingSettings.from_dict(user_settings)
+        try:
+            settings = ppo.TrainingSettings.from_dict(user_settings)
+            settings.venv()  # It refuses options of the environment.
+        except TypeError as error:
+            raise ParameterError(str(error)) from error
         return ppo.train(settings, out, report), settings
 
 

@@ -82,8 +82,11 @@ def _training(user_settings: dict[str, Any]) -> BranchTraining:
     def chosen(*names: str) -> dict[str, Any]:
         return {name: user_settings[name] for name in names if name in user_settings}
 
-    flocks = training_flocks(**chosen("pool", "n_leaders"), **changes)
-    return BranchTraining(flocks, **options, **chosen("flock_hours", "seed"))
+    try:
+        flocks = training_flocks(**chosen("pool", "n_leaders"), **changes)
+        return BranchTraining(flocks, **options, **chosen("flock_hours", "seed"))
+    except TypeError as error:
+        raise ParameterError(str(error)) from error
 
 
 def _lines(is_quiet: bool) -> Callable[[Progress], None]:

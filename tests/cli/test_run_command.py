@@ -54,6 +54,20 @@ def test_a_change_on_the_way_of_another_form_is_refused(cli, tmp_path, change):
     assert f"--at '{change}' is not accepted: TIME:FIELD=VALUE" in refused.stderr
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--at", "5:bw_s=abc"], "--at '5:bw_s=abc' is not accepted: bw_s must be a number"),
+        (["--pool", ""], 'pool = "" is not accepted'),
+    ],
+)
+def test_values_of_the_wrong_type_are_named(cli, tmp_path, options, words):
+    refused = cli("run", "--n-boats", "8", *options, "--out", tmp_path / "run.npz", "-q")
+    assert refused.returncode == 2
+    assert words in refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
 def test_json_is_all_that_is_printed(cli, tmp_path):
     out = tmp_path / "run.npz"
     policy = ["--policy", "damped law", "--no-contacts", "--hz", "5"]

@@ -121,6 +121,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
         (["--algorithm", "branch"], "'branch' is not an algorithm"),
         (["--algorithm", "branches", "--flock-hours", "0"], "flock_hours = 0"),
         (["--algorithm", "branches", "--set", "holds=8"], "did you mean 'hold_s'"),
+        (["--algorithm", "branches", "--set", "bw_s=abc"], "Error: bw_s must be a number"),
         (["--algorithm", "branches", "--ppo", "gamma=0.9"], "--ppo is for --algorithm ppo"),
         (["--algorithm", "branches", "--resume"], "no checkpoint of branches"),
         (["--algorithm", "branches", "--resume", "--seed", "3"], "only --flock-hours may differ"),

@@ -65,6 +65,7 @@ def test_errors_are_one_line_with_exit_code_2(cli, tmp_path: Path) -> None:
     for arguments, words in (
         (["--pool", "deep"], "pool = 'deep' is not accepted: wide or narrow"),
         (["--set", "n_boat=6"], "n_boat"),
+        (["--set", "bw_s=abc"], "bw_s must be a number"),
         (["--ppo", "gama=0.9"], "did you mean 'gamma'"),
         (["--flock-hours", "0"], "flock_hours = 0.0 is not accepted"),
         (["--resume"], "no checkpoint"),
