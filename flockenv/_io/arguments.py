@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from flockenv.errors import ParameterError, short_repr
 
 _MOST_ITEMS = 1_000_000
+_NO_NUMBERS = (str, bytes, np.datetime64, np.timedelta64)
 
 
 def items(values: object, name: str) -> Sequence[Any]:
@@ -120,14 +121,18 @@ def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
     try:
         array: np.ma.MaskedArray[Any, Any] = np.ma.asarray(values)
         if array.dtype.kind == "O":
+            # NumPy would turn these into numbers.
+            if any(isinstance(value, _NO_NUMBERS) for value in array.compressed()):
+                raise TypeError("text or a time")
             array = np.ma.asarray(values, np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ParameterError(f"{name} is not accepted: real numbers") from error
     return np.array(np.ma.filled(real_numbers(array, name).astype(np.float64), np.nan))
 
 
 def series(values: object, name: str) -> NDArray[np.float64]:
     """Return a sequence of numbers as an array, shape (n,); refuse anything else."""
+    _check_no_table(values, name)
     array = with_gaps(items(values, name), name)
     if array.ndim != 1:
         raise ParameterError(f"{name} has shape {array.shape}, expected (n,)")

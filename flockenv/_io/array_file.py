@@ -14,6 +14,7 @@ from flockenv._io.plain_file import open_plain
 from flockenv.errors import ParameterError
 
 _MOST_BYTES = 16 << 30
+_MOST_HEADER_BYTES = 256  # NumPy writes 128 bytes before an array of a plain dtype.
 _MOST_EXPANSION, _FREE_BYTES = 100, 64 << 20
 
 
@@ -34,7 +35,7 @@ def write_arrays(
     If compression would make the file so small that `read_arrays` would refuse it, the arrays are
     not compressed.
     """
-    content_bytes = sum(array.nbytes for array in arrays.values())
+    content_bytes = sum(array.nbytes + _MOST_HEADER_BYTES for array in arrays.values())
     with atomic_write(path) as file:
         if compressed:
             np.savez_compressed(file, allow_pickle=False, **dict(arrays))

@@ -7,7 +7,10 @@ import signal
 import socket
 import subprocess
 import sys
+from decimal import Decimal
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from flockenv import (
@@ -19,6 +22,8 @@ from flockenv import (
     Recording,
     simulate,
 )
+from flockenv._io.arguments import series
+from flockenv._io.array_file import read_arrays, write_arrays
 from flockenv._io.atomic_write import atomic_write, remove_leftovers, write_text
 from flockenv._io.toml import read_toml_file
 from flockenv.cli import app
@@ -208,6 +213,26 @@ def test_numbers_in_messages_are_short(call, words):
 def placed(pose):
     flock = Flock(FlockParameters(n_boats=1, pool=(math.inf, 0.0)), 1)
     flock.set_state(pose, [[0, 0, 0]])
+
+
+@pytest.mark.parametrize(
+    "values",
+    [["1", None], [np.datetime64("2020"), None], [10**400, None], pd.DataFrame(np.ones((3, 2)))],
+)
+def test_what_is_no_series_of_numbers_is_refused(values):
+    with pytest.raises(ParameterError, match="x is not accepted"):
+        series(values, "x")
+
+
+def test_gaps_in_numbers_are_nan():
+    given = [1, None, np.float32(2.5), Decimal("0.5")]
+    np.testing.assert_array_equal(series(given, "x"), [1.0, np.nan, 2.5, 0.5])
+
+
+def test_what_is_written_is_never_too_small_to_be_read(tmp_path):
+    """The headers of arrays count among the 64 MiB that a small file may hold."""
+    write_arrays(tmp_path / "a.npz", {"a": np.zeros((64 << 20) - 8, np.uint8)}, compressed=True)
+    assert read_arrays(tmp_path / "a.npz")["a"].shape == ((64 << 20) - 8,)
 
 
 def test_toml_with_a_byte_order_mark_is_read(tmp_path):
