@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterable, Iterator
 from io import BytesIO
 from itertools import chain
+from numbers import Real
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -51,10 +52,10 @@ def save_animation(
         names = ", ".join(writers)
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
     rate: object = fps
-    if not isinstance(rate, int | float) or not _SLOWEST <= rate <= _FASTEST:
+    if not isinstance(rate, Real) or not _SLOWEST <= rate <= _FASTEST:
         accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
         raise ParameterError(f"fps = {short_repr(fps)} is not accepted: {accepted}")
-    content = write(_checked(frames), fps)
+    content = write(_checked(frames), float(fps))
     with atomic_write(path) as file:
         file.write(content)
 

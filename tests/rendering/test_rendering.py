@@ -126,7 +126,7 @@ def plain(level):
 def test_animations_keep_time_and_few_colors(tmp_path):
     # 33.3 ms a frame in whole hundredths of a second; two equal frames are one.
     path, levels = tmp_path / "run.gif", [7, 200, 90, 13, 13]
-    rendering.save_animation(path, map(plain, levels), fps=30)
+    rendering.save_animation(path, map(plain, levels), fps=np.float32(30))
     with PIL.Image.open(path) as file:
         assert (file.n_frames, file.info["loop"]) == (4, 0)
         for index, duration in enumerate([30, 40, 30, 70]):
