@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -196,8 +197,11 @@ class Recording(HintsAtNames):
         """
         state = self.state_at(time_s)
         present = self._is_present(self._sample_at(time_s))
-        leaders = int(present[: self.parameters.n_leaders].sum())
-        parameters = self.parameters.replace(n_boats=int(present.sum()), n_leaders=leaders)
+        leads, target = present[: self.parameters.n_leaders], self.parameters.target
+        if isinstance(target, tuple):  # One per leader; a flock without leaders has no list.
+            target = tuple(compress(target, leads)) or target[0]
+        counts = {"n_boats": int(present.sum()), "n_leaders": int(leads.sum())}
+        parameters = self.parameters.replace(**counts, target=target)
         return Flock.from_state(parameters, self.seed, state)
 
     def state_at(self, time_s: float) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """A recording of tracks is saved, sliced, drawn, tabled and replayed like a simulated one."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -127,3 +128,14 @@ def test_simulated_recordings_still_hold_no_gaps(seen):
         Recording(
             **{name: getattr(seen.truth, name) for name in seen.truth.__slots__} | {"pose": pose}
         )
+
+
+@pytest.mark.parametrize(("missing", "target"), [([0], ("ccw",)), ([0, 1], "cw")])
+def test_leaders_that_are_present_keep_their_targets(missing, target):
+    parameters = flockenv.FlockParameters(n_boats=4, n_leaders=2, target=("cw", "ccw"))
+    run = flockenv.simulate(parameters, 1, 1.0)
+    pose, velocity = run.pose.copy(), run.velocity.copy()
+    pose[:, missing] = velocity[:, missing] = np.nan
+    ids = np.array(list("abcd"))
+    tracked = replace(run, pose=pose, velocity=velocity, ids=ids, rudder=None)
+    assert tracked.flock_at(0.5).parameters.target == target
