@@ -14,7 +14,7 @@ from flockenv._io.arguments import as_int, check_function, items
 from flockenv._io.atomic_write import remove_leftovers
 from flockenv._io.interrupts import end_if_interrupted
 from flockenv.errors import FlockError, ParameterError
-from flockenv.recording import LayoutError, Recording
+from flockenv.recording import DISCARDED_SHARE, LayoutError, Recording
 from flockenv.recording.checks import ORIGIN
 from flockenv.runs.executors import Engine, finished, threads
 from flockenv.runs.spec import RunSpec, execute
@@ -112,10 +112,14 @@ def _difference(run: Recording, spec: RunSpec) -> str | None:
     """Return how a recording differs from the run of a spec; None if it is that run."""
     step_s, keep = 1.0 / spec.sample_hz, spec.keep
     shortest_s = float(np.diff(run.time_s).min()) if len(run) > 1 else step_s
-    # An analysis window shorter than two steps may hold no two successive samples.
-    window_s = math.inf if keep != "window" else 0.5 * (run.parameters.fw_s + run.parameters.nop1_s)
+    # Two successive samples are certain only in a whole analysis window of at least two steps.
+    flock, analyzed_s = spec.parameters, (1.0 - DISCARDED_SHARE) * spec.duration_s
+    window_s = math.inf if keep != "window" else 0.5 * (flock.fw_s + flock.nop1_s)
+    cycle_s = flock.fw_s + flock.nop1_s + flock.bw_s + flock.nop2_s
+    may_lack_pairs = keep == "window" and analyzed_s < cycle_s + window_s
+    may_lack_pairs |= step_s > 0.5 * window_s
     is_sampled = np.allclose(run.time_s, step_s * np.round(run.time_s / step_s), rtol=0, atol=1e-8)
-    is_sampled &= abs(shortest_s - step_s) < 1e-8 or step_s > 0.5 * window_s
+    is_sampled &= abs(shortest_s - step_s) < 1e-8 or may_lack_pairs
     is_complete = keep == "window" or len(run) == int(spec.duration_s * spec.sample_hz + 1e-6) + 1
     is_window = keep != "window" or run.in_analysis_window.all()
     # A spec's run has none of the fields in `ORIGIN`, which only other runs have.

@@ -352,6 +352,17 @@ def test_every_run_that_was_kept_is_its_own(spec, store, keep, sample_hz, durati
     assert store.load(spec) == execute(spec)
 
 
+def test_a_short_run_with_a_sample_in_each_of_two_windows_is_its_own(spec, store) -> None:
+    """The first tenth cuts the first window to the sample at 1 s, the end the second to 6.5 s."""
+    phases = {"fw_s": 1.0, "nop1_s": 1.0, "bw_s": 3.0, "nop2_s": 1.0}
+    parameters = spec.parameters.replace(**phases)
+    spec = replace(spec, parameters=parameters, sample_hz=2.0, duration_s=6.5)
+    run = execute(spec)
+    assert run.time_s.tolist() == [1.0, 6.5]
+    store.save(spec, run)
+    assert store.load(spec) == run
+
+
 def test_resuming_removes_what_killed_processes_left(spec, store) -> None:
     folder = store.path(spec).parent
     folder.mkdir(parents=True)
