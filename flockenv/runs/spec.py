@@ -135,7 +135,7 @@ def execute(spec: RunSpec) -> Recording:
         run = run.analyzed()
     if spec.keep != "poses":
         run = run.without_poses()
-    # Rounded as in the store, so that a stored run equals a new one.
+    # Rounded to single precision, which the store compresses better; it rounds nothing itself.
     orders = {name: getattr(run.order, name).astype(np.float32) for name in ORDER}
     doubles = {name: values.astype(np.float64) for name, values in orders.items()}
     return replace(run, order=OrderSeries(**doubles))
