@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flockenv._io.arguments import as_float
 from flockenv._io.atomic_write import atomic_write
 from flockenv._io.extras import require
 from flockenv.errors import ParameterError, short_repr
@@ -52,7 +53,7 @@ def save_animation(
         names = ", ".join(writers)
         raise ParameterError(f"path = {os.fspath(path)!r} is not accepted: a name in {names}")
     rate: object = fps
-    if not isinstance(rate, Real) or not _SLOWEST <= rate <= _FASTEST:
+    if not isinstance(rate, Real) or not _SLOWEST <= as_float(rate) <= _FASTEST:
         accepted = f"{_SLOWEST} to {_FASTEST:.0f} frames per second"
         raise ParameterError(f"fps = {short_repr(fps)} is not accepted: {accepted}")
     content = write(_checked(frames), float(fps))
