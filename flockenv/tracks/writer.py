@@ -81,9 +81,12 @@ def _layout(recording: Recording) -> dict[str, Any]:
     """Return the fields of the layout of a recording's table."""
     parameters, ids = recording.parameters, recording.ids
     names = range(parameters.n_boats) if ids is None else ids
-    columns = {"frame": "time_s", "x": "x_cm", "y": "y_cm", "heading": "heading_rad"}
+    columns: dict[str, Any] = {"frame": "time_s", "x": "x_cm", "y": "y_cm"}
+    if (recording.time_s % 1.0 == 0.0).all():
+        columns["fps"] = 1.0  # Without it, times in whole numbers are refused.
     return columns | {
         "id": "boat" if ids is None else "id",
+        "heading": "heading_rad",
         "wrapped": False,
         "pool": parameters.pool,
         "hull": (parameters.boat_radius_cm, parameters.boat_shape),

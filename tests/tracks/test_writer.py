@@ -21,6 +21,14 @@ def test_tables_are_read_back(seen, tmp_path, suffix):
     assert (recording.order.psi_o == seen.truth.order.psi_o).all()
 
 
+@pytest.mark.parametrize("sample_hz", [0.5, 1.0, 2.0])
+def test_tables_at_whole_seconds_are_read_back(tmp_path, sample_hz):
+    run = flockenv.simulate(PARAMETERS, 1, 20.0, sample_hz)
+    again = read_tracks(export(run, tmp_path / "run.csv")[0])
+    assert np.array_equal(again.time_s, run.time_s)
+    assert np.array_equal(again.pose, run.pose)
+
+
 def test_a_layout_that_is_there_is_kept(seen, tmp_path):
     (tmp_path / "run.toml").write_text('pool = "narrow"  # measured on 3 May\n')
     for ending in (".csv", ".parquet"):
