@@ -88,7 +88,7 @@ def _recording(
     samples = samples.sort_values("time", kind="stable")
     samples["frame"] = frames_of(samples)
     used = samples[samples["why"] == ""]
-    check_samples(samples, used, layout, is_named)
+    check_samples(samples, used, is_named)
     names, time_s, stamps, pose = poses_of(samples, used)
     motion = motion_with_bows(stamps, pose, layout)
     flock = {name: getattr(layout, name) for name in ("pool", "hull", "leaders", "target")}

@@ -256,9 +256,7 @@ def _check_largest(heading: Floats, is_too_large: NDArray[np.bool_], layout: Tra
     )
 
 
-def check_samples(
-    samples: "pd.DataFrame", used: "pd.DataFrame", layout: TrackLayout, is_named: bool
-) -> None:
+def check_samples(samples: "pd.DataFrame", used: "pd.DataFrame", is_named: bool) -> None:
     """Refuse tracks without used samples, or with two samples of a boat at one time.
 
     Also refuse two spellings of a name that never appear in one frame: they would be two boats.
@@ -273,7 +271,7 @@ def check_samples(
     for line, name, time in repeated[["id", "time"]].head(1).itertuples():
         count = ((used["id"] == name) & (used["time"] == time)).sum()
         raise ParameterError(
-            f"{name!r} appears {count} times in frame {time * (layout.fps or 1):g}, at different "
+            f"{name!r} appears {count} times in one frame, at different "
             f"positions, the second time in {used.index.name} {line}: were there two films, or "
             "was the clock set back? Give each film a table of its own"
         )

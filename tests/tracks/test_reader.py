@@ -171,7 +171,7 @@ def test_names_are_sorted_as_numbers():
         (
             line(id=np.where(np.arange(30) == 7, 0, np.arange(30) % 3)),
             {},
-            "'0' appears 2 times in frame 2, at different positions, the second time in row 7",
+            "'0' appears 2 times in one frame, at different positions, the second time in row 7",
         ),
         (line(heading=np.linspace(0, 350, 30)), {}, "heading_unit = 'deg'"),
         (line(x=np.nan), {}, "no row has a name, a position and a heading"),
