@@ -223,13 +223,17 @@ def _check_no_component(rows: "pd.DataFrame", heading: str, layout: TrackLayout)
     squares = dict[int, Floats]()
     for index in range(max(0, heading_index - 3), min(heading_index + 4, rows.shape[1])):
         with suppress(ParameterError):  # The neighbor may hold texts.
-            values = np.nan_to_num(numbers(some_rows.iloc[:, index], layout))
-            if len(values) and np.abs(values).max() <= 1.01:
+            values = numbers(some_rows.iloc[:, index], layout)
+            if len(values) and np.nan_to_num(np.abs(values)).max() <= 1.01:
                 squares[index] = values**2
-    square = squares.pop(heading_index, np.zeros(1))
+    square = squares.pop(heading_index, np.zeros(len(some_rows)))
     for others in (*combinations(squares, 3), *combinations(squares, 1)):
         total = square + sum(squares[index] for index in others)
-        if abs(np.mean(total) - 1.0) < 0.1 and np.std(total) < 0.1 * np.std(square):
+        known = np.isfinite(total)  # A lost boat has no numbers.
+        if not known.any():
+            continue
+        spread = 0.1 * np.std(square[known])
+        if np.std(total[known]) < spread and abs(np.mean(total[known]) - 1.0) < 0.1:
             names = [str(rows.columns[index]) for index in sorted((heading_index, *others))]
             raise ParameterError(
                 f"heading = {layout.heading!r} is a part of a turn: the squares of {listed(names)} "

@@ -109,8 +109,11 @@ def test_a_sine_is_no_heading(part):
     angle = np.radians(table["angle"])
     table = table.assign(sine=np.sin(angle), cosine=np.cos(angle))
     layout = TrackLayout(**PLACE, fps=10.0, heading=part)
-    with pytest.raises(flockenv.ParameterError, match="make angles of a sine and a cosine"):
-        read_tracks(table, layout)
+    lost = table.copy()
+    lost.loc[::9, ["sine", "cosine"]] = np.nan
+    for each in (table, lost):
+        with pytest.raises(flockenv.ParameterError, match="make angles of a sine and a cosine"):
+            read_tracks(each, layout)
 
 
 def test_small_headings_beside_a_column_of_ones_are_headings():
