@@ -53,7 +53,9 @@ def _positions_of(dataset: "xarray.Dataset") -> "xarray.Dataset":
         )
     data = dataset[[name for name in ("position", "confidence") if name in dataset.data_vars]]
     # Later versions of movement have the names in the singular: individual, keypoint.
-    data = data.rename({name: f"{name}s" for name in data.dims if f"{name}s" in _DIMENSIONS})
+    # A selected individual has its name in a coordinate without a dimension.
+    singular = (name for name in {*data.dims, *data.coords} if f"{name}s" in _DIMENSIONS)
+    data = data.rename({name: f"{name}s" for name in singular})
     data = data.expand_dims([name for name in _DIMENSIONS[2:] if name not in data.dims])
     for name, variable in data.items():
         expected = {*_DIMENSIONS} - ({"space"} if name == "confidence" else set())

@@ -41,6 +41,12 @@ def test_low_confidence_counts_as_missing():
     assert reports[0].left_out == {"with too little confidence": {"id_2": 10}}
 
 
+def test_a_selected_individual_keeps_its_name():
+    one = movement().sel(individuals="id_2")
+    for dataset in (one, one.rename(individuals="individual")):
+        assert read_tracks(dataset, LAYOUT).ids.tolist() == ["id_2"]
+
+
 def renamed(dataset, dimension, names):
     return dataset.assign_coords({dimension: names})
 
