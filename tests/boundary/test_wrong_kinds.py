@@ -84,7 +84,7 @@ def test_a_share_of_a_run_is_none(value):
         (["1", "2"], "real numbers, not <U1"),
         ([1j, 2j], "real numbers, not complex128"),
         (np.array([1, 2], "M8[s]"), "real numbers, not datetime64"),
-        (RUNS, "real numbers, not <U6"),
+        (RUNS, "an array, as a table.s to_numpy"),
         ([[1.0, 2.0], [3.0, 4.0]], r"shape \(2, 2\), expected \(n,\)"),
         ([1.0, [2.0]], "is not accepted: real numbers"),
     ],
