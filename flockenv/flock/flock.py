@@ -277,7 +277,10 @@ class Flock(HintsAtNames):
         return OrderParameters(*self._in_core.order_parameters(of_all_boats))
 
     def contacts(self) -> Contacts:
-        """Return contacts and near-contacts of the last substep; none after a state was set."""
+        """Return contacts and near-contacts of the last substep.
+
+        There are none after a state was set or restored, or an advance failed.
+        """
         return Contacts(**self._in_core.contacts())
 
     def snapshot(self) -> bytes:

@@ -2,7 +2,7 @@
 
 use super::state::Integrator;
 use super::substep::LastSubstep;
-use crate::contact::{CachedImpulse, Contact, Statistics};
+use crate::contact::{CachedImpulse, Statistics};
 use crate::geometry::{Pose, Vec2, Velocity};
 
 /// The complete state of the motion, apart from parameters, seed and time.
@@ -15,9 +15,6 @@ pub(crate) struct Checkpoint {
     pub velocities: Vec<Velocity>,
     /// Contacts of the last substep that carried an impulse. A checkpoint saved before an advance also holds the others.
     pub warm_start: Vec<CachedImpulse>,
-    /// The contacts found last, with their impulses in cm/s. Only reports of forces need them, so snapshots omit them.
-    #[serde(skip)]
-    pub contacts: (Vec<Contact>, Vec<f64>),
     /// The centers and the distance with which the neighbor list was built.
     pub neighbor_reference: (Vec<Vec2>, f64),
     /// Memory of the leapfrog scheme.
@@ -33,12 +30,11 @@ pub(crate) struct Checkpoint {
 }
 
 impl Integrator {
-    /// A copy of the present motion for a snapshot.
+    /// A copy of the present motion.
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = Checkpoint::default();
         self.save(&mut checkpoint);
         checkpoint.warm_start.retain(|entry| entry.impulse > 0.0);
-        checkpoint.contacts = Default::default();
         checkpoint
     }
 
@@ -51,9 +47,6 @@ impl Integrator {
         checkpoint
             .warm_start
             .extend_from_slice(self.contacts.warm_start_impulses());
-        let (contacts, impulses) = &mut checkpoint.contacts;
-        contacts.clone_from(&self.contacts.contacts);
-        impulses.clone_from(&self.contacts.solver.impulses);
         let neighbors = &self.contacts.detector.neighbors;
         let (reference, cutoff) = &mut checkpoint.neighbor_reference;
         reference.clear();
@@ -69,9 +62,6 @@ impl Integrator {
         self.place(&checkpoint.poses, &checkpoint.velocities);
         self.last.clone_from(&checkpoint.last);
         self.contacts.set_warm_start(&checkpoint.warm_start);
-        let (contacts, impulses) = &checkpoint.contacts;
-        self.contacts.contacts.clone_from(contacts);
-        self.contacts.solver.impulses.clone_from(impulses);
         let (reference, cutoff) = &checkpoint.neighbor_reference;
         self.contacts.detector.neighbors.restore(reference, *cutoff);
         self.water_cm_s = checkpoint.water_cm_s;

@@ -158,8 +158,6 @@ fn a_long_run_can_be_ended_between_substeps_and_nothing_has_changed() {
         let mut flock = Flock::new(p, 3).expect("room");
         flock.advance(1.0, None).expect("finite motion");
         let before = (bits(&flock), flock.time(), flock.snapshot());
-        let contacts = flock.contacts();
-        assert_eq!(contacts.is_empty(), flock.poses().len() == 1);
         let end = flock.end_of(duration_s).expect("a duration");
         let asked = AtomicU64::new(0);
         let keep_going = || asked.fetch_add(1, Ordering::Relaxed) < 2;
@@ -167,7 +165,6 @@ fn a_long_run_can_be_ended_between_substeps_and_nothing_has_changed() {
         assert_eq!(ended, Err(FlockError::Interrupted));
         assert_eq!(asked.into_inner(), 3);
         assert!((bits(&flock), flock.time(), flock.snapshot()) == before);
-        assert!(flock.contacts() == contacts);
     }
 }
 
