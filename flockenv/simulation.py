@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from flockenv import _core
-from flockenv._io.arguments import as_bool, as_int, check_function, items
+from flockenv._io.arguments import as_bool, as_int, check_function, items, number
 from flockenv.errors import ParameterError, short_repr
 from flockenv.flock import ContactSeries, Flock, StepStatistics
 from flockenv.order import OrderSeries
@@ -132,6 +132,8 @@ def simulate(
         raise TypeError(f"parameters must be FlockParameters, not {short_repr(parameters)}")
     if progress is not None:
         check_function(progress, "progress")
+    seed = as_int(seed, "seed")
+    control_hz = None if control_hz is None else float(number(control_hz, "control_hz"))
     leaders = Leaders.from_policies(policy, parameters)
     start = _start_state(start)
     changes = _parse_schedule(parameters, schedule, seed)
@@ -163,7 +165,7 @@ def _origin(
     """Return the fields in which runs with the same parameters, seed and policy may differ."""
     return {
         "noise_seed": None if noise_seed is None else as_int(noise_seed, "noise_seed"),
-        "control_hz": None if control_hz is None else float(control_hz),
+        "control_hz": control_hz,
         "start_sha256": _start_digest(start, flock),
     }
 

@@ -104,7 +104,7 @@ def _write_page(options: ReplayOptions) -> None:
     if options.as_json:
         print_json({"html": str(page), "bytes": written.size, "every": written.every})
     else:
-        thinning = "" if written.every == 1 else f", every {written.every}th sample"
+        thinning = "" if written.every == 1 else f", of {written.every} samples one"
         echo(f"Written to {page} ({written.size / 1e6:.1f} MB{thinning})")
     if options.show:
         open_page(page)

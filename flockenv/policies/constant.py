@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flockenv._io.arguments import as_int
+from flockenv.errors import ParameterError
 from flockenv.policies.base import Layout, RowPolicy
 
 
@@ -22,14 +23,17 @@ class RandomRudders(RowPolicy):
     Parameters
     ----------
     seed
-        Seed of the draws, which continue from call to call.
+        Seed of the draws, which continue from call to call; at least 0.
     layout
         The options of `RowPolicy`.
     """
 
     def __init__(self, seed: int = 0, **layout: Unpack[Layout]) -> None:
         super().__init__(**layout)
-        self._random = np.random.default_rng(as_int(seed, "seed"))
+        seed = as_int(seed, "seed")
+        if seed < 0:
+            raise ParameterError(f"seed = {seed} is not accepted: at least 0")
+        self._random = np.random.default_rng(seed)
 
     def _steer(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
         return self._random.uniform(-1.0, 1.0, len(rows))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import flockenv
-from flockenv import FlockParameters, ParameterError, Recording, simulate
+from flockenv import Flock, FlockParameters, ParameterError, Recording, simulate
+from flockenv.policies import StraightAhead
 
 PARAMETERS = FlockParameters(n_boats=10, n_leaders=2, pool="narrow")
 
@@ -309,7 +310,21 @@ def test_progress_is_a_function(progress):
         simulate(PARAMETERS, 3, 0.1, progress=progress)
 
 
-@pytest.mark.parametrize("control_hz", [5.0, -1.0, "often"])
+@pytest.mark.parametrize("policy", [None, StraightAhead()])
+@pytest.mark.parametrize("control_hz", ["often", True])
+def test_a_rate_is_a_number(control_hz, policy):
+    with pytest.raises(TypeError, match="control_hz must be a number"):
+        simulate(PARAMETERS, 3, 2.0, policy=policy, control_hz=control_hz)
+
+
+@pytest.mark.parametrize("start", [None, Flock(PARAMETERS, 1).snapshot()])
+def test_a_seed_is_a_whole_number(start):
+    with pytest.raises(TypeError, match="seed must be an integer"):
+        simulate(PARAMETERS, True, 2.0, start=start)
+    assert simulate(PARAMETERS, 1.0, 2.0, start=start).seed == 1
+
+
+@pytest.mark.parametrize("control_hz", [5.0, -1.0])
 def test_a_rate_without_a_policy_is_refused(control_hz):
     with pytest.raises(ParameterError, match=r"control_hz = .* is not accepted: without a policy"):
         simulate(PARAMETERS, 3, 2.0, control_hz=control_hz)

@@ -175,3 +175,5 @@ def test_random_rudders_have_a_seed(seed):
         RandomRudders(seed)
     with pytest.raises(ParameterError, match=r"seed = 1\.5 is not accepted: a whole number"):
         RandomRudders(1.5)
+    with pytest.raises(ParameterError, match="seed = -1 is not accepted: at least 0"):
+        RandomRudders(-1)
