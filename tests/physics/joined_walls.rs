@@ -3,7 +3,10 @@
 //! On paper: a straight wall cut into a hundred pieces is the same wall, and so is a circle of many pieces, up to the
 //! sagitta R·(1 − cos(π/n)) of each. What lies beyond the end of a piece is nearer to the next one.
 
-use crate::support::{R, VELOCITY_SCHEMES, changed, disc, disc_at, driven, flock_of, wall};
+use crate::support::{
+    R, VELOCITY_SCHEMES, changed, deepest_overlap, disc, disc_at, driven, flock_of, take_substeps,
+    wall,
+};
 use flockenv::FlockParameters;
 use flockenv::geometry::Pose;
 use flockenv::parameters::{Scheme, Wall};
@@ -134,4 +137,28 @@ fn joined_ends_hold_boats_from_everywhere() {
             assert!(deepest < 0.3, "{dt_s} from {x}: {deepest}");
         }
     }
+}
+
+/// A boat that slides into a corner of a few degrees may overlap the second wall, which is taken for the first one's
+/// continuation.
+#[test]
+fn an_overlap_at_a_concave_joint_is_stated() {
+    let mut deepest = 0.0_f64;
+    for (angle_deg, dt_s) in [(2.0_f64, 0.02), (5.0, 0.05), (10.0, 0.1)] {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let p = changed(driven(Scheme::Leapfrog), |p| {
+            p.dt_s = dt_s;
+            p.walls = chain([(-150.0, 0.0), (0.0, 0.0), (150.0 * cos, 150.0 * sin)].into_iter());
+        });
+        let mut flock = flock_of(&p, &[([-40.0, R + 0.1, -0.02], [0.0; 3])]);
+        let mut found = 0.0_f64;
+        for _ in 0..(6.0 / dt_s) as usize {
+            take_substeps(&mut flock, 1);
+            found = found.max(deepest_overlap(&flock));
+        }
+        let stated = flock.statistics().worst_overlap_cm;
+        assert!((stated - found).abs() < 1e-9, "{stated} {found}");
+        deepest = deepest.max(found);
+    }
+    assert!(deepest > 0.1, "{deepest}");
 }
