@@ -230,7 +230,7 @@ def draw_films() -> None:
 def film_policy(env_id: str) -> str:
     """Return the name of the policy in the film."""
     if _shared_target_words(env_id):
-        # Learned leaders read no target, only mirrored observations: a told one has no effect.
+        # Learned leaders read mirrored observations and no target: to tell them one has no effect.
         return REFERENCE
     pool = EnvOptions.parse(ENVIRONMENTS[env_id].options).parameters.pool
     return GOOD_POLICIES.get(pool, "damped law")

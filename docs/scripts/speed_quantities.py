@@ -132,7 +132,7 @@ def substep_ratios_in_flocks(rows: pd.DataFrame) -> pd.Series:
 
 
 def time_ratios(column: str) -> Callable[[pd.DataFrame], pd.Series]:
-    """Return a function for times of controlled over those of fixed steps at equal error."""
+    """Return a function that divides times of controlled by fixed steps of equal error."""
 
     def of_scene(rows: pd.DataFrame) -> pd.Series:
         is_controlled = rows["setting"].str.startswith("controlled")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from hashlib import sha256
 from numbers import Real
-from typing import Any, Self, Unpack
+from typing import Any, ClassVar, Self, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,9 +30,6 @@ LARGEST_LEAN: float = _core.LARGEST_LEAN
 """Angle in rad of an action of 1 with ``action_mode="lean"``."""
 
 
-_FIXED_ATTRIBUTES = ("law", "gains", "observation", "mirror_to_target")
-
-
 class LawPolicy(RowPolicy):
     """A law evaluated from observations, with the interface of an SB3 policy.
 
@@ -48,6 +45,9 @@ class LawPolicy(RowPolicy):
     ParameterError
         If a block that the law reads is switched off.
     """
+
+    #: Attributes that only another law has otherwise, besides the gains.
+    _fixed: ClassVar[tuple[str, ...]] = ("law", "gains", "observation", "mirror_to_target")
 
     def __init__(
         self, law: _core.Law, observation: Mapping[str, object] | None, mirror_to_target: bool
@@ -69,9 +69,7 @@ class LawPolicy(RowPolicy):
 
     def __setattr__(self, name: str, value: object) -> None:
         """Set an attribute; raise AttributeError for those that the core's law depends on."""
-        of_leans = ("bias", "weights") if isinstance(self, LeaningLaw) else ()
-        fixed = {*_FIXED_ATTRIBUTES, *of_leans, *self.gains} if hasattr(self, "_observed") else ()
-        if name in fixed:
+        if hasattr(self, "_observed") and name in {*self._fixed, *self.gains}:
             raise AttributeError(f"{name!r} of {self!r} is fixed: make another law")
         super().__setattr__(name, value)
 
@@ -235,6 +233,8 @@ class LeaningLaw(LawPolicy):
         For pools that have no lean features, unknown names, numbers that are not finite, and a
         `decision_period_s` with gains other than the tuned ones.
     """
+
+    _fixed = (*LawPolicy._fixed, "bias", "weights")
 
     def __init__(
         self,

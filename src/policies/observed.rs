@@ -16,7 +16,7 @@ pub struct ObservedLaw {
     courses: Option<CourseReader>,
     /// Index of the first lean feature in an observation, if the law reads lean features.
     first_feature: Option<usize>,
-    /// Index of the target, if the law chooses a rudder itself, for a clockwise target, and observations are not mirrored.
+    /// Index of the target in an observation that is not mirrored, if the law chooses a rudder for a clockwise target.
     target: Option<usize>,
 }
 
